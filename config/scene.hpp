@@ -1,0 +1,73 @@
+// A robot cell as the monitor needs it: plain structs, already checked. Read from YAML by config/cell_file.hpp.
+//
+// Ids are indices: object i is scene.objects[i], in the order of the file. SI units; stamps in ns.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/convex_polyhedron.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// One convex piece of an object, with its place in the object's frame.
+struct Part {
+  std::string name;
+  ConvexPolyhedron shape;
+  Pose object_from_part;
+};
+
+struct Object {
+  std::string name;
+  std::vector<std::string> groups;
+  std::vector<Part> parts;
+  bool fixed = false;
+  Pose world_from_object;         // of a fixed object; of a moving one: meaningless until a pose arrives
+  double margin = 0.0;            // m, >= 0: zones subtract it; published distances do not
+  double max_speed = kInfinity;   // m/s, of any point of the object; infinity: not stated
+  std::int64_t age_limit_ns = 0;  // an older pose makes the object's pairs stale; fixed objects: unused
+};
+
+// Two objects to be watched. first < second; every pair once.
+struct ObjectPair {
+  std::uint32_t first = 0, second = 0;
+  bool publish = false;  // in every report's pair list, not only when it is the minimum
+};
+
+// A named threshold on the distance less both margins, for every pair between two groups.
+struct Zone {
+  std::string name;
+  std::string group_a, group_b;
+  double enter_below = 0.0;  // m
+  double leave_above = 0.0;  // m, >= enter_below: hysteresis
+  std::vector<std::uint32_t> pairs;  // indices into Scene::pairs
+};
+
+struct Topics {
+  std::string poses = "clearance/poses";
+  std::string distances = "clearance/distances";
+  std::string catalogue = "clearance/catalogue";
+  std::string health = "clearance/health";
+  std::string zones = "clearance/zones";
+};
+
+struct Scene {
+  std::string name;
+  std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two scenes that
+                               // differ have different revisions; never 0
+  std::string yaml;            // the text it was read from, for recordings
+  double rate_hz = 1000.0;
+  std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
+  std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
+  std::uint32_t domain = 0;  // DDS
+  std::string partition;     // DDS; empty: the default partition
+  Topics topics;
+  std::vector<Object> objects;
+  std::vector<ObjectPair> pairs;
+  std::vector<Zone> zones;
+};
+
+}  // namespace clearance

@@ -1,0 +1,37 @@
+// The tick: poses in, report out. Knows neither DDS nor a clock; the daemon, the offline replay and the
+// tests all drive this one function.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "config/scene.hpp"
+#include "monitor/input.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+class Monitor {
+ public:
+  // Allocates all it will ever need. The scene must outlive the monitor.
+  explicit Monitor(const Scene& scene);
+  ~Monitor();
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+
+  // One cycle: takes in the samples in the given order (refused ones are counted, never used), moves the
+  // objects, carries every bound forward, evaluates what is due within the budget, updates zones.
+  // `now_ns` (CLOCK_REALTIME) must not decrease; if it does, the previous value is used. The report stays
+  // valid until the next tick. Allocates, throws and locks nothing; same inputs, same bits.
+  const Report& tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept;
+
+  // Refused samples of one object, by cause (for the health topic).
+  [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(std::uint32_t object) const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,18 @@
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+const char* name(PairStatus status) noexcept {
+  switch (status) {
+    case PairStatus::kConverged: return "converged";
+    case PairStatus::kTouching: return "touching";
+    case PairStatus::kOverlapping: return "overlapping";
+    case PairStatus::kLoose: return "loose";
+    case PairStatus::kCarried: return "carried";
+    case PairStatus::kStale: return "stale";
+    case PairStatus::kUnknown: return "unknown";
+  }
+  return "";
+}
+
+}  // namespace clearance
