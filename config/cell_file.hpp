@@ -10,12 +10,14 @@
 
 namespace clearance {
 
-// One thing wrong with a cell file; `text` reads "FILE:LINE:COLUMN: what was found, what was expected".
+// One thing wrong with a cell file; `text` reads "FILE:LINE:COLUMN: what was found, what was
+// expected".
 struct CellError {
   std::string text;
 };
 
-// Every error that can be found in one pass, never just the first. Mesh paths are relative to the file.
+// Every error that can be found in one pass, never just the first. Mesh paths are relative to the
+// file.
 using CellResult = std::variant<Scene, std::vector<CellError>>;
 
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file);

@@ -1,13 +1,14 @@
-// A robot cell as the monitor needs it: plain structs, already checked. Read from YAML by config/cell_file.hpp.
+// A robot cell as the monitor needs it: plain structs, already checked. Read from YAML by
+// config/cell_file.hpp.
 //
 // Ids are indices: object i is scene.objects[i], in the order of the file. SI units; stamps in ns.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "config/simulation.hpp"
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
 
@@ -25,10 +26,11 @@ struct Object {
   std::vector<std::string> groups;
   std::vector<Part> parts;
   bool fixed = false;
-  Pose world_from_object;         // of a fixed object; of a moving one: meaningless until a pose arrives
-  double margin = 0.0;            // m, >= 0: zones subtract it; published distances do not
-  double max_speed = kInfinity;   // m/s, of any point of the object; infinity: not stated
-  std::int64_t age_limit_ns = 0;  // an older pose makes the object's pairs stale; fixed objects: unused
+  Pose world_from_object;  // of a fixed object; of a moving one: meaningless until a pose arrives
+  double margin = 0.0;     // m, >= 0: zones subtract it; published distances do not
+  double max_speed = kInfinity;  // m/s, of any point of the object; infinity: not stated
+  std::int64_t age_limit_ns =
+      0;  // an older pose makes the object's pairs stale; fixed objects: unused
 };
 
 // Two objects to be watched. first < second; every pair once.
@@ -37,12 +39,12 @@ struct ObjectPair {
   bool publish = false;  // in every report's pair list, not only when it is the minimum
 };
 
-// A named threshold on the distance less both margins, for every pair between two groups.
+// A named threshold on the distance less both margins, for every watched pair between two groups.
 struct Zone {
   std::string name;
-  std::string group_a, group_b;
-  double enter_below = 0.0;  // m
-  double leave_above = 0.0;  // m, >= enter_below: hysteresis
+  std::string group_a, group_b;      // a group, or one object by its name
+  double enter_below = 0.0;          // m
+  double leave_above = 0.0;          // m, >= enter_below: hysteresis
   std::vector<std::uint32_t> pairs;  // indices into Scene::pairs
 };
 
@@ -56,18 +58,22 @@ struct Topics {
 
 struct Scene {
   std::string name;
-  std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two scenes that
-                               // differ have different revisions; never 0
-  std::string yaml;            // the text it was read from, for recordings
+  std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
+                               // scenes that differ have different revisions; never 0
+  std::string yaml;  // the text it was read from, for recordings
   double rate_hz = 1000.0;
-  std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
+  std::uint32_t budget = 2000;               // distance queries a tick, at most: part pairs
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  std::uint32_t domain = 0;  // DDS
-  std::string partition;     // DDS; empty: the default partition
+  std::uint32_t domain = 0;                  // DDS
+  std::string partition;                     // DDS; empty: the default partition
   Topics topics;
   std::vector<Object> objects;
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;
+  Simulation simulation;  // may be empty; the monitor never looks at it
 };
+
+// One line: how many objects, parts, facets, pairs and zones.
+[[nodiscard]] std::string summary(const Scene& scene);
 
 }  // namespace clearance

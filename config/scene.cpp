@@ -1,0 +1,31 @@
+#include "config/scene.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace clearance {
+namespace {
+
+std::string counted(std::size_t count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string summary(const Scene& scene) {
+  std::size_t fixed = 0, parts = 0, facets = 0;
+  for (const Object& object : scene.objects) {
+    fixed += object.fixed ? 1 : 0;
+    parts += object.parts.size();
+    for (const Part& part : object.parts) facets += part.shape.facets.size();
+  }
+  const auto published = static_cast<std::size_t>(std::count_if(
+      scene.pairs.begin(), scene.pairs.end(), [](const ObjectPair& pair) { return pair.publish; }));
+  return scene.name + ": " + counted(scene.objects.size(), "object") + " (" +
+         std::to_string(scene.objects.size() - fixed) + " moving, " + std::to_string(fixed) +
+         " fixed), " + counted(parts, "part") + ", " + counted(facets, "facet") + ", " +
+         counted(scene.pairs.size(), "pair") + " (" + std::to_string(published) + " published), " +
+         counted(scene.zones.size(), "zone");
+}
+
+}  // namespace clearance
