@@ -1,0 +1,265 @@
+#include "tests/shared/exact_oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace clearance::oracle {
+namespace {
+
+using RationalMat = std::array<RationalVec, 3>;
+
+RationalVec operator+(const RationalVec& a, const RationalVec& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+RationalVec operator-(const RationalVec& a, const RationalVec& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+RationalVec operator*(const Rational& s, const RationalVec& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+
+RationalVec operator*(const RationalMat& m, const RationalVec& v) {
+  return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
+}
+
+RationalMat transposed(const RationalMat& m) {
+  RationalMat out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) out[i][j] = m[j][i];
+  }
+  return out;
+}
+
+bool is_zero(const RationalVec& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+RationalMat rotation(const Pose& pose) {
+  const Rational w(pose.orientation.w()), x(pose.orientation.x()), y(pose.orientation.y()),
+      z(pose.orientation.z());
+  const Rational n = w * w + x * x + y * y + z * z;
+  if (n == 0) throw std::invalid_argument("a quaternion of length zero");
+  return {
+      {{(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n},
+       {2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n},
+       {2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n}}};
+}
+
+// A vertex of {b - a}, or a ray of it, and what of each body it was made of; all in frame A.
+struct Generator {
+  RationalVec difference, of_a, of_b;
+  bool is_ray;
+};
+
+// Solves m x = r for a regular m by elimination.
+std::vector<Rational> solve(std::vector<std::vector<Rational>> m, std::vector<Rational> r) {
+  const std::size_t n = r.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t p = k;
+    while (p < n && m[p][k] == 0) ++p;
+    if (p == n) throw std::logic_error("dependent generators");
+    std::swap(m[k], m[p]);
+    std::swap(r[k], r[p]);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k || m[i][k] == 0) continue;
+      const Rational factor = m[i][k] / m[k][k];
+      for (std::size_t j = k; j < n; ++j) m[i][j] -= factor * m[k][j];
+      r[i] -= factor * r[k];
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) r[k] /= m[k][k];
+  return r;
+}
+
+// The corral of Wolfe's method: affinely independent generators with non-negative weights (those of
+// the vertices add up to one), and the point of their hull that is nearest to the origin.
+class Corral {
+ public:
+  void add(Generator generator) {
+    weights_.emplace_back(generators_.empty() ? 1 : 0);
+    generators_.push_back(std::move(generator));
+    while (true) {
+      const std::vector<Rational> target = affine_minimum();
+      Rational step = 1;
+      for (std::size_t k = 0; k < target.size(); ++k) {
+        if (target[k] >= 0) continue;
+        const Rational limit = weights_[k] / (weights_[k] - target[k]);
+        if (limit < step) step = limit;
+      }
+      for (std::size_t k = 0; k < target.size(); ++k) {
+        weights_[k] += step * (target[k] - weights_[k]);
+      }
+      drop_unused();
+      if (step == 1) return;
+    }
+  }
+
+  [[nodiscard]] RationalVec sum(RationalVec Generator::*part) const {
+    RationalVec out;
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      out = out + weights_[k] * (generators_[k].*part);
+    }
+    return out;
+  }
+
+  [[nodiscard]] bool weights_are_convex() const {
+    Rational total = 0;
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      if (weights_[k] < 0) return false;
+      if (!generators_[k].is_ray) total += weights_[k];
+    }
+    return total == 1;
+  }
+
+ private:
+  // Weights of the point nearest to the origin in the affine hull.
+  [[nodiscard]] std::vector<Rational> affine_minimum() const {
+    const std::size_t n = generators_.size();
+    std::vector<std::vector<Rational>> m(n + 1, std::vector<Rational>(n + 1, 0));
+    std::vector<Rational> r(n + 1, 0);
+    r[n] = 1;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        m[i][j] = dot(generators_[i].difference, generators_[j].difference);
+      }
+      if (!generators_[i].is_ray) m[i][n] = m[n][i] = 1;
+    }
+    std::vector<Rational> x = solve(std::move(m), std::move(r));
+    x.pop_back();
+    return x;
+  }
+
+  void drop_unused() {
+    for (std::size_t k = weights_.size(); k-- > 0;) {
+      if (weights_[k] != 0) continue;
+      weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(k));
+      generators_.erase(generators_.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+
+  std::vector<Generator> generators_;
+  std::vector<Rational> weights_;
+};
+
+// B placed in frame A, exactly.
+struct Placement {
+  RationalMat world_a, a_from_b_rotation;
+  RationalVec a_from_b_translation;
+
+  Placement(const Pose& a, const Pose& b) : world_a(rotation(a)) {
+    const RationalMat a_world = transposed(world_a), world_b = transposed(rotation(b));
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) a_from_b_rotation[i][j] = dot(a_world[i], world_b[j]);
+    }
+    a_from_b_translation = a_world * (exact(b.position) - exact(a.position));
+  }
+
+  [[nodiscard]] RationalVec b_direction(const RationalVec& in_a) const {
+    return transposed(a_from_b_rotation) * in_a;
+  }
+};
+
+// The next generator of {b - a} on the way to the origin as seen from `nearest`.
+Generator next_generator(ExactBody& a, ExactBody& b, const Placement& place,
+                         const RationalVec& nearest) {
+  const Rational minus_one = -1;
+  const RationalVec zero;
+  const Support on_a = a.support(primitive(nearest));
+  if (on_a.is_ray) return {minus_one * on_a.vector, on_a.vector, zero, true};
+  const Support on_b = b.support(primitive(minus_one * place.b_direction(nearest)));
+  RationalVec of_b = place.a_from_b_rotation * on_b.vector;
+  if (on_b.is_ray) return {of_b, zero, of_b, true};
+  of_b = of_b + place.a_from_b_translation;
+  return {of_b - on_a.vector, on_a.vector, of_b, false};
+}
+
+// The proof that (p, q) is a closest pair: both lie in their bodies, and the planes through them
+// across the line between them have all of A on one side and all of B on the other.
+void prove_optimal(const ExactBody& a, const ExactBody& b, const Placement& place,
+                   const Corral& corral, const RationalVec& p, const RationalVec& q) {
+  const RationalVec gap = q - p;
+  const RationalVec q_in_b = place.b_direction(q - place.a_from_b_translation);
+  if (!corral.weights_are_convex()) throw std::logic_error("weights are not convex");
+  if (a.given_by_rows() && !a.rows_hold_at(p)) throw std::logic_error("point outside A");
+  if (b.given_by_rows() && !b.rows_hold_at(q_in_b)) throw std::logic_error("point outside B");
+  if (is_zero(gap)) return;
+  if (!a.proves_bound(gap, dot(gap, p))) throw std::logic_error("A reaches further");
+  const RationalVec back = Rational(-1) * place.b_direction(gap);
+  if (!b.proves_bound(back, dot(back, q_in_b))) throw std::logic_error("B reaches further");
+}
+
+void enclose(ExactDistance& out) {
+  constexpr int kBits = 1024;
+  mpf_class root(out.squared, kBits);
+  root = sqrt(root) - mpf_class(out.radii, kBits);
+  constexpr double kUp = std::numeric_limits<double>::infinity();
+  double value = root.get_d();
+  while (out.compare(value) < 0) value = std::nextafter(value, -kUp);
+  while (out.compare(std::nextafter(value, kUp)) >= 0) value = std::nextafter(value, kUp);
+  out.lower = value;
+  out.upper = out.compare(value) == 0 ? value : std::nextafter(value, kUp);
+}
+
+}  // namespace
+
+int ExactDistance::compare(const Rational& value) const {
+  const Rational core = value + radii;
+  if (core < 0) return 1;
+  return cmp(squared, Rational(core * core));
+}
+
+int ExactDistance::compare(double value) const {
+  if (std::isnan(value)) throw std::invalid_argument("comparing with a NaN");
+  if (std::isinf(value)) return value > 0 ? -1 : 1;
+  return compare(Rational(value));
+}
+
+ExactDistance exact_distance(ExactBody& a, const Pose& world_from_a, ExactBody& b,
+                             const Pose& world_from_b, double radius_sum) {
+  const Placement place(world_from_a, world_from_b);
+  ExactDistance out;
+  out.radii = radius_sum;
+  Corral corral;
+  RationalVec start_a = a.support({0, 0, 0}).vector;
+  RationalVec start_b = place.a_from_b_rotation * b.support({0, 0, 0}).vector;
+  start_b = start_b + place.a_from_b_translation;
+  corral.add({start_b - start_a, start_a, start_b, false});
+  while (true) {
+    const RationalVec nearest = corral.sum(&Generator::difference);
+    out.squared = dot(nearest, nearest);
+    ++out.steps;
+    if (out.squared == 0) break;
+    Generator next = next_generator(a, b, place, nearest);
+    const Rational reach = dot(nearest, next.difference);
+    if (!next.is_ray && reach >= out.squared) break;
+    corral.add(std::move(next));
+  }
+  const RationalVec p = corral.sum(&Generator::of_a), q = corral.sum(&Generator::of_b);
+  prove_optimal(a, b, place, corral, p, q);
+  out.point_on_a = exact(world_from_a.position) + place.world_a * p;
+  out.point_on_b = exact(world_from_a.position) + place.world_a * q;
+  enclose(out);
+  return out;
+}
+
+ExactDistance exact_distance(const Body& a, const Pose& world_from_a, const Body& b,
+                             const Pose& world_from_b) {
+  ExactBody exact_a(a), exact_b(b);
+  ExactDistance out = exact_distance(exact_a, world_from_a, exact_b, world_from_b);
+  out.radii = Rational(a.radius) + Rational(b.radius);
+  enclose(out);
+  return out;
+}
+
+double distance_outside(const Body& body, const Pose& world_from_body, const Vec3& point_in_world) {
+  const Body point{{}, {Vec3::Zero()}, 0.0};
+  Pose world_from_point;
+  world_from_point.position = point_in_world;
+  const ExactDistance out = exact_distance(body, world_from_body, point, world_from_point);
+  return std::max(out.upper, 0.0);
+}
+
+}  // namespace clearance::oracle
