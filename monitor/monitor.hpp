@@ -29,6 +29,9 @@ class Monitor {
   // Refused samples of one object, by cause (for the health topic).
   [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(std::uint32_t object) const noexcept;
 
+  // Stamp of the pose in use; 0: fixed, or never seen.
+  [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;
+
  private:
   struct State;
   std::unique_ptr<State> state_;
