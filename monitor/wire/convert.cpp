@@ -1,0 +1,187 @@
+#include "monitor/wire/convert.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace clearance {
+namespace {
+
+clearance_msg_Vector3 to_wire(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
+
+Vec3 from_wire(const clearance_msg_Vector3& v) noexcept { return {v.x, v.y, v.z}; }
+
+// Into a bounded string, cut to fit; the rest is zeroed so that equal names are equal bytes.
+template <std::size_t N>
+void copy_text(std::string_view text, char (&out)[N]) noexcept {
+  const std::size_t length = std::min(text.size(), N - 1);
+  std::memcpy(out, text.data(), length);
+  std::memset(out + length, 0, N - length);
+}
+
+char* duplicate(const std::string& text) { return dds_string_dup(text.c_str()); }
+
+void fill(const Object& object, std::uint32_t id, clearance_msg_CatalogueObject& out) {
+  out.id = id;
+  out.name = duplicate(object.name);
+  out.is_fixed = object.fixed;
+  reserve_sequence(out.parts, object.parts.size());
+  for (const Part& part : object.parts)
+    out.parts._buffer[out.parts._length++] = duplicate(part.name);
+}
+
+void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) {
+  out.id = id;
+  out.name = duplicate(zone.name);
+  out.group_a = duplicate(zone.group_a);
+  out.group_b = duplicate(zone.group_b);
+  out.enter_below = zone.enter_below;
+  out.leave_above = zone.leave_above;
+}
+
+}  // namespace
+
+Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
+  const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
+                                       [](const ObjectPair& pair) { return pair.publish; });
+  Sample<clearance_msg_Distances> sample;
+  reserve_sequence(sample->pairs, static_cast<std::size_t>(published));
+  reserve_sequence(sample->sources, clearance_msg_kMaxSources);
+  return sample;
+}
+
+void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept {
+  out.pair = pair.pair;
+  out.part_a = pair.part_a;
+  out.part_b = pair.part_b;
+  out.status = static_cast<std::uint8_t>(pair.status);
+  out.distance = pair.distance;
+  out.lower = pair.lower;
+  out.upper = pair.upper;
+  out.witness_a = to_wire(pair.witness_a);
+  out.witness_b = to_wire(pair.witness_b);
+  out.normal = to_wire(pair.normal);
+  out.closing_speed = pair.closing_speed;
+  out.time_to_contact = pair.time_to_contact;
+  out.age_a_ns = pair.age_a_ns;
+  out.age_b_ns = pair.age_b_ns;
+  out.evaluated_cycle = pair.evaluated_cycle;
+}
+
+bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
+             clearance_msg_Distances& out) noexcept {
+  out.cycle = report.cycle;
+  out.now_ns = report.now_ns;
+  out.newest_pose_ns = report.newest_pose_ns;
+  out.oldest_pose_ns = report.oldest_pose_ns;
+  out.publish_ns = publish_ns;
+  out.scene_revision = report.scene_revision;
+  out.minimum_known = report.minimum_known;
+  out.minimum_proved = report.minimum_proved;
+  out.lower_all = report.lower_all;
+  to_wire(report.minimum, out.minimum);
+  out.pairs_total = report.pairs_total;
+  out.evaluated = report.evaluated;
+  out.carried = report.carried;
+  out.stale = report.stale;
+  out.unknown = report.unknown;
+  out.queries = report.queries;
+  out.oldest_evaluation_cycles = report.oldest_evaluation_cycles;
+
+  out.sources._length =
+      static_cast<std::uint32_t>(std::min<std::size_t>(sources.size(), out.sources._maximum));
+  for (std::uint32_t i = 0; i < out.sources._length; ++i) {
+    copy_text(sources[i].source.data(), out.sources._buffer[i].source);
+    out.sources._buffer[i].sequence_number = sources[i].sequence_number;
+  }
+  out.pairs._length =
+      static_cast<std::uint32_t>(std::min<std::size_t>(report.pairs.size(), out.pairs._maximum));
+  for (std::uint32_t i = 0; i < out.pairs._length; ++i) {
+    to_wire(report.pairs[i], out.pairs._buffer[i]);
+  }
+  return out.sources._length == sources.size() && out.pairs._length == report.pairs.size();
+}
+
+void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
+             clearance_msg_ZoneState& out) noexcept {
+  const ZoneReport& state = report.zones[zone];
+  out.zone = zone;
+  copy_text(scene.zones[zone].name, out.name);
+  out.active = state.active;
+  out.proved = state.proved;
+  out.pair = state.pair;
+  out.clearance = state.clearance;
+  out.since_cycle = state.since_cycle;
+  out.cycle = report.cycle;
+  out.now_ns = report.now_ns;
+}
+
+Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
+  Sample<clearance_msg_Catalogue> sample;
+  sample->scene = duplicate(scene.name);
+  sample->scene_revision = scene.revision;
+  sample->rate_hz = scene.rate_hz;
+  sample->cell_yaml = duplicate(scene.yaml);
+  reserve_sequence(sample->objects, scene.objects.size());
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    fill(scene.objects[i], i, sample->objects._buffer[sample->objects._length++]);
+  }
+  reserve_sequence(sample->pairs, scene.pairs.size());
+  for (std::uint32_t i = 0; i < scene.pairs.size(); ++i) {
+    const ObjectPair& pair = scene.pairs[i];
+    sample->pairs._buffer[sample->pairs._length++] = {i, pair.first, pair.second, pair.publish};
+  }
+  reserve_sequence(sample->zones, scene.zones.size());
+  for (std::uint32_t i = 0; i < scene.zones.size(); ++i) {
+    fill(scene.zones[i], i, sample->zones._buffer[sample->zones._length++]);
+  }
+  return sample;
+}
+
+BatchRead from_wire(const clearance_msg_PoseBatch& batch, std::uint64_t scene_revision,
+                    std::span<PoseSample> out) noexcept {
+  BatchRead read;
+  read.wrong_revision = batch.scene_revision != 0 && batch.scene_revision != scene_revision;
+  if (read.wrong_revision) return read;
+  read.samples = std::min<std::size_t>(batch.poses._length, out.size());
+  read.dropped = batch.poses._length - read.samples;
+  for (std::size_t i = 0; i < read.samples; ++i) {
+    const clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
+    PoseSample& sample = out[i];
+    sample.object = pose.object;
+    sample.stamp_ns = pose.stamp_ns;
+    sample.world_from_object.position = from_wire(pose.position);
+    sample.world_from_object.orientation.coeffs() << pose.orientation.x, pose.orientation.y,
+        pose.orientation.z, pose.orientation.w;
+    sample.has_twist = pose.has_twist;
+    sample.twist.linear = from_wire(pose.linear);
+    sample.twist.angular = from_wire(pose.angular);
+  }
+  return read;
+}
+
+Sample<clearance_msg_PoseBatch> make_batch(std::string_view source, std::size_t poses) {
+  Sample<clearance_msg_PoseBatch> sample;
+  copy_text(source, sample->source);
+  reserve_sequence(sample->poses, poses);
+  return sample;
+}
+
+bool to_wire(std::span<const PoseSample> samples, clearance_msg_PoseBatch& batch) noexcept {
+  batch.poses._length =
+      static_cast<std::uint32_t>(std::min<std::size_t>(samples.size(), batch.poses._maximum));
+  for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
+    const PoseSample& sample = samples[i];
+    const Eigen::Quaterniond& q = sample.world_from_object.orientation;
+    clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
+    pose.object = sample.object;
+    pose.stamp_ns = sample.stamp_ns;
+    pose.position = to_wire(sample.world_from_object.position);
+    pose.orientation = {q.x(), q.y(), q.z(), q.w()};
+    pose.has_twist = sample.has_twist;
+    pose.linear = to_wire(sample.twist.linear);
+    pose.angular = to_wire(sample.twist.angular);
+  }
+  return batch.poses._length == samples.size();
+}
+
+}  // namespace clearance
