@@ -1,5 +1,5 @@
-// The tick: poses in, report out. Knows neither DDS nor a clock; the daemon, the offline replay and the
-// tests all drive this one function.
+// The tick: poses in, report out. Knows neither DDS nor a clock; the daemon, the offline replay and
+// the tests all drive this one function.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,11 @@
 
 namespace clearance {
 
+struct InputAge {
+  std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  bool stale = false;        // older than the object's limit
+};
+
 class Monitor {
  public:
   // Allocates all it will ever need. The scene must outlive the monitor.
@@ -20,14 +25,26 @@ class Monitor {
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
 
-  // One cycle: takes in the samples in the given order (refused ones are counted, never used), moves the
-  // objects, carries every bound forward, evaluates what is due within the budget, updates zones.
-  // `now_ns` (CLOCK_REALTIME) must not decrease; if it does, the previous value is used. The report stays
-  // valid until the next tick. Allocates, throws and locks nothing; same inputs, same bits.
+  // One cycle: takes in the samples in the given order (refused ones are counted, never used),
+  // moves the objects, carries every bound forward, evaluates what is due within the budget,
+  // updates zones. `now_ns` (CLOCK_REALTIME) must not decrease; if it does, the previous value is
+  // used. The report stays valid until the next tick. Allocates, throws and locks nothing; same
+  // inputs, same bits.
   const Report& tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept;
 
+  // Counts a sample that was refused before it came here (a batch made for another scene). In the
+  // report from the next tick on; an object that the scene does not have counts in the totals only.
+  void refuse(std::uint32_t object, Reject cause) noexcept;
+
+  // Any pair as of the last tick, whether it is published or not; all unknown before the first.
+  [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
+
+  // How old an object's pose was at the last tick.
+  [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;
+
   // Refused samples of one object, by cause (for the health topic).
-  [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(std::uint32_t object) const noexcept;
+  [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(
+      std::uint32_t object) const noexcept;
 
   // Stamp of the pose in use; 0: fixed, or never seen.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;

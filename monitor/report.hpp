@@ -16,49 +16,65 @@ enum class PairStatus : std::uint8_t {
   kTouching = 1,     // evaluated: contact to within rounding
   kOverlapping = 2,  // evaluated: they share a point
   kLoose = 3,        // evaluated: the bounds hold but are wider than rounding
-  kCarried = 4,      // not evaluated this tick: bounds carried over by the motion bound
-  kStale = 5,        // a pose is older than its limit: bounds decayed by the stated maximum speed
-  kUnknown = 6,      // an object has never been seen (or late without a stated maximum speed): all NaN,
-                     // lower = -infinity, upper = +infinity
+  // Not evaluated this tick: bounds carried over by the motion bound. A pair that has not been
+  // evaluated yet (evaluated_cycle 0) has its bounds from bounding balls and NaN for the rest.
+  kCarried = 4,
+  kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
+  // An object has never been seen, or is late without a stated maximum speed: all NaN,
+  // lower = -infinity, upper = +infinity.
+  kUnknown = 6,
 };
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.
 struct PairReport {
-  std::uint32_t pair = 0;  // index into Scene::pairs
+  std::uint32_t pair = 0;                // index into Scene::pairs
   std::uint32_t part_a = 0, part_b = 0;  // which parts are closest, indices into Object::parts
   PairStatus status = PairStatus::kUnknown;
-  double distance = 0.0;  // signed, margins not subtracted; when carried: as last evaluated
+  // Signed, margins not subtracted. Distance, witnesses and normal are those of `evaluated_cycle`.
+  double distance = 0.0;
   double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();       // unit, from A to B
-  double closing_speed = 0.0;       // positive when approaching, rotation at the witness points counted
-  double time_to_contact = 0.0;     // max(0, distance) / closing speed; infinity when not approaching
-  std::int64_t age_a_ns = 0, age_b_ns = 0;  // now - stamp of the pose in use; 0 for a fixed object; -1 never seen
-  std::uint64_t evaluated_cycle = 0;        // the tick in which distance and witnesses were computed
+  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where there is none
+  // Positive when approaching, rotation at the witness points counted; NaN without a normal.
+  double closing_speed = 0.0;
+  // max(0, distance) / closing speed; infinity when not approaching. In contact: 0, unless parting.
+  double time_to_contact = 0.0;
+  // now - stamp of the pose in use; 0 for a fixed object; -1: never seen.
+  std::int64_t age_a_ns = 0, age_b_ns = 0;
+  std::uint64_t evaluated_cycle = 0;  // the tick in which distance and witnesses were computed
 };
 
 struct ZoneReport {
-  bool active = false;        // some pair's lower bound is, or has been within the hysteresis, too small
-  bool proved = false;        // every pair was evaluated, or proved outside, this tick
-  bool changed = false;       // this tick
-  std::uint32_t pair = 0;     // the pair with the smallest (lower - margins)
-  double clearance = 0.0;     // that figure, m
-  std::uint64_t since_cycle = 0;
+  // Some pair's lower bound less both margins is, or has been within the hysteresis, too small. An
+  // unknown pair's lower bound is -infinity: nobody can say that it is outside.
+  bool active = false;
+  bool proved = false;            // every pair was evaluated, or proved outside, this tick
+  bool changed = false;           // this tick
+  std::uint32_t pair = 0;         // the pair with the smallest (lower - margins)
+  double clearance = 0.0;         // that figure, m
+  std::uint64_t since_cycle = 0;  // when `active` last changed; 0: never
 };
 
 struct Report {
-  std::uint64_t cycle = 0;      // counts ticks from 1
-  std::int64_t now_ns = 0;      // the time the tick was told
-  std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;  // stamps of the moving objects' poses in use; 0: none
+  std::uint64_t cycle = 0;  // counts ticks from 1
+  std::int64_t now_ns = 0;  // the time the tick was told
+  // Stamps of the moving objects' poses in use; 0: none.
+  std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;
-  PairReport minimum;           // over all pairs that are not kUnknown
-  bool minimum_known = false;   // false: no pair has ever been evaluated
-  bool minimum_proved = false;  // no other pair can be closer, and no pair is unknown or stale
-  double lower_all = 0.0;       // every pair's true distance is at least this
-  std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;  // object pairs
-  std::uint32_t queries = 0;    // distance queries (part pairs) this tick
-  std::uint64_t oldest_evaluation_cycles = 0;  // ticks since the stalest known pair was evaluated
+  // The pair with the smallest upper bound, of all that are not kUnknown and have ever been
+  // evaluated.
+  PairReport minimum;
+  bool minimum_known = false;  // false: there is no such pair
+  // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and
+  // no pair is unknown or stale.
+  bool minimum_proved = false;
+  double lower_all = 0.0;  // every pair's true distance is at least this
+  // Object pairs; each is one of the last four.
+  std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
+  std::uint32_t queries = 0;  // distance queries (part pairs) this tick
+  // Ticks since the stalest known pair was evaluated; one that never was counts from the start.
+  std::uint64_t oldest_evaluation_cycles = 0;
   std::vector<PairReport> pairs;  // those with ObjectPair::publish, in scene order; sized once
   std::vector<ZoneReport> zones;  // one a zone, in scene order; sized once
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
