@@ -90,7 +90,7 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
   out.sources._length =
       static_cast<std::uint32_t>(std::min<std::size_t>(sources.size(), out.sources._maximum));
   for (std::uint32_t i = 0; i < out.sources._length; ++i) {
-    copy_text(sources[i].source.data(), out.sources._buffer[i].source);
+    copy_text(sources[i].source.view(), out.sources._buffer[i].source);
     out.sources._buffer[i].sequence_number = sources[i].sequence_number;
   }
   out.pairs._length =
@@ -137,16 +137,14 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
   return sample;
 }
 
-BatchRead from_wire(const clearance_msg_PoseBatch& batch, std::uint64_t scene_revision,
-                    std::span<PoseSample> out) noexcept {
-  BatchRead read;
-  read.wrong_revision = batch.scene_revision != 0 && batch.scene_revision != scene_revision;
-  if (read.wrong_revision) return read;
-  read.samples = std::min<std::size_t>(batch.poses._length, out.size());
-  read.dropped = batch.poses._length - read.samples;
-  for (std::size_t i = 0; i < read.samples; ++i) {
+void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
+  out.source = SourceName(batch.source);
+  out.sequence_number = batch.sequence_number;
+  out.scene_revision = batch.scene_revision;
+  out.samples.resize(batch.poses._length);
+  for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
     const clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
-    PoseSample& sample = out[i];
+    PoseSample& sample = out.samples[i];
     sample.object = pose.object;
     sample.stamp_ns = pose.stamp_ns;
     sample.world_from_object.position = from_wire(pose.position);
@@ -156,23 +154,24 @@ BatchRead from_wire(const clearance_msg_PoseBatch& batch, std::uint64_t scene_re
     sample.twist.linear = from_wire(pose.linear);
     sample.twist.angular = from_wire(pose.angular);
   }
-  return read;
 }
 
-Sample<clearance_msg_PoseBatch> make_batch(std::string_view source, std::size_t poses) {
+Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses) {
   Sample<clearance_msg_PoseBatch> sample;
-  copy_text(source, sample->source);
   reserve_sequence(sample->poses, poses);
   return sample;
 }
 
-bool to_wire(std::span<const PoseSample> samples, clearance_msg_PoseBatch& batch) noexcept {
-  batch.poses._length =
-      static_cast<std::uint32_t>(std::min<std::size_t>(samples.size(), batch.poses._maximum));
-  for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
-    const PoseSample& sample = samples[i];
+bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept {
+  copy_text(batch.source.view(), out.source);
+  out.sequence_number = batch.sequence_number;
+  out.scene_revision = batch.scene_revision;
+  out.poses._length =
+      static_cast<std::uint32_t>(std::min<std::size_t>(batch.samples.size(), out.poses._maximum));
+  for (std::uint32_t i = 0; i < out.poses._length; ++i) {
+    const PoseSample& sample = batch.samples[i];
     const Eigen::Quaterniond& q = sample.world_from_object.orientation;
-    clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
+    clearance_msg_ObjectPose& pose = out.poses._buffer[i];
     pose.object = sample.object;
     pose.stamp_ns = sample.stamp_ns;
     pose.position = to_wire(sample.world_from_object.position);
@@ -181,7 +180,7 @@ bool to_wire(std::span<const PoseSample> samples, clearance_msg_PoseBatch& batch
     pose.linear = to_wire(sample.twist.linear);
     pose.angular = to_wire(sample.twist.angular);
   }
-  return batch.poses._length == samples.size();
+  return out.poses._length == batch.samples.size();
 }
 
 }  // namespace clearance

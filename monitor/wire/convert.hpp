@@ -2,25 +2,15 @@
 // are sized once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 #include "config/scene.hpp"
-#include "monitor/input.hpp"
+#include "monitor/batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/sample.hpp"
 
 namespace clearance {
-
-inline constexpr std::size_t kSourceNameLength = 32;  // idl/clearance.idl: string<32>
-
-// The last batch of a source that a tick used.
-struct SourceUse {
-  std::array<char, kSourceNameLength + 1> source{};  // NUL-terminated
-  std::uint64_t sequence_number = 0;
-};
 
 // A sample for every report of this scene: room for its published pairs and for kMaxSources
 // sources.
@@ -43,25 +33,20 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 // Allocates. Names, pairs, zones and the text of the cell.
 [[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene);
 
-struct BatchRead {
-  std::size_t samples = 0;  // written to the front of `out`
-  std::size_t dropped = 0;  // did not fit
-  bool wrong_revision =
-      false;  // made for another scene: no sample written, all are Reject::kWrongRevision
-};
+// The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
+// ids, non-finite numbers and the rest. Allocates only while `out` has less room than the batch has
+// poses.
+void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
 
-// The poses of a batch as the tick takes them, in their order and unchecked: the tick refuses
-// unknown ids, non-finite numbers and the rest. `scene_revision` of the scene in use; a batch of
-// revision 0 is not checked against it.
-[[nodiscard]] BatchRead from_wire(const clearance_msg_PoseBatch& batch,
-                                  std::uint64_t scene_revision, std::span<PoseSample> out) noexcept;
+// Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.
+[[nodiscard]] inline bool made_for(const PoseBatch& batch, std::uint64_t scene_revision) noexcept {
+  return batch.scene_revision == 0 || batch.scene_revision == scene_revision;
+}
 
 // A batch with room for `poses` poses, for writing.
-[[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::string_view source,
-                                                         std::size_t poses);
+[[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses);
 
-// Replaces the poses of `batch`, made by make_batch. False: more samples than it has room for; the
-// first ones are in. Source, sequence number and revision are left alone.
-bool to_wire(std::span<const PoseSample> samples, clearance_msg_PoseBatch& batch) noexcept;
+// Fills `out`, made by make_batch. False: more poses than it has room for; the first ones are in.
+bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept;
 
 }  // namespace clearance

@@ -197,9 +197,7 @@ TEST(Convert, ReportFillsAPreparedSampleWithoutMovingItsStorage) {
   report.pairs[1].pair = 2;
   report.pairs[1].status = PairStatus::kCarried;
   report.pairs[1].lower = -kInfinity;
-  SourceUse use;
-  std::strcpy(use.source.data(), "arm");
-  use.sequence_number = 99;
+  const SourceUse use{SourceName("arm"), 99};
 
   EXPECT_TRUE(to_wire(report, {&use, 1}, 1234, *sample));
   EXPECT_EQ(storage, sample->pairs._buffer);
@@ -261,61 +259,57 @@ TEST(Convert, ZoneStateCarriesNameAndTickAndCutsAnOverlongName) {
 
 TEST(Convert, PosesComeBackBitForBit) {
   std::mt19937_64 random(6);
-  std::vector<PoseSample> sent(50);
-  for (PoseSample& sample : sent) {
+  PoseBatch sent{SourceName("arm"), 41, 42, std::vector<PoseSample>(50)};
+  for (PoseSample& sample : sent.samples) {
     sample.object = static_cast<std::uint32_t>(random());
     sample.stamp_ns = static_cast<std::int64_t>(random());
     for (int i = 0; i < 3; ++i) sample.world_from_object.position[i] = any_double(random);
     for (int i = 0; i < 4; ++i)
       sample.world_from_object.orientation.coeffs()[i] = any_double(random);
     sample.has_twist = random() % 2 != 0;
-    sample.twist.angular.x() = any_double(random);
+    for (int i = 0; i < 3; ++i) sample.twist.linear[i] = any_double(random);
+    for (int i = 0; i < 3; ++i) sample.twist.angular[i] = any_double(random);
   }
-  Sample<clearance_msg_PoseBatch> batch = make_batch("arm", sent.size());
-  EXPECT_TRUE(to_wire(sent, *batch));
-  std::vector<PoseSample> received(sent.size() + 5);
-  const BatchRead read = from_wire(*batch, 77, received);
-  ASSERT_EQ(sent.size(), read.samples);
-  EXPECT_EQ(0u, read.dropped);
-  const auto same = [](const double a, const double b) { return std::memcmp(&a, &b, 8) == 0; };
-  for (std::size_t i = 0; i < sent.size(); ++i) {
-    EXPECT_EQ(sent[i].object, received[i].object);
-    EXPECT_EQ(sent[i].stamp_ns, received[i].stamp_ns);
-    EXPECT_EQ(sent[i].has_twist, received[i].has_twist);
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_TRUE(
-          same(sent[i].world_from_object.position[k], received[i].world_from_object.position[k]));
-    }
-    for (int k = 0; k < 4; ++k) {
-      EXPECT_TRUE(same(sent[i].world_from_object.orientation.coeffs()[k],
-                       received[i].world_from_object.orientation.coeffs()[k]));
-    }
-    EXPECT_TRUE(same(sent[i].twist.angular.x(), received[i].twist.angular.x()));
+  Sample<clearance_msg_PoseBatch> wire = make_batch(sent.samples.size());
+  EXPECT_TRUE(to_wire(sent, *wire));
+  PoseBatch received;
+  from_wire(*wire, received);
+  EXPECT_EQ("arm", received.source.view());
+  EXPECT_EQ(41u, received.sequence_number);
+  EXPECT_EQ(42u, received.scene_revision);
+  ASSERT_EQ(sent.samples.size(), received.samples.size());
+  const auto same = [](const auto& a, const auto& b) {  // NaN is itself here
+    return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) ==
+           0;
+  };
+  for (std::size_t i = 0; i < sent.samples.size(); ++i) {
+    const PoseSample& a = sent.samples[i];
+    const PoseSample& b = received.samples[i];
+    EXPECT_EQ(a.object, b.object);
+    EXPECT_EQ(a.stamp_ns, b.stamp_ns);
+    EXPECT_EQ(a.has_twist, b.has_twist);
+    EXPECT_TRUE(same(a.world_from_object.position, b.world_from_object.position));
+    EXPECT_TRUE(
+        same(a.world_from_object.orientation.coeffs(), b.world_from_object.orientation.coeffs()));
+    EXPECT_TRUE(same(a.twist.linear, b.twist.linear));
+    EXPECT_TRUE(same(a.twist.angular, b.twist.angular));
   }
 }
 
-TEST(Convert, BatchOfAnotherSceneGivesNoSampleAndSaysSo) {
-  Sample<clearance_msg_PoseBatch> batch = make_batch("arm", 1);
-  const PoseSample sample;
-  ASSERT_TRUE(to_wire({&sample, 1}, *batch));
-  batch->scene_revision = 78;
-  std::vector<PoseSample> received(1);
-  const BatchRead read = from_wire(*batch, 77, received);
-  EXPECT_TRUE(read.wrong_revision);
-  EXPECT_EQ(0u, read.samples);
-  batch->scene_revision = 0;
-  EXPECT_EQ(1u, from_wire(*batch, 77, received).samples);
+TEST(Convert, BatchIsForTheSceneOfItsRevisionAndForAnyWithoutOne) {
+  PoseBatch batch;
+  batch.scene_revision = 78;
+  EXPECT_FALSE(made_for(batch, 77));
+  EXPECT_TRUE(made_for(batch, 78));
+  batch.scene_revision = 0;
+  EXPECT_TRUE(made_for(batch, 77));
 }
 
-TEST(Convert, BatchLargerThanTheRoomIsCutAndCounted) {
-  Sample<clearance_msg_PoseBatch> batch = make_batch("a source with far too long a name for it", 3);
-  EXPECT_EQ(kSourceNameLength, std::strlen(batch->source));
-  const std::vector<PoseSample> sent(4);
-  EXPECT_FALSE(to_wire(sent, *batch));
-  std::vector<PoseSample> received(2);
-  const BatchRead read = from_wire(*batch, 0, received);
-  EXPECT_EQ(2u, read.samples);
-  EXPECT_EQ(1u, read.dropped);
+TEST(Convert, BatchLargerThanTheRoomIsCutAndSaysSo) {
+  const PoseBatch sent{SourceName("arm"), 1, 0, std::vector<PoseSample>(4)};
+  Sample<clearance_msg_PoseBatch> wire = make_batch(3);
+  EXPECT_FALSE(to_wire(sent, *wire));
+  EXPECT_EQ(3u, wire->poses._length);
 }
 
 }  // namespace
