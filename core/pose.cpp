@@ -7,19 +7,82 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-Quat unit(const Quat& q) noexcept {
-  const double norm = std::sqrt(q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z());
-  return {q.w() / norm, q.x() / norm, q.y() / norm, q.z() / norm};
+// Half an ulp of 1: the relative error of one rounding.
+constexpr double kUlp = 0x1p-53;
+
+// Error of rotation_matrix() in the 2-norm, for an exact quaternion. The common factor s = 2/|q|^2 is off by
+// 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is off by 3 in each entry, and
+// the nine |entries| have a Frobenius norm of at most 3: 9. The subtraction from 1 on the diagonal: 2.
+constexpr double kMatrixError = 20 * kUlp;
+
+// Error of a Hamilton product: a component is four products in three roundings each, at most two ulps of the
+// sum of their magnitudes (at most 1) and one of itself, so the vector is off by at most 5 ulps, and the
+// rotation, which turns by twice the angle, by 10.
+constexpr double kProductError = 10 * kUlp;
+
+// R(q/|q|) of any non-zero q without a square root: N(q) / |q|^2.
+Mat3 rotation_matrix(const Quat& q) noexcept {
+  const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const double s = 2.0 / ((w * w + x * x) + (y * y + z * z));
+  Mat3 r;
+  r << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
+  return r;
+}
+
+// conj(a) * b: the orientation of B as seen from A.
+Quat relative(const Quat& a, const Quat& b) noexcept {
+  return {(a.w() * b.w() + a.x() * b.x()) + (a.y() * b.y() + a.z() * b.z()),
+          (a.w() * b.x() - a.x() * b.w()) + (a.z() * b.y() - a.y() * b.z()),
+          (a.w() * b.y() - a.y() * b.w()) + (a.x() * b.z() - a.z() * b.x()),
+          (a.w() * b.z() - a.z() * b.w()) + (a.y() * b.x() - a.x() * b.y())};
+}
+
+bool equal_up_to_sign(const Quat& a, const Quat& b) noexcept {
+  return a.coeffs() == b.coeffs() || a.coeffs() == -b.coeffs();
+}
+
+// One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes. Products
+// of two of them, and their matrices, come out exact in doubles.
+bool permutes_axes(const Quat& q) noexcept {
+  int halves = 0, ones = 0, zeros = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double c = std::abs(q.coeffs()[i]);
+    halves += c == 0.5;
+    ones += c == 1.0;
+    zeros += c == 0.0;
+  }
+  return halves == 4 || (ones == 1 && zeros == 3);
 }
 
 }  // namespace
 
 Vec3 transform(const Pose& pose, const Vec3& point) noexcept {
-  return unit(pose.orientation).toRotationMatrix() * point + pose.position;
+  return rotation_matrix(pose.orientation) * point + pose.position;
 }
 
 Pose compose(const Pose& outer, const Pose& inner) noexcept {
-  return {transform(outer, inner.position), unit(outer.orientation) * unit(inner.orientation)};
+  const Quat& a = outer.orientation;
+  const Quat& b = inner.orientation;
+  return {transform(outer, inner.position), Quat(a * b).normalized()};
+}
+
+RelativePose relative_pose(const Pose& world_from_a, const Pose& world_from_b) noexcept {
+  RelativePose result;
+  const Quat& a = world_from_a.orientation;
+  const Quat& b = world_from_b.orientation;
+  const bool same = equal_up_to_sign(a, b);
+  const bool a_exact = permutes_axes(a);
+  if (!same) {
+    result.rotation = rotation_matrix(relative(a, b));
+    result.rotation_error = a_exact && permutes_axes(b) ? 0.0 : kMatrixError + kProductError;
+  }
+  const Vec3 between = world_from_b.position - world_from_a.position;
+  result.translation = rotation_matrix(a).transpose() * between;
+  // One rounding for the difference and three for each component of the product.
+  result.translation_error = ((a_exact ? 0.0 : kMatrixError) + 5 * kUlp) * between.norm();
+  return result;
 }
 
 }  // namespace clearance

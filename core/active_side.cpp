@@ -1,0 +1,62 @@
+#include "core/active_side.hpp"
+
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+// A stored point may lie this far outside the facet it is said to be on (relative to the body) and still be
+// taken for a point on it: 16 roundings, 2^-49.
+constexpr double kOnFacet = 0x1p-49;
+
+bool finite(const Vec3& v) noexcept {
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool within(std::int32_t index, std::size_t size) noexcept {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p) noexcept {
+  const double slack = kOnFacet * (body.bounding_radius + p.norm());
+  for (std::int32_t i = 0; i < facet.sides; ++i) {
+    const EdgeUse& use = body.facet_edges[facet.first_side + i];
+    const Edge& e = body.edges[use.edge];
+    if ((p - e.point).dot(e.inward[use.side]) < -slack) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void ActiveSide::place_cold() noexcept {
+  if (!body_.facets.empty()) {
+    place(Feature::kInside, kNone, body_.interior);
+  } else if (!body_.edges.empty()) {
+    place(Feature::kEdge, 0, body_.interior);
+  } else {
+    place_at_vertex(0);
+  }
+}
+
+bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
+  if (hint.dimension == 0 && within(hint.feature, body_.vertices.size())) {
+    place_at_vertex(hint.feature);
+    return true;
+  }
+  if (!finite(hint.point)) return false;
+  if (hint.dimension == 1 && within(hint.feature, body_.edges.size())) {
+    place_on_edge(hint.feature, hint.point);
+    return true;
+  }
+  if (hint.dimension == 2 && within(hint.feature, body_.facets.size())) {
+    const Facet& f = body_.facets[hint.feature];
+    const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
+    if (!inside_facet(body_, f, p)) return false;
+    place(Feature::kFacet, hint.feature, p);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace clearance

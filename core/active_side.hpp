@@ -1,0 +1,79 @@
+// One body during a query: its active feature, and its point x on it (§3.3: the active set of one object).
+//
+// The active set is kept as the face of the polyhedron that it defines: no facet active is the inside, one
+// a facet, two an edge, three or more a vertex. All facets that meet in a vertex are active there at once,
+// which is what takes the sting out of degenerate vertices (core/README.md). x lies in the feature, in the
+// body's own frame, where the body does not move (§3.4.4); its image in the common frame, A's, is kept too.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/convex_polyhedron.hpp"
+#include "core/distance.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+enum class Feature : std::uint8_t { kVertex = 0, kEdge = 1, kFacet = 2, kInside = 3 };
+
+class ActiveSide {
+ public:
+  // pose: null for the body whose frame is the common one.
+  ActiveSide(const ConvexPolyhedron& body, const RelativePose* pose) noexcept
+      : body_(body), pose_(pose) {}
+
+  [[nodiscard]] const ConvexPolyhedron& body() const noexcept { return body_; }
+  [[nodiscard]] Feature feature() const noexcept { return feature_; }
+  [[nodiscard]] std::int32_t index() const noexcept { return index_; }
+  [[nodiscard]] const Vec3& own() const noexcept { return own_; }
+  [[nodiscard]] const Vec3& common() const noexcept { return common_; }
+
+  [[nodiscard]] const Facet& facet() const noexcept { return body_.facets[index_]; }
+  [[nodiscard]] const Edge& edge() const noexcept { return body_.edges[index_]; }
+  [[nodiscard]] const Vertex& vertex() const noexcept { return body_.vertices[index_]; }
+
+  [[nodiscard]] Vec3 direction_to_common(const Vec3& v) const noexcept {
+    return pose_ ? Vec3(pose_->rotation * v) : v;
+  }
+  [[nodiscard]] Vec3 direction_to_own(const Vec3& v) const noexcept {
+    return pose_ ? Vec3(pose_->rotation.transpose() * v) : v;
+  }
+  [[nodiscard]] Vec3 point_to_common(const Vec3& p) const noexcept {
+    return pose_ ? Vec3(pose_->rotation * p + pose_->translation) : p;
+  }
+
+  void place(Feature feature, std::int32_t index, const Vec3& own) noexcept {
+    feature_ = feature;
+    index_ = index;
+    own_ = own;
+    common_ = point_to_common(own);
+  }
+  void place_at_vertex(std::int32_t index) noexcept {
+    place(Feature::kVertex, index, body_.vertices[index].position);
+  }
+  // On an edge, as near to `own` as its ends allow.
+  void place_on_edge(std::int32_t index, const Vec3& own) noexcept {
+    const Edge& e = body_.edges[index];
+    const double s = std::clamp((own - e.point).dot(e.direction), e.begin, e.end);
+    place(Feature::kEdge, index, e.point + s * e.direction);
+  }
+  void move_to(const Vec3& own) noexcept { place(feature_, index_, own); }
+
+  // Where a query starts that knows nothing: inside, or on the only feature of a point or a segment.
+  void place_cold() noexcept;
+  // Where the last query ended, re-anchored on the feature. False, and nothing done, if the hint is unusable.
+  [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;
+  [[nodiscard]] TrackingState::Side tracked() const noexcept {
+    return {static_cast<std::uint8_t>(feature_), index_, own_};
+  }
+
+ private:
+  const ConvexPolyhedron& body_;
+  const RelativePose* pose_;
+  Feature feature_ = Feature::kInside;
+  std::int32_t index_ = kNone;
+  Vec3 own_ = Vec3::Zero(), common_ = Vec3::Zero();
+};
+
+}  // namespace clearance

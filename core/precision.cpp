@@ -1,0 +1,31 @@
+#include "core/precision.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+constexpr double kUlp = 0x1p-53;
+
+// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b convex combinations of anchors: rotating n
+// or b (6), three products (3), combining (4), the final sum and quotient (3).
+constexpr double kEvaluation = 16;
+
+}  // namespace
+
+Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                    const RelativePose& a_from_b, double farthest) noexcept {
+  Precision p;
+  const double apart = a_from_b.translation.norm();
+  p.reach_a = a.bounding_radius;
+  p.reach_b = b.bounding_radius;
+  if (!a.bounded()) p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
+  if (!b.bounded()) p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
+  p.size = p.reach_a + p.reach_b + apart;
+  p.slack = kEvaluation * kUlp * p.size + a.position_error + b.position_error +
+            a_from_b.rotation_error * p.reach_b + a_from_b.translation_error;
+  p.tight = 8 * kUlp * p.size;
+  return p;
+}
+
+}  // namespace clearance

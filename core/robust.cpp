@@ -1,0 +1,172 @@
+#include "core/robust.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/simplex.hpp"
+#include "core/support.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr int kRounds = 64;
+
+// A point of the difference body B - A, and where it comes from.
+struct Corner {
+  Vec3 a;     // in frame A
+  WideVec b;  // in frame A
+  WideVec difference;
+};
+
+class DifferenceBody {
+ public:
+  DifferenceBody(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+                 const Precision& p) noexcept
+      : a_(a), b_(b), pose_(a_from_b), p_(p) {}
+
+  // The corner farthest along -n, n in the common frame.
+  [[nodiscard]] Corner corner(const Vec3& n) const noexcept {
+    return make(farthest(a_.body(), n, p_.reach_a),
+                farthest(b_.body(), -b_.direction_to_own(n), p_.reach_b));
+  }
+  [[nodiscard]] Corner make(const Vec3& a, const Vec3& b_own) const noexcept {
+    Corner c{a, to_common(b_own), {}};
+    c.difference = c.b - wide(c.a);
+    return c;
+  }
+
+ private:
+  // Unbounded bodies are cut off far beyond the closest points.
+  static Vec3 farthest(const ConvexPolyhedron& body, const Vec3& m, double reach) noexcept {
+    Vec3 point = body.anchors[support_by_scan(body, m).anchor];
+    const Ray* steepest = nullptr;
+    double slope = 0.0;
+    for (const Ray& ray : body.rays) {
+      const double s = m.dot(ray.direction) / ray.direction.norm();
+      if (s > slope) {
+        slope = s;
+        steepest = &ray;
+      }
+    }
+    if (steepest) point += (4.0 * reach / steepest->direction.norm()) * steepest->direction;
+    return point;
+  }
+  [[nodiscard]] WideVec to_common(const Vec3& v) const noexcept {
+    const Mat3& r = pose_.rotation;
+    const WideVec w = wide(v);
+    return WideVec{dot(wide(r.row(0)), w), dot(wide(r.row(1)), w), dot(wide(r.row(2)), w)} +
+           wide(pose_.translation);
+  }
+
+  const ActiveSide& a_;
+  const ActiveSide& b_;
+  const RelativePose& pose_;
+  const Precision& p_;
+};
+
+class Simplex {
+ public:
+  // False when it is there already: no progress is possible.
+  bool add(const Corner& c) noexcept {
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (corners_[i].a == c.a && narrow(corners_[i].b) == narrow(c.b)) return false;
+    }
+    corners_[size_++] = c;
+    return true;
+  }
+  // Keeps only what the closest point needs, and returns it.
+  ClosestPoint reduce() noexcept {
+    std::array<WideVec, 4> points;
+    for (std::size_t i = 0; i < size_; ++i) points[i] = corners_[i].difference;
+    ClosestPoint closest = closest_to_origin(points, size_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (closest.weights[i].high <= 0.0) continue;
+      corners_[kept] = corners_[i];
+      weights_[kept++] = static_cast<double>(closest.weights[i]);
+    }
+    size_ = kept;
+    return closest;
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] Vec3 point_on_a() const noexcept {
+    Vec3 p = Vec3::Zero();
+    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * corners_[i].a;
+    return p;
+  }
+  [[nodiscard]] Vec3 point_on_b() const noexcept {
+    Vec3 p = Vec3::Zero();
+    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(corners_[i].b);
+    return p;
+  }
+  // Distance of the origin from the nearest face, when it lies inside a tetrahedron.
+  [[nodiscard]] double depth() const noexcept {
+    double least = kInfinity;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const WideVec& p = corners_[i].difference;
+      const WideVec& q = corners_[(i + 1) % 4].difference;
+      const WideVec n = cross(q - p, corners_[(i + 2) % 4].difference - p);
+      const double length = static_cast<double>(sqrt(dot(n, n)));
+      least = std::min(least, std::abs(static_cast<double>(dot(n, p))) / length);
+    }
+    return least;
+  }
+
+ private:
+  std::array<Corner, 4> corners_;
+  std::array<double, 4> weights_{};
+  std::size_t size_ = 0;
+};
+
+void improve_upper(DistanceResult& r, const Simplex& simplex, double length, double slack) noexcept {
+  if (length + slack > r.upper) return;
+  r.upper = length + slack;
+  r.distance = length;
+  r.point_on_a = simplex.point_on_a();
+  r.point_on_b = simplex.point_on_b();
+}
+
+void conclude_inside(DistanceResult& r, const Simplex& simplex, double slack) noexcept {
+  improve_upper(r, simplex, 0.0, slack);
+  if (simplex.size() == 4 && simplex.depth() > slack) {
+    r.distance = r.lower = r.upper = 0.0;
+    r.normal = Vec3::Constant(std::nan(""));
+    r.status = DistanceStatus::kOverlapping;
+  } else {
+    r.status = DistanceStatus::kTouching;
+  }
+}
+
+}  // namespace
+
+void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
+            DistanceResult& r) noexcept {
+  const DifferenceBody body(a, b, a_from_b, p);
+  Simplex simplex;
+  simplex.add(body.make(a.own(), b.own()));
+  for (int round = 0; round < kRounds; ++round) {
+    const ClosestPoint closest = simplex.reduce();
+    const double length = static_cast<double>(sqrt(closest.length2));
+    if (simplex.size() == 4 || !(length > 0.0)) return conclude_inside(r, simplex, p.slack);
+    improve_upper(r, simplex, length, p.slack);
+    const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
+    const double lower = -kInfinity;
+    static_cast<void>(lower);
+    const Corner next = body.corner(n);
+    const double level = static_cast<double>(dot(wide(n), next.difference));
+    if (level - p.slack > r.lower) {
+      r.lower = level - p.slack;
+      r.normal = n;
+    }
+    if (length - level <= p.tight || !simplex.add(next)) break;
+  }
+  const bool tight = r.upper - r.lower <= 2.0 * (p.slack + p.tight);
+  if (r.lower > 0.0) {
+    r.status = tight ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
+  } else {
+    r.status = r.upper <= 2.0 * (p.slack + p.tight) ? DistanceStatus::kTouching
+                                                    : DistanceStatus::kIterationLimit;
+  }
+}
+
+}  // namespace clearance
