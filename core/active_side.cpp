@@ -5,8 +5,8 @@
 namespace clearance {
 namespace {
 
-// A stored point may lie this far outside the facet it is said to be on (relative to the body) and still be
-// taken for a point on it: 16 roundings, 2^-49.
+// A stored point may lie this far outside the facet it is said to be on (relative to the body) and
+// still be taken for a point on it: 16 roundings, 2^-49.
 constexpr double kOnFacet = 0x1p-49;
 
 bool finite(const Vec3& v) noexcept {

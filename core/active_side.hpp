@@ -1,9 +1,11 @@
-// One body during a query: its active feature, and its point x on it (§3.3: the active set of one object).
+// One body during a query: its active feature, and its point x on it (§3.3: the active set of one
+// object).
 //
-// The active set is kept as the face of the polyhedron that it defines: no facet active is the inside, one
-// a facet, two an edge, three or more a vertex. All facets that meet in a vertex are active there at once,
-// which is what takes the sting out of degenerate vertices (core/README.md). x lies in the feature, in the
-// body's own frame, where the body does not move (§3.4.4); its image in the common frame, A's, is kept too.
+// The active set is kept as the face of the polyhedron that it defines: no facet active is the
+// inside, one a facet, two an edge, three or more a vertex. All facets that meet in a vertex are
+// active there at once, which is what takes the sting out of degenerate vertices (core/README.md).
+// x lies in the feature, in the body's own frame, where the body does not move (§3.4.4); its image
+// in the common frame, A's, is kept too.
 #pragma once
 
 #include <algorithm>
@@ -60,9 +62,11 @@ class ActiveSide {
   }
   void move_to(const Vec3& own) noexcept { place(feature_, index_, own); }
 
-  // Where a query starts that knows nothing: inside, or on the only feature of a point or a segment.
+  // Where a query starts that knows nothing: inside, or on the only feature of a point or a
+  // segment.
   void place_cold() noexcept;
-  // Where the last query ended, re-anchored on the feature. False, and nothing done, if the hint is unusable.
+  // Where the last query ended, re-anchored on the feature. False, and nothing done, if the hint is
+  // unusable.
   [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
     return {static_cast<std::uint8_t>(feature_), index_, own_};

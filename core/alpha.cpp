@@ -3,7 +3,8 @@
 namespace clearance {
 namespace {
 
-// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross blocks at once.
+// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross
+// blocks at once.
 double fraction(double gap, double speed) noexcept { return gap > 0.0 ? gap / speed : 0.0; }
 
 Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {

@@ -7,7 +7,8 @@
 namespace clearance {
 namespace {
 
-// A separating direction shorter than this (as a cross product of unit vectors) says nothing of its own.
+// A separating direction shorter than this (as a cross product of unit vectors) says nothing of its
+// own.
 constexpr double kTooParallel = 1e-6;
 
 Vec3 edge_direction(const ActiveSide& s) noexcept {
@@ -81,10 +82,8 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
 
 double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
                   const Precision& p) noexcept {
-  const double of_a =
-      reach(a, s.normal, s.facet_of_a, p.reach_a, b.body().bounded());
-  const double of_b =
-      reach(b, Vec3(-s.normal), s.facet_of_b, p.reach_b, a.body().bounded());
+  const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a, b.body().bounded());
+  const double of_b = reach(b, Vec3(-s.normal), s.facet_of_b, p.reach_b, a.body().bounded());
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }

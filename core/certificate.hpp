@@ -1,4 +1,5 @@
-// The proof that comes with every answer: a direction that separates the bodies by at least `lower`.
+// The proof that comes with every answer: a direction that separates the bodies by at least
+// `lower`.
 #pragma once
 
 #include <array>
@@ -12,7 +13,8 @@ namespace clearance {
 // A direction to try, unit up to rounding, common frame, from A towards B.
 struct Separator {
   Vec3 normal;
-  // Where it is exactly a facet's normal (A's, or minus B's), that facet: its offset is the support.
+  // Where it is exactly a facet's normal (A's, or minus B's), that facet: its offset is the
+  // support.
   std::int32_t facet_of_a = kNone, facet_of_b = kNone;
 };
 
@@ -30,8 +32,8 @@ class Separators {
 // The directions that the two active features suggest, the most accurate first.
 [[nodiscard]] Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept;
 
-// min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at least this
-// less p.slack. -infinity where an unbounded body leaves no bound.
+// min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at
+// least this less p.slack. -infinity where an unbounded body leaves no bound.
 [[nodiscard]] double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
                                 const Precision& p) noexcept;
 

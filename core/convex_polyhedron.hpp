@@ -1,13 +1,16 @@
-// A convex body as the queries see it: facets, edges and vertices of one polyhedron, with what joins them.
+// A convex body as the queries see it: facets, edges and vertices of one polyhedron, with what
+// joins them.
 //
-// The polyhedron is an intersection of half-spaces n.x <= d (outward unit normals). It may be unbounded
-// (a floor is one half-space) and it may be lower-dimensional in two ways only: a point or a segment, which
-// with a radius are a sphere and a capsule. Made by the checked factories of core/shapes.hpp from exact
-// arithmetic; every number here is the exact one rounded once, so the queries run in doubles.
+// The polyhedron is an intersection of half-spaces n.x <= d (outward unit normals). It may be
+// unbounded (a floor is one half-space) and it may be lower-dimensional in two ways only: a point
+// or a segment, which with a radius are a sphere and a capsule. Made by the checked factories of
+// core/shapes.hpp from exact arithmetic; every number here is the exact one rounded once, so the
+// queries run in doubles.
 //
-// Invariants: every edge has relative-interior points; every vertex's edges generate its cone; every
-// facet's edges bound it in counter-clockwise order as seen from outside (an open chain when the facet is
-// unbounded). No two facets are coplanar and no vertex lies within a facet or an edge, exactly.
+// Invariants: every edge has relative-interior points; every vertex's edges generate its cone;
+// every facet's edges bound it in counter-clockwise order as seen from outside (an open chain when
+// the facet is unbounded). No two facets are coplanar and no vertex lies within a facet or an edge,
+// exactly.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +26,9 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
 struct Facet {
-  Vec3 normal;   // outward, unit
+  Vec3 normal;    // outward, unit
   double offset;  // d, m
-  Vec3 point;    // a point of the facet (for a facet without edges: any point of its plane)
+  Vec3 point;     // a point of the facet (for a facet without edges: any point of its plane)
   // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none.
   std::int32_t first_side;
   std::int32_t sides;
@@ -33,15 +36,16 @@ struct Facet {
 
 // A straight edge x = point + s * direction, s in [0, length]; open-ended ones run to infinity.
 struct Edge {
-  Vec3 point;      // where the edge starts (s = 0): its first vertex; on a full line, any point of it
-  Vec3 direction;  // unit
-  double begin;    // 0, or -infinity for a full line (the only edge without a first vertex)
-  double end;      // length, m; infinity for a ray or a full line
+  Vec3 point;  // where the edge starts (s = 0): its first vertex; on a full line, any point of it
+  Vec3 direction;          // unit
+  double begin;            // 0, or -infinity for a full line (the only edge without a first vertex)
+  double end;              // length, m; infinity for a ray or a full line
   std::int32_t vertex[2];  // start, end; kNone where the edge does not end
-  // The two facets that meet here; kNone for a segment's only edge. facet[0] lies to the left of the
-  // direction as seen from outside, facet[1] to the right.
+  // The two facets that meet here; kNone for a segment's only edge. facet[0] lies to the left of
+  // the direction as seen from outside, facet[1] to the right.
   std::int32_t facet[2];
-  Vec3 inward[2];  // unit, in the plane of facet[k], across the edge into that facet; zero for a segment
+  Vec3 inward[2];  // unit, in the plane of facet[k], across the edge into that facet; zero for a
+                   // segment
 };
 
 // An edge as one of its facets or vertices sees it.
@@ -60,7 +64,7 @@ struct Vertex {
 // A direction in which the body is unbounded.
 struct Ray {
   Vec3 direction;  // unit, unless exact
-  bool exact;      // then `direction` is the exact direction up to a positive factor, not a rounded one
+  bool exact;  // then `direction` is the exact direction up to a positive factor, not a rounded one
 };
 
 struct ConvexPolyhedron {
@@ -70,12 +74,13 @@ struct ConvexPolyhedron {
   std::vector<EdgeUse> facet_edges;
   std::vector<EdgeUse> vertex_edges;
 
-  // The body is hull(anchors) + cone(rays). `anchors` are the vertices where there are any, else one point
-  // of each minimal face (a line's or plane's point). A line counts as two opposite rays.
+  // The body is hull(anchors) + cone(rays). `anchors` are the vertices where there are any, else
+  // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
 
-  Vec3 interior = Vec3::Zero();  // a point well inside (in the relative interior of a point or segment)
+  Vec3 interior =
+      Vec3::Zero();  // a point well inside (in the relative interior of a point or segment)
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;

@@ -5,8 +5,8 @@
 namespace clearance {
 namespace {
 
-// Directions whose cross product is shorter than this are parallel as far as doubles can tell: the unit
-// vectors carry an error of 2^-52 each.
+// Directions whose cross product is shorter than this are parallel as far as doubles can tell: the
+// unit vectors carry an error of 2^-52 each.
 constexpr double kParallel = 0x1p-50;
 
 Vec3 normal(const ActiveSide& s) noexcept { return s.direction_to_common(s.facet().normal); }
@@ -44,7 +44,8 @@ void vertex_inside(const ActiveSide& p, const ActiveSide&, Vec3& to_p, Vec3& to_
 void edge_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) {
   const Vec3 e = direction(p), f = direction(q);
   const Vec3 between = q.common() - p.common();
-  // The part of f across e: its length is the sine of the angle between them, without cancellation in s.
+  // The part of f across e: its length is the sine of the angle between them, without cancellation
+  // in s.
   const Vec3 across = f - f.dot(e) * e;
   const double sine2 = across.squaredNorm();
   if (sine2 < kParallel * kParallel) {

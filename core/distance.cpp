@@ -113,8 +113,8 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
 }
 
 // The spheres around the frames' origins already say that they are far apart.
-bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const RelativePose& a_from_b,
-                    double far_away, DistanceResult& r) noexcept {
+bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                    const RelativePose& a_from_b, double far_away, DistanceResult& r) noexcept {
   if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return false;
   const double apart = a_from_b.translation.norm();
   const double size = a.bounding_radius + a.radius + b.bounding_radius + b.radius;
@@ -134,11 +134,16 @@ bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
 
 const char* name(DistanceStatus status) noexcept {
   switch (status) {
-    case DistanceStatus::kConverged: return "converged";
-    case DistanceStatus::kFarAway: return "far_away";
-    case DistanceStatus::kTouching: return "touching";
-    case DistanceStatus::kOverlapping: return "overlapping";
-    case DistanceStatus::kIterationLimit: return "iteration_limit";
+    case DistanceStatus::kConverged:
+      return "converged";
+    case DistanceStatus::kFarAway:
+      return "far_away";
+    case DistanceStatus::kTouching:
+      return "touching";
+    case DistanceStatus::kOverlapping:
+      return "overlapping";
+    case DistanceStatus::kIterationLimit:
+      return "iteration_limit";
   }
   return "";
 }

@@ -1,7 +1,9 @@
-// Twice the precision of a double, for the robust path: the unevaluated sum of two doubles, about 32 digits.
+// Twice the precision of a double, for the robust path: the unevaluated sum of two doubles, about
+// 32 digits.
 //
-// Sums and products of doubles are exact by Knuth's and Dekker's error-free transformations, which need no
-// fused multiply-add and give the same bits on every machine. Magnitudes between 1e-140 and 1e140.
+// Sums and products of doubles are exact by Knuth's and Dekker's error-free transformations, which
+// need no fused multiply-add and give the same bits on every machine. Magnitudes between 1e-140 and
+// 1e140.
 #pragma once
 
 #include <cmath>
@@ -73,8 +75,12 @@ constexpr bool operator<(const DoubleDouble& a, const DoubleDouble& b) noexcept 
   return a.high < b.high || (a.high == b.high && a.low < b.low);
 }
 constexpr bool operator>(const DoubleDouble& a, const DoubleDouble& b) noexcept { return b < a; }
-constexpr bool operator<=(const DoubleDouble& a, const DoubleDouble& b) noexcept { return !(b < a); }
-constexpr bool operator>=(const DoubleDouble& a, const DoubleDouble& b) noexcept { return !(a < b); }
+constexpr bool operator<=(const DoubleDouble& a, const DoubleDouble& b) noexcept {
+  return !(b < a);
+}
+constexpr bool operator>=(const DoubleDouble& a, const DoubleDouble& b) noexcept {
+  return !(a < b);
+}
 
 inline DoubleDouble sqrt(const DoubleDouble& a) noexcept {
   if (!(a.high > 0.0)) return {};

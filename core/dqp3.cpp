@@ -13,8 +13,9 @@ constexpr std::uint16_t kIterations = 1000;
 // A rate this small, relative to the distance, is the rounding of unit vectors.
 constexpr double kNoRate = 0x1p-50;
 
-// One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where that
-// would take them apart, both go the same fraction of the way, which cannot. True if nothing blocked.
+// One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
+// that would take them apart, both go the same fraction of the way, which cannot. True if nothing
+// blocked.
 bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
   const Vec3 move_a = to.a - a.common(), move_b = to.b - b.common();
   Alpha alpha_a = alpha(a, move_a), alpha_b = alpha(b, move_b);

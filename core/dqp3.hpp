@@ -19,8 +19,8 @@ struct Dqp3Outcome {
   std::uint16_t iterations = 0;
 };
 
-// Moves both sides from where they are to the closest points. Ends: between two releases the distance falls
-// strictly, so no active set comes twice. `contact`: m, what counts as coincidence.
+// Moves both sides from where they are to the closest points. Ends: between two releases the
+// distance falls strictly, so no active set comes twice. `contact`: m, what counts as coincidence.
 [[nodiscard]] Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept;
 
 }  // namespace clearance

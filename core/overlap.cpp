@@ -35,7 +35,8 @@ class Violation {
   std::array<const ActiveSide*, 2> sides_;
 };
 
-// The normals of the facets that are (nearly) the worst, and the shortest vector of their hull (Gilbert).
+// The normals of the facets that are (nearly) the worst, and the shortest vector of their hull
+// (Gilbert).
 class WorstNormals {
  public:
   void add(const Vec3& n) noexcept {
@@ -61,8 +62,10 @@ class WorstNormals {
   std::size_t size_ = 0;
 };
 
-// How far along `direction` (unit) the largest violation falls: follows its piecewise linear course.
-double descent(const Violation& violation, const Vec3& x, const Vec3& direction, double farthest) noexcept {
+// How far along `direction` (unit) the largest violation falls: follows its piecewise linear
+// course.
+double descent(const Violation& violation, const Vec3& x, const Vec3& direction,
+               double farthest) noexcept {
   double s = 0.0, height = violation.at(x), slope = -kInfinity;
   violation.each(x, [&](double v, const ActiveSide& side, const Facet& f) {
     if (v == height) slope = std::max(slope, side.direction_to_common(f.normal).dot(direction));

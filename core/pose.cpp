@@ -10,14 +10,15 @@ using Quat = Eigen::Quaterniond;
 // Half an ulp of 1: the relative error of one rounding.
 constexpr double kUlp = 0x1p-53;
 
-// Error of rotation_matrix() in the 2-norm, for an exact quaternion. The common factor s = 2/|q|^2 is off by
-// 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is off by 3 in each entry, and
-// the nine |entries| have a Frobenius norm of at most 3: 9. The subtraction from 1 on the diagonal: 2.
+// Error of rotation_matrix() in the 2-norm, for an exact quaternion. The common factor s = 2/|q|^2
+// is off by 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is off by 3 in
+// each entry, and the nine |entries| have a Frobenius norm of at most 3: 9. The subtraction from 1
+// on the diagonal: 2.
 constexpr double kMatrixError = 20 * kUlp;
 
-// Error of a Hamilton product: a component is four products in three roundings each, at most two ulps of the
-// sum of their magnitudes (at most 1) and one of itself, so the vector is off by at most 5 ulps, and the
-// rotation, which turns by twice the angle, by 10.
+// Error of a Hamilton product: a component is four products in three roundings each, at most two
+// ulps of the sum of their magnitudes (at most 1) and one of itself, so the vector is off by at
+// most 5 ulps, and the rotation, which turns by twice the angle, by 10.
 constexpr double kProductError = 10 * kUlp;
 
 // R(q/|q|) of any non-zero q without a square root: N(q) / |q|^2.
@@ -43,8 +44,8 @@ bool equal_up_to_sign(const Quat& a, const Quat& b) noexcept {
   return a.coeffs() == b.coeffs() || a.coeffs() == -b.coeffs();
 }
 
-// One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes. Products
-// of two of them, and their matrices, come out exact in doubles.
+// One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes.
+// Products of two of them, and their matrices, come out exact in doubles.
 bool permutes_axes(const Quat& q) noexcept {
   int halves = 0, ones = 0, zeros = 0;
   for (int i = 0; i < 4; ++i) {

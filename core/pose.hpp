@@ -5,12 +5,13 @@
 
 namespace clearance {
 
-// A point x of the object's own frame is at position + R(orientation / |orientation|) x in the world.
-// The quaternion need not be exactly of unit length: every use means its exact normalisation.
-// Quaternions are stored x, y, z, w (as Eigen does, and as on the wire).
+// A point x of the object's own frame is at position + R(orientation / |orientation|) x in the
+// world. The quaternion need not be exactly of unit length: every use means its exact
+// normalisation. Quaternions are stored x, y, z, w (as Eigen does, and as on the wire).
 struct Pose {
-  Vec3 position = Vec3::Zero();                                          // m
-  Eigen::Quaterniond orientation = Eigen::Quaterniond(1.0, 0.0, 0.0, 0.0);  // Eigen's order: w,x,y,z
+  Vec3 position = Vec3::Zero();  // m
+  Eigen::Quaterniond orientation =
+      Eigen::Quaterniond(1.0, 0.0, 0.0, 0.0);  // Eigen's order: w,x,y,z
 };
 
 // Velocity of an object: of the origin of its frame, and its rotation; both along world axes.
@@ -25,8 +26,9 @@ struct Twist {
 // A point of the object's frame, in the world.
 [[nodiscard]] Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
 
-// B as seen from A: x_a = rotation * x_b + translation. Made once a query. How far the two doubles-only
-// quantities can be from the exact ones is part of the value, so that bounds can account for it.
+// B as seen from A: x_a = rotation * x_b + translation. Made once a query. How far the two
+// doubles-only quantities can be from the exact ones is part of the value, so that bounds can
+// account for it.
 struct RelativePose {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();  // m, in frame A
@@ -37,6 +39,7 @@ struct RelativePose {
 // Error behaviour: none. Both quaternions must be finite and non-zero; both positions finite.
 // Equal orientations give exactly the identity, and orientations that permute axes exactly that
 // permutation, each with rotation_error 0: parallel stays parallel.
-[[nodiscard]] RelativePose relative_pose(const Pose& world_from_a, const Pose& world_from_b) noexcept;
+[[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
+                                         const Pose& world_from_b) noexcept;
 
 }  // namespace clearance

@@ -7,8 +7,8 @@ namespace {
 
 constexpr double kUlp = 0x1p-53;
 
-// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b convex combinations of anchors: rotating n
-// or b (6), three products (3), combining (4), the final sum and quotient (3).
+// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b convex combinations of anchors:
+// rotating n or b (6), three products (3), combining (4), the final sum and quotient (3).
 constexpr double kEvaluation = 16;
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/certificate.hpp"
 #include "core/simplex.hpp"
 #include "core/support.hpp"
 
@@ -118,7 +119,8 @@ class Simplex {
   std::size_t size_ = 0;
 };
 
-void improve_upper(DistanceResult& r, const Simplex& simplex, double length, double slack) noexcept {
+void improve_upper(DistanceResult& r, const Simplex& simplex, double length,
+                   double slack) noexcept {
   if (length + slack > r.upper) return;
   r.upper = length + slack;
   r.distance = length;
@@ -139,8 +141,8 @@ void conclude_inside(DistanceResult& r, const Simplex& simplex, double slack) no
 
 }  // namespace
 
-void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
-            DistanceResult& r) noexcept {
+void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+            const Precision& p, DistanceResult& r) noexcept {
   const DifferenceBody body(a, b, a_from_b, p);
   Simplex simplex;
   simplex.add(body.make(a.own(), b.own()));
@@ -150,10 +152,8 @@ void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     if (simplex.size() == 4 || !(length > 0.0)) return conclude_inside(r, simplex, p.slack);
     improve_upper(r, simplex, length, p.slack);
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
-    const double lower = -kInfinity;
-    static_cast<void>(lower);
     const Corner next = body.corner(n);
-    const double level = static_cast<double>(dot(wide(n), next.difference));
+    const double level = separation({n}, a, b, p);
     if (level - p.slack > r.lower) {
       r.lower = level - p.slack;
       r.normal = n;

@@ -7,11 +7,12 @@
 
 namespace clearance {
 
-// Tightens `result` (a conclusion of the fast path, all in the common frame) as far as doubles allow. Works
-// on vertices alone, as the hull of the points that the model stores, so that there is no disagreement
-// between rounded facets, edges and vertices; the closest point of the difference body's simplex
-// (Gilbert, Johnson, Keerthi) is computed in twice the precision. Bounds only ever improve.
-void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
-            DistanceResult& result) noexcept;
+// Tightens `result` (a conclusion of the fast path, all in the common frame) as far as doubles
+// allow. Works on vertices alone, as the hull of the points that the model stores, so that there is
+// no disagreement between rounded facets, edges and vertices; the closest point of the difference
+// body's simplex (Gilbert, Johnson, Keerthi) is computed in twice the precision. Bounds only ever
+// improve.
+void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+            const Precision& p, DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -1,8 +1,9 @@
 // Checked factories: the only way to make a ConvexPolyhedron.
 //
-// Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are rounded
-// once at the end. What is not a solid closed convex body is refused with a reason a person can act on.
-// Redundant half-spaces disappear. Load time only: allocates, may take milliseconds, never throws.
+// Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
+// rounded once at the end. What is not a solid closed convex body is refused with a reason a person
+// can act on. Redundant half-spaces disappear. Load time only: allocates, may take milliseconds,
+// never throws.
 #pragma once
 
 #include <span>
@@ -20,13 +21,15 @@ struct HalfSpace {
 };
 
 struct ShapeError {
-  std::string reason;  // e.g. "the half-spaces have no common interior: rows 2 and 5 face each other"
+  std::string
+      reason;  // e.g. "the half-spaces have no common interior: rows 2 and 5 face each other"
 };
 
 using ShapeResult = std::variant<ConvexPolyhedron, ShapeError>;
 
-// The intersection, bounded or not. Refused: non-finite rows, zero normals, empty or flat intersections,
-// and no rows at all. A row with zero normal and offset >= 0 is refused too: it says nothing.
+// The intersection, bounded or not. Refused: non-finite rows, zero normals, empty or flat
+// intersections, and no rows at all. A row with zero normal and offset >= 0 is refused too: it says
+// nothing.
 [[nodiscard]] ShapeResult polyhedron_from_halfspaces(std::span<const HalfSpace> rows);
 
 // The convex hull. Refused: non-finite points, fewer than four, or all in one plane.

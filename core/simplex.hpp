@@ -1,4 +1,5 @@
-// The point of a simplex (up to four points) that is closest to the origin, in twice double precision.
+// The point of a simplex (up to four points) that is closest to the origin, in twice double
+// precision.
 #pragma once
 
 #include <array>

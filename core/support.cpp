@@ -12,13 +12,14 @@ namespace {
 // Below this many vertices a scan is cheaper than a climb.
 constexpr std::size_t kScan = 24;
 
-// Unit edge directions are off by 2^-52, their products with a unit vector by three roundings more: an edge
-// that falls by more than this (per unit length) falls in exact arithmetic.
+// Unit edge directions are off by 2^-52, their products with a unit vector by three roundings more:
+// an edge that falls by more than this (per unit length) falls in exact arithmetic.
 constexpr double kFalls = 0x1p-50;
 
-// The vertices reached from one another by edges that rounding cannot tell from level ones. On the exact
-// polytope every vertex that is not the highest has a rising edge, and rising edges lead to the highest.
-// An edge that leaves this set falls for certain, so no rising path leaves it: the highest vertex is in it.
+// The vertices reached from one another by edges that rounding cannot tell from level ones. On the
+// exact polytope every vertex that is not the highest has a rising edge, and rising edges lead to
+// the highest. An edge that leaves this set falls for certain, so no rising path leaves it: the
+// highest vertex is in it.
 class LevelSet {
  public:
   bool add(std::int32_t vertex) noexcept {
@@ -96,8 +97,9 @@ Support support(const ConvexPolyhedron& body, const Vec3& m, std::int32_t start)
 
 namespace {
 
-// How the rays span their cone: any of its vectors x is a sum of mu_j r_j with sum mu_j <= condition * |x|.
-// Opposite rays span lines (at most two); the others lie strictly to one side of some plane.
+// How the rays span their cone: any of its vectors x is a sum of mu_j r_j with sum mu_j <=
+// condition * |x|. Opposite rays span lines (at most two); the others lie strictly to one side of
+// some plane.
 double ray_condition(const ConvexPolyhedron& body) noexcept {
   const auto& rays = body.rays;
   std::array<Vec3, 2> lines;
@@ -127,14 +129,15 @@ double ray_condition(const ConvexPolyhedron& body) noexcept {
 
 // The sign of m.r, exactly.
 int exact_sign(const Vec3& m, const Vec3& r) noexcept {
-  const DoubleDouble sum = exact::product(m.x(), r.x()) + exact::product(m.y(), r.y()) +
-                           exact::product(m.z(), r.z());
-  const double error = 0x1p-100 * (std::abs(m.x() * r.x()) + std::abs(m.y() * r.y()) +
-                                   std::abs(m.z() * r.z()));
+  const DoubleDouble sum =
+      exact::product(m.x(), r.x()) + exact::product(m.y(), r.y()) + exact::product(m.z(), r.z());
+  const double error =
+      0x1p-100 * (std::abs(m.x() * r.x()) + std::abs(m.y() * r.y()) + std::abs(m.z() * r.z()));
   if (sum.high > error) return 1;
   if (sum.high < -error) return -1;
   // Two products that cancel exactly, or none: those cases, and only those, are certain.
-  const bool certain = (m.x() * r.x() == 0.0) + (m.y() * r.y() == 0.0) + (m.z() * r.z() == 0.0) >= 1;
+  const bool certain =
+      (m.x() * r.x() == 0.0) + (m.y() * r.y() == 0.0) + (m.z() * r.z() == 0.0) >= 1;
   return certain && sum.high == 0.0 && sum.low == 0.0 ? 0 : 1;
 }
 
