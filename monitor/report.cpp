@@ -4,13 +4,20 @@ namespace clearance {
 
 const char* name(PairStatus status) noexcept {
   switch (status) {
-    case PairStatus::kConverged: return "converged";
-    case PairStatus::kTouching: return "touching";
-    case PairStatus::kOverlapping: return "overlapping";
-    case PairStatus::kLoose: return "loose";
-    case PairStatus::kCarried: return "carried";
-    case PairStatus::kStale: return "stale";
-    case PairStatus::kUnknown: return "unknown";
+    case PairStatus::kConverged:
+      return "converged";
+    case PairStatus::kTouching:
+      return "touching";
+    case PairStatus::kOverlapping:
+      return "overlapping";
+    case PairStatus::kLoose:
+      return "loose";
+    case PairStatus::kCarried:
+      return "carried";
+    case PairStatus::kStale:
+      return "stale";
+    case PairStatus::kUnknown:
+      return "unknown";
   }
   return "";
 }

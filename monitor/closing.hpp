@@ -1,0 +1,20 @@
+// How fast do two bodies close, and when would they touch if they went on like that?
+#pragma once
+
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// Velocity of the body's point that is at `point_in_world` now, m/s.
+[[nodiscard]] Vec3 velocity_at(const Vec3& point_in_world, const Pose& world_from_body,
+                               const Twist& twist) noexcept;
+
+// m/s, positive when approaching; `normal` is a unit vector from A towards B. NaN without a normal.
+[[nodiscard]] double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b,
+                                   const Vec3& normal) noexcept;
+
+// s. Infinity when not approaching. In contact (distance <= 0): 0, unless the two are parting; NaN
+// for a distance that is not known.
+[[nodiscard]] double time_to_contact(double distance, double closing_speed) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,24 @@
+// How far can any point of a rigid body have moved between two poses?
+//
+// A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x, so by at most
+// |p2 - p1| + |R2 - R1| |x|, and |R2 - R1| = 2 sin(theta / 2) for the angle theta between the two.
+// Net displacement: what happened between the two poses does not count.
+#pragma once
+
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// Both figures are upper bounds, rounding included, for the exactly normalised orientations.
+struct Motion {
+  double shift = 0.0;  // |p2 - p1|, m
+  double chord = 0.0;  // |R2 - R1|, at most 2
+};
+
+// Equal poses, bit for bit, give exactly no motion. Norms of the orientations within 0.5 .. 2.
+[[nodiscard]] Motion motion_between(const Pose& before, const Pose& after) noexcept;
+
+// No point within `reach` of the frame's origin has moved farther, m. An infinite reach is allowed.
+[[nodiscard]] double moved_at_most(const Motion& motion, double reach) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,96 @@
+#include "monitor/object_state.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kUnitTolerance = 1e-3;
+constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
+
+bool usable(const Vec3& v) noexcept {
+  return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
+}
+
+bool usable(const PoseSample& sample) noexcept {
+  return usable(sample.world_from_object.position) &&
+         sample.world_from_object.orientation.coeffs().allFinite() &&
+         (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
+}
+
+// later - earlier for any two stamps; what does not fit becomes the largest.
+std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (later <= earlier) return 0;
+  const std::uint64_t apart =
+      static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+  return static_cast<std::int64_t>(apart < kMost ? apart : kMost);
+}
+
+// Mean velocity that leads from one pose to the next. The shorter way round is taken.
+Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
+  const Eigen::Quaterniond turn =
+      to.orientation.normalized() * from.orientation.normalized().conjugate();
+  const double sine = turn.vec().norm();
+  const double angle = 2.0 * std::atan2(sine, std::abs(turn.w()));
+  const double per_sine = sine > 0.0 ? std::copysign(angle / sine, turn.w()) / seconds : 0.0;
+  return {.linear = (to.position - from.position) / seconds, .angular = turn.vec() * per_sine};
+}
+
+bool same(const Pose& a, const Pose& b) noexcept {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+}  // namespace
+
+ObjectState initial_state(const Object& object) noexcept {
+  ObjectState state;
+  if (!object.fixed) return state;
+  state.seen = state.seen_last_tick = true;
+  state.pose = state.pose_last_tick = object.world_from_object;
+  state.age_ns = 0;
+  return state;
+}
+
+std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+                              std::int64_t now_ns, std::int64_t future_limit_ns) noexcept {
+  if (!usable(sample)) return Reject::kNonFinite;
+  const double norm = sample.world_from_object.orientation.norm();
+  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) return Reject::kNotUnit;
+  if (elapsed(now_ns, sample.stamp_ns) > future_limit_ns) return Reject::kFuture;
+  if (state.seen && sample.stamp_ns < state.stamp_ns) return Reject::kBackwards;
+  return std::nullopt;
+}
+
+void accept(const PoseSample& sample, ObjectState& state) noexcept {
+  const std::int64_t apart_ns = elapsed(state.stamp_ns, sample.stamp_ns);
+  if (sample.has_twist) {
+    state.twist = sample.twist;
+  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+    state.twist =
+        mean_twist(state.pose, sample.world_from_object, static_cast<double>(apart_ns) * 1e-9);
+  }
+  state.pose = sample.world_from_object;
+  state.stamp_ns = sample.stamp_ns;
+  state.seen = true;
+}
+
+void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept {
+  if (object.fixed || !state.seen) return;
+  state.moved = !state.seen_last_tick || !same(state.pose_last_tick, state.pose);
+  state.motion = state.moved && state.seen_last_tick
+                     ? motion_between(state.pose_last_tick, state.pose)
+                     : Motion{};
+  state.pose_last_tick = state.pose;
+  state.seen_last_tick = true;
+
+  state.age_ns = elapsed(state.stamp_ns, now_ns);
+  state.late = state.age_ns > object.age_limit_ns;
+  const double age_s = static_cast<double>(state.age_ns) * 1e-9;
+  state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
+}
+
+}  // namespace clearance

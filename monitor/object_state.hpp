@@ -1,0 +1,51 @@
+// One object of the scene as the tick knows it: the pose in use, where it came from and how it
+// moves.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "config/scene.hpp"
+#include "monitor/input.hpp"
+#include "monitor/motion_bound.hpp"
+
+namespace clearance {
+
+struct ObjectState {
+  bool seen = false;          // some pose is in use; always so for a fixed object
+  Pose pose;                  // in use; as sent, its orientation is normalised where it is used
+  std::int64_t stamp_ns = 0;  // of that pose
+  Twist twist;                // as sent with it, else from the last two poses; zero after the first
+
+  // Of this tick, by advance().
+  bool moved = false;           // the pose is not that of the last tick
+  Motion motion;                // since the last tick; none when first seen
+  std::int64_t age_ns = -1;     // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  bool late = false;            // older than the object's limit
+  double may_have_moved = 0.0;  // since then, m, at most: 0 unless late; infinity: nobody said
+  std::array<std::uint64_t, kRejects> rejected{};
+
+  // Whether anything can be said about where it is now.
+  [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
+
+  Pose pose_last_tick;
+  bool seen_last_tick = false;
+};
+
+// Before any input: a fixed object stands where the scene says.
+[[nodiscard]] ObjectState initial_state(const Object& object) noexcept;
+
+// Why this sample must not be used, if so. `object` is a moving one and the one that the sample
+// names.
+[[nodiscard]] std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+                                            std::int64_t now_ns,
+                                            std::int64_t future_limit_ns) noexcept;
+
+// Takes an unrefused sample into use.
+void accept(const PoseSample& sample, ObjectState& state) noexcept;
+
+// Ends the tick's input: motion since the last tick, age and lateness.
+void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept;
+
+}  // namespace clearance

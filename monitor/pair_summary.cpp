@@ -1,0 +1,122 @@
+#include "monitor/pair_summary.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "monitor/closing.hpp"
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+PairStatus status_of(DistanceStatus status) noexcept {
+  switch (status) {
+    case DistanceStatus::kConverged:
+      return PairStatus::kConverged;
+    case DistanceStatus::kTouching:
+      return PairStatus::kTouching;
+    case DistanceStatus::kOverlapping:
+      return PairStatus::kOverlapping;
+    case DistanceStatus::kFarAway:
+    case DistanceStatus::kIterationLimit:
+      break;
+  }
+  return PairStatus::kLoose;
+}
+
+// The row with the smallest upper bound, evaluated ones before all others.
+std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTable& table) noexcept {
+  std::uint32_t closest = first;
+  for (std::uint32_t row = first; row < end; ++row) {
+    const bool evaluated = table.evaluation[row].cycle > 0;
+    const bool closest_evaluated = table.evaluation[closest].cycle > 0;
+    if (evaluated != closest_evaluated ? evaluated : table.upper[row] < table.upper[closest]) {
+      closest = row;
+    }
+  }
+  return closest;
+}
+
+// What this tick's evaluations say about the pair; kCarried when they do not decide it.
+PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_t closest,
+                            std::uint64_t cycle, const PairTable& table) noexcept {
+  if (table.evaluation[closest].cycle != cycle) return PairStatus::kCarried;
+  PairStatus status = status_of(table.evaluation[closest].status);
+  for (std::uint32_t row = first; row < end; ++row) {
+    if (row == closest || table.lower[row] >= table.upper[closest]) continue;
+    if (table.evaluation[row].cycle != cycle) return PairStatus::kCarried;
+    if (status_of(table.evaluation[row].status) == PairStatus::kLoose) status = PairStatus::kLoose;
+  }
+  return status;
+}
+
+}  // namespace
+
+PairReport unknown_report() noexcept {
+  PairReport report;
+  report.status = PairStatus::kUnknown;
+  report.lower = -kInfinity;
+  report.upper = kInfinity;
+  report.distance = report.closing_speed = report.time_to_contact = kNan;
+  report.witness_a = report.witness_b = report.normal = Vec3::Constant(kNan);
+  return report;
+}
+
+PairSummary summarise(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                      const std::vector<PlacedPart>& parts, std::uint64_t cycle,
+                      const PairTable& table) noexcept {
+  const std::uint32_t first = table.first_row[pair];
+  const std::uint32_t end = table.first_row[pair + 1];
+  PairSummary summary;
+  summary.row = first;
+  const ObjectState& a = objects[parts[table.part_a[first]].object];
+  const ObjectState& b = objects[parts[table.part_b[first]].object];
+  if (!a.known() || !b.known()) return summary;
+
+  summary.row = closest_row(first, end, table);
+  summary.evaluated_cycle = table.evaluation[summary.row].cycle;
+  summary.lower = *std::min_element(table.lower.begin() + first, table.lower.begin() + end);
+  summary.upper = *std::min_element(table.upper.begin() + first, table.upper.begin() + end);
+  if (!a.late && !b.late) {
+    summary.status = evaluated_status(first, end, summary.row, cycle, table);
+    return summary;
+  }
+  const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
+  summary.lower = rounded_down(summary.lower - may_have_moved);
+  summary.upper = rounded_up(summary.upper + may_have_moved);
+  summary.status = PairStatus::kStale;
+  return summary;
+}
+
+PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& summary,
+                     const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
+                     const PairTable& table) noexcept {
+  const ObjectState& a = objects[scene.pairs[pair].first];
+  const ObjectState& b = objects[scene.pairs[pair].second];
+  PairReport report = unknown_report();
+  report.pair = pair;
+  report.age_a_ns = a.age_ns;
+  report.age_b_ns = b.age_ns;
+  if (summary.status == PairStatus::kUnknown) return report;
+
+  report.status = summary.status;
+  report.lower = summary.lower;
+  report.upper = summary.upper;
+  const Evaluation& evaluation = table.evaluation[summary.row];
+  report.part_a = parts[table.part_a[summary.row]].index_in_object;
+  report.part_b = parts[table.part_b[summary.row]].index_in_object;
+  report.distance = evaluation.distance;
+  report.witness_a = evaluation.witness_a;
+  report.witness_b = evaluation.witness_b;
+  report.normal = evaluation.normal;
+  report.closing_speed =
+      closing_speed(velocity_at(evaluation.witness_a, a.pose, a.twist),
+                    velocity_at(evaluation.witness_b, b.pose, b.twist), evaluation.normal);
+  report.time_to_contact = time_to_contact(report.distance, report.closing_speed);
+  report.evaluated_cycle = evaluation.cycle;
+  return report;
+}
+
+}  // namespace clearance

@@ -1,0 +1,37 @@
+// One object pair in this tick: its rows of the pair table brought together, lateness counted in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/pair_table.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+struct PairSummary {
+  PairStatus status = PairStatus::kUnknown;
+  double lower = -kInfinity, upper = kInfinity;  // for where the objects may be now, m
+  std::uint32_t row = 0;  // the closest part pair, as far as is known: smallest upper bound
+  std::uint64_t evaluated_cycle = 0;  // of that row; 0: no row ever was
+};
+
+[[nodiscard]] PairSummary summarise(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                    const std::vector<PlacedPart>& parts, std::uint64_t cycle,
+                                    const PairTable& table) noexcept;
+
+// What is published of it.
+[[nodiscard]] PairReport report_on(const Scene& scene, std::uint32_t pair,
+                                   const PairSummary& summary,
+                                   const std::vector<ObjectState>& objects,
+                                   const std::vector<PlacedPart>& parts,
+                                   const PairTable& table) noexcept;
+
+// Nothing is known: figures NaN, bounds infinite.
+[[nodiscard]] PairReport unknown_report() noexcept;
+
+[[nodiscard]] inline bool is_evaluated(PairStatus status) noexcept {
+  return status <= PairStatus::kLoose;
+}
+
+}  // namespace clearance

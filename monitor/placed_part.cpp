@@ -1,0 +1,135 @@
+#include "monitor/placed_part.hpp"
+
+#include <algorithm>
+
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// A rotated and shifted point in doubles: normalising the quaternion leaves it within 2^-51, the
+// nine entries of its matrix within 2^-49 of the exact matrix, and the product and sum add three
+// roundings of numbers no larger than |position| + |point|. The same covers the product of two unit
+// quaternions.
+constexpr double kPlacingError = 0x1p-47;
+
+bool is_identity(const Eigen::Quaterniond& q) noexcept {
+  return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
+}
+
+// 0 * infinity means 0 here: what does not turn does not move its far points either.
+double swept(double turn, double arm) noexcept { return turn == 0.0 ? 0.0 : turn * arm; }
+
+Ball ball_around(const ConvexPolyhedron& shape) noexcept {
+  Vec3 low = Vec3::Constant(kInfinity);
+  Vec3 high = Vec3::Constant(-kInfinity);
+  for (const Vec3& anchor : shape.anchors) {
+    low = low.cwiseMin(anchor);
+    high = high.cwiseMax(anchor);
+  }
+  Ball ball{.centre = 0.5 * (low + high), .radius = kInfinity};
+  if (!shape.bounded()) return ball;
+  double farthest = 0.0;
+  for (const Vec3& anchor : shape.anchors) {
+    farthest = std::max(farthest, (anchor - ball.centre).norm());
+  }
+  ball.radius = rounded_up(rounded_up(farthest) + shape.position_error + shape.radius);
+  return ball;
+}
+
+// The farthest point of the part from the origin of its object.
+double reach_of(const Part& part) noexcept {
+  if (!part.shape.bounded()) return kInfinity;
+  double farthest = 0.0;
+  for (const Vec3& anchor : part.shape.anchors) {
+    farthest = std::max(farthest, transform(part.object_from_part, anchor).norm());
+  }
+  const double error = kPlacingError * (part.object_from_part.position.norm() +
+                                        part.shape.bounding_radius + part.shape.position_error);
+  return rounded_up(rounded_up(farthest) + error + part.shape.position_error + part.shape.radius);
+}
+
+double extent_of(const ConvexPolyhedron& shape) noexcept {
+  if (!shape.bounded()) return kInfinity;
+  return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
+}
+
+// The product of the two poses, keeping orientations that need no product to the bit: parallel
+// faces stay parallel, and a rotated floor stays where it is.
+void compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcept {
+  const Pose& offset = part.object_from_part;
+  const bool offset_turns = !is_identity(offset.orientation);
+  const bool object_turns = !is_identity(world_from_object.orientation);
+  if (!offset_turns && offset.position.isZero(0.0)) {
+    part.world_from_part = world_from_object;
+    part.shift_error = part.turn_error = 0.0;
+    return;
+  }
+  part.world_from_part = compose(world_from_object, offset);
+  if (!offset_turns) part.world_from_part.orientation = world_from_object.orientation;
+  if (!object_turns) part.world_from_part.orientation = offset.orientation;
+  part.turn_error = offset_turns && object_turns ? kPlacingError : 0.0;
+  part.shift_error = kPlacingError * (world_from_object.position.norm() + offset.position.norm());
+}
+
+Ball place_ball(const PlacedPart& part) noexcept {
+  const Vec3& centre = part.ball_in_part.centre;
+  const Vec3& position = part.world_from_part.position;
+  const double error = kPlacingError * (centre.norm() + position.norm()) + part.shift_error +
+                       swept(part.turn_error, centre.norm());
+  return {.centre = part.world_from_part_rotation * centre + position,
+          .radius = rounded_up(part.ball_in_part.radius + error)};
+}
+
+// How far a wrong orientation of `part` can take the nearest points of the two apart. Turning the
+// part about its origin is turning the other one back about the same point, so the smaller arm
+// counts.
+double turning_error(const PlacedPart& part, const PlacedPart& other) noexcept {
+  const double to_other =
+      (part.world_from_part.position - other.world_from_part.position).norm() + other.extent;
+  return swept(part.turn_error, std::min(part.extent, rounded_up(to_other)));
+}
+
+}  // namespace
+
+std::vector<PlacedPart> parts_of(const Scene& scene) {
+  std::vector<PlacedPart> parts;
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    const bool stated = !object.fixed && std::isfinite(object.max_speed);
+    for (std::uint32_t j = 0; j < object.parts.size(); ++j) {
+      const Part& part = object.parts[j];
+      PlacedPart placed;
+      placed.object = i;
+      placed.index_in_object = j;
+      placed.stated_speed = stated ? object.max_speed : 0.0;
+      placed.shape = &part.shape;
+      placed.object_from_part = part.object_from_part;
+      placed.reach = reach_of(part);
+      placed.extent = extent_of(part.shape);
+      placed.ball_in_part = ball_around(part.shape);
+      parts.push_back(placed);
+    }
+  }
+  return parts;
+}
+
+void place(const ObjectState& object, PlacedPart& part) noexcept {
+  if (object.moved || !part.placed) {
+    compose_with_error(object.pose, part);
+    part.world_from_part_rotation =
+        part.world_from_part.orientation.normalized().toRotationMatrix();
+    part.ball_in_world = place_ball(part);
+    part.placed = true;
+  }
+  part.moved = moved_at_most(object.motion, part.reach);
+  const double measured =
+      object.twist.linear.norm() + swept(object.twist.angular.norm(), part.reach);
+  part.speed = std::max(part.stated_speed, measured);
+}
+
+double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept {
+  return rounded_up(a.shift_error + b.shift_error + turning_error(a, b) + turning_error(b, a));
+}
+
+}  // namespace clearance

@@ -1,0 +1,54 @@
+// One convex part of one object, placed in the world for this tick.
+//
+// The exact place of a part is its object's pose times its offset. What the queries get is that
+// product in doubles, so how far the two may be apart is kept with it and becomes part of the
+// bounds.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/object_state.hpp"
+
+namespace clearance {
+
+// A ball that holds the part; where it is unbounded, the radius is infinite.
+struct Ball {
+  Vec3 centre = Vec3::Zero();
+  double radius = kInfinity;  // m, rounding of the centre included
+};
+
+struct PlacedPart {
+  // From the scene.
+  std::uint32_t object = 0;           // index into Scene::objects
+  std::uint32_t index_in_object = 0;  // into Object::parts
+  const ConvexPolyhedron* shape = nullptr;
+  Pose object_from_part;
+  double reach = kInfinity;   // no point of it is farther from its object's origin, m
+  double extent = kInfinity;  // no point of it is farther from its own origin, m
+  Ball ball_in_part;
+  double stated_speed = 0.0;  // of any point of it, m/s; 0: fixed, or nobody said
+
+  // Of this tick, once the object has been seen.
+  bool placed = false;
+  Pose world_from_part;      // as the queries use it
+  double shift_error = 0.0;  // its position is at most this far from the exact one, m
+  double turn_error = 0.0;   // |R - R_exact| is at most this
+  Mat3 world_from_part_rotation = Mat3::Identity();
+  Ball ball_in_world;
+  double moved = 0.0;  // no point of it moved farther since the last tick, m
+  double speed = 0.0;  // it may reach: as stated, or as measured where that is more, m/s
+};
+
+// All parts of the scene, object by object; none placed yet.
+[[nodiscard]] std::vector<PlacedPart> parts_of(const Scene& scene);
+
+// Puts a part where its object, which has been seen, is in this tick.
+void place(const ObjectState& object, PlacedPart& part) noexcept;
+
+// How far this tick's poses of two parts, as the queries use them, can bring the parts nearer to
+// each other or farther apart than the exact poses do, m.
+[[nodiscard]] double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,16 @@
+// Directed rounding without touching the processor's rounding mode: step aside by more than the
+// error.
+//
+// One correctly rounded operation is off by at most |x| * 2^-53, so 2^-50 covers the step itself
+// and the last six operations that led to x, where none of them cancelled. An infinity stays what
+// it is.
+#pragma once
+
+#include <cmath>
+
+namespace clearance {
+
+[[nodiscard]] inline double rounded_up(double x) noexcept { return x + std::abs(x) * 0x1p-50; }
+[[nodiscard]] inline double rounded_down(double x) noexcept { return x - std::abs(x) * 0x1p-50; }
+
+}  // namespace clearance
