@@ -68,6 +68,10 @@ const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t objec
   return state_->objects[object].rejected;
 }
 
+std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
+  return state_->objects[object].stamp_ns;
+}
+
 Monitor::State::State(const Scene& the_scene)
     : scene(the_scene),
       parts(parts_of(the_scene)),
