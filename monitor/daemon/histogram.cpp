@@ -8,7 +8,7 @@ namespace clearance {
 std::size_t Histogram::bin_of(std::uint64_t ns) noexcept {
   constexpr std::uint64_t kLinear = std::uint64_t{1} << kSubBits;
   if (ns < kLinear) return ns;
-  const int octave = std::bit_width(ns) - 1;  // ns is in [2^octave, 2^(octave+1))
+  const int octave = static_cast<int>(std::bit_width(ns)) - 1;  // ns is in [2^octave, 2^(octave+1))
   const std::uint64_t sub = (ns >> (octave - kSubBits)) - kLinear;
   const std::size_t bin = ((static_cast<std::size_t>(octave - kSubBits) + 1) << kSubBits) + sub;
   return std::min(bin, kBins - 1);

@@ -1,0 +1,78 @@
+// Cyclone DDS, as much of it as we use: a participant of one domain and partition, and its
+// endpoints.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace clearance {
+
+// Says what was attempted, on what, and Cyclone's reason.
+class DdsError : public std::runtime_error {
+ public:
+  DdsError(const std::string& attempted, dds_return_t code);
+};
+
+// Passes a handle or count through. Throws DdsError when it is negative.
+dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
+
+struct DdsOptions {
+  std::uint32_t domain = 0;      // 0 to 232
+  std::string partition;         // empty: the default one
+  std::string interface = "lo";  // network interface; lo: this machine only
+  std::vector<std::string>
+      peers;  // addresses to look for others at, besides multicast; for lo: none needed
+};
+
+// How a topic is delivered. idl/README.md says why.
+enum class Delivery {
+  kStream,   // reliable, volatile: what is sent from now on
+  kLatched,  // reliable, transient-local, keep-last 1: a late joiner gets the last value of each
+             // key
+};
+
+// Owns the domain's configuration, the participant and all endpoints made through it.
+class Participant {
+ public:
+  explicit Participant(const DdsOptions& options);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  // `depth`: samples kept an instance (kLatched: always 1). `listener` may be null; it is copied.
+  dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& topic,
+                      Delivery delivery, std::int32_t depth,
+                      const dds_listener_t* listener = nullptr);
+  dds_entity_t writer(const dds_topic_descriptor_t& type, const std::string& topic,
+                      Delivery delivery, std::int32_t depth,
+                      const dds_listener_t* listener = nullptr);
+  [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
+  // "domain 7, partition demo, interface lo"
+  [[nodiscard]] const std::string& where() const noexcept { return where_; }
+
+ private:
+  dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name);
+
+  std::string where_;
+  std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
+  dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;
+};
+
+// Wakes one thread when a reader has samples, or when another thread calls wake().
+class DataWait {
+ public:
+  DataWait(const Participant& participant, const std::vector<dds_entity_t>& readers);
+  // True: samples may be there. False: woken, or the time is up.
+  bool wait(std::int64_t timeout_ns);
+  void wake() noexcept;
+
+ private:
+  dds_entity_t waitset_, guard_;
+};
+
+}  // namespace clearance
