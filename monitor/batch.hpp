@@ -39,6 +39,11 @@ struct PoseBatch {
   std::vector<PoseSample> samples;
 };
 
+// Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.
+[[nodiscard]] inline bool made_for(const PoseBatch& batch, std::uint64_t scene_revision) noexcept {
+  return batch.scene_revision == 0 || batch.scene_revision == scene_revision;
+}
+
 // The last batch of a source that a tick used.
 struct SourceUse {
   SourceName source;

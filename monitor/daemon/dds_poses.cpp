@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "monitor/daemon/realtime.hpp"
 #include "monitor/wire/convert.hpp"
@@ -107,7 +108,7 @@ SourceTally* DdsPoses::tally_of(const SourceName& source) {
   return &tallies_.emplace_back(SourceTally{.source = source});
 }
 
-void DdsPoses::hand_over(const clearance_msg_PoseBatch& batch) {
+void DdsPoses::hand_over(clearance_msg_PoseBatch& batch) {
   const std::lock_guard lock(tallies_mutex_);
   SourceTally* tally = tally_of(SourceName(batch.source));
   if (tally == nullptr) return;
@@ -123,22 +124,16 @@ void DdsPoses::hand_over(const clearance_msg_PoseBatch& batch) {
     ++tally->lost;
     return;
   }
-  slot->samples.resize(samples_a_batch_);
-  const BatchRead read = from_wire(batch, scene_.revision, slot->samples);
-  tally->cut += read.dropped;
-  if (read.wrong_revision) {
-    if (tally->wrong_revision == 0) {
-      spdlog::warn(
-          "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
-          tally->source.view(), batch.scene_revision, scene_.revision);
-    }
-    tally->wrong_revision += batch.poses._length;
-    return;
+  if (batch.poses._length > samples_a_batch_) {
+    tally->cut_poses += batch.poses._length - samples_a_batch_;
+    batch.poses._length = static_cast<std::uint32_t>(samples_a_batch_);
   }
-  slot->samples.resize(read.samples);
-  slot->source = tally->source;
-  slot->sequence_number = batch.sequence_number;
-  slot->scene_revision = batch.scene_revision;
+  from_wire(batch, *slot);
+  if (!made_for(*slot, scene_.revision) && !std::exchange(tally->warned_of_revision, true)) {
+    spdlog::warn(
+        "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
+        tally->source.view(), batch.scene_revision, scene_.revision);
+  }
   ++tally->batches;
   ring_.push();
 }

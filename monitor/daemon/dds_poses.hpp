@@ -21,12 +21,12 @@ namespace clearance {
 // What came from one source, since the start.
 struct SourceTally {
   SourceName source;
-  std::uint64_t batches = 0;  // handed to the tick
-  std::uint64_t lost = 0;  // gaps in the sequence numbers, and batches for which no slot was free
-  std::uint64_t wrong_revision = 0;  // samples made for another scene: not used
-  std::uint64_t cut = 0;             // samples beyond what a batch of this cell can hold: not used
+  std::uint64_t batches = 0;    // handed to the tick
+  std::uint64_t lost = 0;       // gaps in the sequence numbers, and batches with no slot free
+  std::uint64_t cut_poses = 0;  // beyond what a batch of this cell can hold: not used
   std::uint64_t last_sequence = 0;
   std::int64_t last_ns = 0;  // when its last sample was taken, CLOCK_REALTIME
+  bool warned_of_revision = false;
 };
 
 class DdsPoses final : public PoseSource {
@@ -50,7 +50,7 @@ class DdsPoses final : public PoseSource {
  private:
   void run();
   void take_all();
-  void hand_over(const clearance_msg_PoseBatch& batch);
+  void hand_over(clearance_msg_PoseBatch& batch);
   SourceTally* tally_of(const SourceName& source);
 
   const Scene& scene_;

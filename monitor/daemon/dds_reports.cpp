@@ -51,7 +51,7 @@ DdsReports::DdsReports(const Scene& scene, Participant& participant, ReportQueue
       distances_sample_(make_distances(scene)),
       zone_written_(scene.zones.size()),
       zone_active_(scene.zones.size()),
-      rejection_log_(scene) {
+      health_log_(scene) {
   const auto catalogue = make_catalogue(scene);
   check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
@@ -103,7 +103,7 @@ void DdsReports::write_health(const Vitals& vitals) {
   const auto sample = make_health(scene_, vitals, poses_.tallies(),
                                   queue_.dropped_reports() + failed_writes_.load());
   write(health_, &*sample, "health");
-  rejection_log_.update(*sample);
+  health_log_.update(*sample);
 }
 
 void DdsReports::write(dds_entity_t writer, const void* sample, const char* what) {

@@ -38,7 +38,7 @@ class DdsReports {
   dds_entity_t distances_, catalogue_, zones_, health_;
   Sample<clearance_msg_Distances> distances_sample_;
   std::vector<bool> zone_written_, zone_active_;  // as last written
-  RejectionLog rejection_log_;
+  HealthLog health_log_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::thread thread_;
 };

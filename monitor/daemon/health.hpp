@@ -19,9 +19,9 @@ namespace clearance {
 
 // Tells the log which rejections, losses and late inputs are new since the health before: a few
 // lines a second at most.
-class RejectionLog {
+class HealthLog {
  public:
-  explicit RejectionLog(const Scene& scene);
+  explicit HealthLog(const Scene& scene);
   void update(const clearance_msg_Health& health);
 
  private:

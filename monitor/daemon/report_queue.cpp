@@ -26,7 +26,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
   });
   vitals_.prepare([&](Vitals& slot) {
     slot.rejected.resize(scene.objects.size());
-    slot.stamps_ns.resize(scene.objects.size());
+    slot.ages.resize(scene.objects.size());
   });
   if (keeps_inputs_) {
     inputs_.prepare([&](PoseBatch& slot) { slot.samples.resize(options.samples_a_batch); });

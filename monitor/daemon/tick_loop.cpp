@@ -17,7 +17,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))) {
   samples_.reserve(options_.max_samples);
   vitals_.rejected.resize(scene.objects.size());
-  vitals_.stamps_ns.resize(scene.objects.size());
+  vitals_.ages.resize(scene.objects.size());
 }
 
 void TickLoop::run(const std::atomic<bool>& stop) noexcept {
@@ -67,14 +67,20 @@ void TickLoop::take_in() noexcept {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
     if (samples_.size() + waiting_->samples.size() > options_.max_samples) return;
-    samples_.insert(samples_.end(), waiting_->samples.begin(), waiting_->samples.end());
-    note_use(*waiting_);
+    use(*waiting_);
     for (ReportSink* sink : sinks_) sink->input(*waiting_);
     waiting_ = nullptr;
   }
 }
 
-void TickLoop::note_use(const PoseBatch& batch) noexcept {
+void TickLoop::use(const PoseBatch& batch) noexcept {
+  if (!made_for(batch, scene_.revision)) {
+    for (const PoseSample& sample : batch.samples) {
+      monitor_.refuse(sample.object, Reject::kWrongRevision);
+    }
+    return;
+  }
+  samples_.insert(samples_.end(), batch.samples.begin(), batch.samples.end());
   const auto end = used_.begin() + static_cast<std::ptrdiff_t>(used_count_);
   const auto found = std::find_if(
       used_.begin(), end, [&batch](const SourceUse& use) { return use.source == batch.source; });
@@ -93,7 +99,7 @@ void TickLoop::note_minimum(const Report& report) noexcept {
 void TickLoop::hand_over_vitals() noexcept {
   for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
     vitals_.rejected[object] = monitor_.rejected(object);
-    vitals_.stamps_ns[object] = monitor_.stamp_ns(object);
+    vitals_.ages[object] = monitor_.input_age(object);
   }
   for (ReportSink* sink : sinks_) sink->vitals(vitals_);
   vitals_.tick_second_max_ns = 0;

@@ -38,7 +38,7 @@ class TickLoop {
  private:
   void take_in() noexcept;
   void tick_once() noexcept;
-  void note_use(const PoseBatch& batch) noexcept;
+  void use(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_vitals() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;

@@ -7,6 +7,7 @@
 
 #include "monitor/daemon/histogram.hpp"
 #include "monitor/input.hpp"
+#include "monitor/monitor.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {
@@ -32,8 +33,7 @@ struct Vitals {
   MinimumSeen minimum;
   std::vector<std::array<std::uint64_t, kRejects>> rejected;  // one an object, by cause
   std::array<std::uint64_t, kRejects> rejected_total{};       // those of unknown ids as well
-  std::vector<std::int64_t>
-      stamps_ns;  // one an object: of the pose in use; 0: never seen, or fixed
+  std::vector<InputAge> ages;                                 // one an object
 };
 
 }  // namespace clearance

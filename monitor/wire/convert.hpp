@@ -38,11 +38,6 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 // poses.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
 
-// Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.
-[[nodiscard]] inline bool made_for(const PoseBatch& batch, std::uint64_t scene_revision) noexcept {
-  return batch.scene_revision == 0 || batch.scene_revision == scene_revision;
-}
-
 // A batch with room for `poses` poses, for writing.
 [[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses);
 

@@ -1,0 +1,85 @@
+#include "monitor/daemon/daemon.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "monitor/daemon/realtime.hpp"
+#include "monitor/daemon/summary.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kQueuedReports = 64;
+constexpr std::size_t kBatchesATick = 64;
+constexpr std::int64_t kSignalPollMs = 50;
+
+void log_refusal(const Refusal& refusal) {
+  if (refusal) spdlog::warn("{}", *refusal);
+}
+
+// Cyclone's threads and ours inherit the scheduling of the thread that makes them: this comes
+// before any.
+DdsOptions prepare_threads(const DaemonOptions& options) {
+  use_precise_timers();
+  if (options.fifo_priority > 0) {
+    log_refusal(use_fifo_scheduling(std::max(1, options.fifo_priority - 1)));
+  }
+  return options.dds;
+}
+
+}  // namespace
+
+Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
+    : scene_(scene),
+      options_(options),
+      participant_(prepare_threads(options)),
+      poses_(scene, participant_),
+      publish_queue_(scene, {.reports = kQueuedReports}),
+      reports_(std::make_unique<DdsReports>(scene, participant_, publish_queue_, poses_)) {
+  const TickLoopOptions loop{.max_ticks = options.max_ticks,
+                             .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene)};
+  loop_ = std::make_unique<TickLoop>(scene, poses_, std::vector<ReportSink*>{&publish_queue_},
+                                     clock_, loop);
+}
+
+Daemon::~Daemon() {
+  publish_queue_.close();
+  reports_.reset();
+}
+
+void Daemon::run(StopSignal& signal) {
+  if (options_.fifo_priority > 0) log_refusal(lock_memory());
+  spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
+               scene_.rate_hz, participant_.where());
+
+  std::atomic<bool> done{false};
+  const std::int64_t started = clock_.monotonic_ns();
+  std::thread ticking([&] { tick_thread(done); });
+  // The thread that waits for signals needs no priority of its own.
+  if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
+  while (!done && !signal.wait(kSignalPollMs)) {
+  }
+  stop_ = true;
+  ticking.join();
+  seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
+
+  publish_queue_.close();
+  dropped_reports_ = publish_queue_.dropped_reports() + reports_->failed_writes();
+  reports_.reset();
+  spdlog::info("stopped after {} ticks", loop_->vitals().cycle);
+}
+
+void Daemon::tick_thread(std::atomic<bool>& done) {
+  name_thread("tick");
+  if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(options_.fifo_priority));
+  if (options_.cpu) log_refusal(pin_to_cpu(*options_.cpu));
+  loop_->run(stop_);
+  done = true;
+}
+
+std::string Daemon::summary() const {
+  return run_summary(scene_, loop_->vitals(), seconds_, dropped_reports_);
+}
+
+}  // namespace clearance

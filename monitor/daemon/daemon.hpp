@@ -1,0 +1,58 @@
+// The daemon as one object: the tick loop in a thread of its own and DDS on either side of it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "config/scene.hpp"
+#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/dds_poses.hpp"
+#include "monitor/daemon/dds_reports.hpp"
+#include "monitor/daemon/report_queue.hpp"
+#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/daemon/tick_loop.hpp"
+
+namespace clearance {
+
+struct DaemonOptions {
+  DdsOptions dds;
+  std::uint64_t max_ticks = 0;  // 0: until a signal comes
+  int fifo_priority = 0;   // of the tick thread; the threads around it get one less; 0: ordinary
+  std::optional<int> cpu;  // that the tick thread is pinned to
+};
+
+class Daemon {
+ public:
+  // Joins DDS and announces the catalogue. Throws DdsError.
+  Daemon(const Scene& scene, const DaemonOptions& options);
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
+
+  // Ticks until a signal comes or `max_ticks` are done; then everything that was queued is written.
+  void run(StopSignal& signal);
+
+  // After run(): what happened, for a person.
+  [[nodiscard]] std::string summary() const;
+
+ private:
+  void tick_thread(std::atomic<bool>& done);
+
+  const Scene& scene_;
+  DaemonOptions options_;
+  Participant participant_;
+  DdsPoses poses_;
+  ReportQueue publish_queue_;
+  std::unique_ptr<DdsReports> reports_;
+  SystemClock clock_;
+  std::unique_ptr<TickLoop> loop_;
+  std::atomic<bool> stop_{false};
+  std::uint64_t dropped_reports_ = 0;
+  double seconds_ = 0.0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,44 @@
+#include "monitor/daemon/summary.hpp"
+
+#include <fmt/format.h>
+
+namespace clearance {
+namespace {
+
+std::string part_name(const Object& object, std::uint32_t part) {
+  if (object.parts.size() < 2 || part >= object.parts.size()) return object.name;
+  return object.name + "." + object.parts[part].name;
+}
+
+}  // namespace
+
+std::string pair_name(const Scene& scene, const PairReport& pair) {
+  const ObjectPair& objects = scene.pairs[pair.pair];
+  return part_name(scene.objects[objects.first], pair.part_a) + " to " +
+         part_name(scene.objects[objects.second], pair.part_b);
+}
+
+std::string percentiles(const Histogram& histogram) {
+  constexpr double kUsPerNs = 1e-3;
+  return fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us",
+                     kUsPerNs * static_cast<double>(histogram.percentile_ns(0.5)),
+                     kUsPerNs * static_cast<double>(histogram.percentile_ns(0.999)),
+                     kUsPerNs * static_cast<double>(histogram.max_ns()));
+}
+
+std::string run_summary(const Scene& scene, const Vitals& vitals, double seconds,
+                        std::uint64_t dropped_reports) {
+  std::string text = fmt::format(
+      "{} ticks in {:.2f} s, {} overruns, {} skipped cycles, {} reports dropped\n"
+      "tick     {}\n"
+      "wake-up  {}\n",
+      vitals.cycle, seconds, vitals.overruns, vitals.skipped_cycles, dropped_reports,
+      percentiles(vitals.tick), percentiles(vitals.wakeup));
+  const MinimumSeen& minimum = vitals.minimum;
+  if (!minimum.known) return text + "minimum  none: no pair was ever evaluated\n";
+  return text + fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n",
+                            minimum.pair.distance, minimum.pair.lower, minimum.pair.upper,
+                            pair_name(scene, minimum.pair), minimum.cycle);
+}
+
+}  // namespace clearance
