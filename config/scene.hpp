@@ -60,7 +60,7 @@ struct Scene {
   std::string name;
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
                                // scenes that differ have different revisions; never 0
-  std::string yaml;  // the text it was read from, for recordings
+  std::string yaml;            // the text it was read from, for recordings
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;               // distance queries a tick, at most: part pairs
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused

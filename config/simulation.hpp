@@ -30,7 +30,7 @@ enum class JointKind : std::uint8_t { kRevolute, kPrismatic };
 struct SimulatedJoint {
   std::vector<std::uint32_t>
       objects;                // what rides on the link, each with the link's frame; may be empty
-  Pose parent_from_joint;     // in the frame of the link before (the first: of the base)
+  Pose parent_from_joint{};   // in the frame of the link before (the first: of the base)
   Vec3 axis = Vec3::UnitZ();  // unit, in the joint's frame
   JointKind kind = JointKind::kRevolute;
   Swing motion;

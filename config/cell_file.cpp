@@ -1,0 +1,206 @@
+#include "config/cell_file.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "config/complaints.hpp"
+#include "config/map_reader.hpp"
+#include "config/mesh_file.hpp"
+#include "config/object_reader.hpp"
+#include "config/pair_reader.hpp"
+#include "config/quantities.hpp"
+#include "config/revision.hpp"
+#include "config/scalar.hpp"
+#include "config/shape_reader.hpp"
+#include "config/simulation_reader.hpp"
+#include "config/yaml_node.hpp"
+#include "config/zone_reader.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::int64_t kMaxBudget = 1'000'000'000;
+constexpr std::int64_t kMaxDomain = 232;                 // the last whose ports fit into 16 bits
+constexpr std::size_t kMaxDdsName = 255;                 // bytes
+constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
+
+// The sections of a cell, one function each.
+class CellReader {
+ public:
+  CellReader(const std::filesystem::path& file, Complaints& complaints, Revision& revision)
+      : file_(file), complaints_(complaints), revision_(revision) {}
+
+  void read(const YamlNode& root, Scene& scene);
+
+ private:
+  std::optional<Units> read_units(const YamlNode& node);
+  void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
+  void read_dds(const YamlNode& node, Scene& scene);
+  void read_topics(const YamlNode& node, Topics& topics);
+  void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
+
+  const std::filesystem::path& file_;
+  Complaints& complaints_;
+  Revision& revision_;
+};
+
+std::optional<Units> CellReader::read_units(const YamlNode& node) {
+  MapReader map(node, "the units", complaints_);
+  const YamlNode* length_node = map.required("length");
+  const YamlNode* angle_node = map.required("angle");
+  map.refuse_unknown_keys();
+  std::optional<LengthUnit> length;
+  std::optional<AngleUnit> angle;
+  if (length_node != nullptr) length = read_length_unit(*length_node, complaints_);
+  if (angle_node != nullptr) angle = read_angle_unit(*angle_node, complaints_);
+  if (!length || !angle) return std::nullopt;
+  return Units{*length, *angle};
+}
+
+void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
+  if (const YamlNode* rate = map.optional("rate_hz")) {
+    scene.rate_hz =
+        read_number(*rate, kRates, "the rate in Hz", complaints_).value_or(scene.rate_hz);
+  }
+  if (const YamlNode* budget = map.optional("budget")) {
+    const auto queries =
+        read_integer(*budget, 1, kMaxBudget, "distance queries a tick", complaints_);
+    if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
+  }
+  if (const YamlNode* limit = map.optional("future_limit_ms")) {
+    scene.future_limit_ns =
+        quantities.milliseconds(*limit, "how far ahead of now a stamp may be", kNotNegative)
+            .value_or(scene.future_limit_ns);
+  }
+}
+
+// DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
+void CellReader::read_topics(const YamlNode& node, Topics& topics) {
+  MapReader map(node, "the topics", complaints_);
+  std::map<std::string, const char*> taken;
+  for (const auto& [key, topic] : {std::pair("poses", &topics.poses),
+                                   {"distances", &topics.distances},
+                                   {"catalogue", &topics.catalogue},
+                                   {"health", &topics.health},
+                                   {"zones", &topics.zones}}) {
+    const YamlNode* name_node = map.optional(key);
+    const auto name = name_node == nullptr ? std::optional(*topic)
+                                           : read_text(*name_node, "a topic's name", complaints_);
+    if (!name) continue;
+    const bool plain = std::all_of(name->begin(), name->end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '/';
+    });
+    if (name->empty() || !plain || name->size() > kMaxDdsName ||
+        (name->front() >= '0' && name->front() <= '9')) {
+      complaints_.add(
+          *name_node,
+          "found " + describe(*name_node) +
+              "; expected a topic's name: letters, digits, '_' and '/', no digit first");
+    } else if (const auto [same, is_new] = taken.emplace(*name, key); !is_new) {
+      complaints_.add(name_node == nullptr ? node : *name_node,
+                      "found the topic '" + *name + "' for both '" + same->second + "' and '" +
+                          key + "'; expected a topic of its own for each");
+    }
+    *topic = *name;
+  }
+  map.refuse_unknown_keys();
+}
+
+void CellReader::read_dds(const YamlNode& node, Scene& scene) {
+  MapReader map(node, "the dds settings", complaints_);
+  if (const YamlNode* domain = map.optional("domain")) {
+    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", complaints_);
+    scene.domain = static_cast<std::uint32_t>(id.value_or(0));
+  }
+  if (const YamlNode* partition = map.optional("partition")) {
+    scene.partition = read_text(*partition, "a DDS partition", complaints_).value_or("");
+    if (scene.partition.find_first_of("*?[") != std::string::npos ||
+        scene.partition.size() > kMaxDdsName) {
+      complaints_.add(*partition,
+                      "found " + describe(*partition) + "; expected a partition of at most " +
+                          std::to_string(kMaxDdsName) + " bytes without wildcards (* ? [)");
+    }
+  }
+  if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, scene.topics);
+  map.refuse_unknown_keys();
+}
+
+void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities,
+                                        Scene& scene) {
+  ObjectDefaults defaults;
+  if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
+  const YamlNode* objects_node = map.required("objects");
+  const YamlNode* pairs_node = map.required("pairs");
+  const YamlNode* allowed_node = map.optional("allowed_collisions");
+  const YamlNode* zones_node = map.optional("zones");
+  const YamlNode* simulation_node = map.optional("simulation");
+
+  ObjectList list;
+  if (objects_node == nullptr) {
+    list.names_known = false;
+  } else {
+    ShapeReader shapes(quantities, file_.parent_path(), revision_);
+    list = read_objects(*objects_node, defaults, quantities, shapes);
+  }
+  Members members(list, complaints_);
+  PairList pairs;
+  pairs.complete = false;
+  if (pairs_node != nullptr)
+    pairs = read_pairs(*pairs_node, allowed_node, list, members, complaints_);
+  if (zones_node != nullptr)
+    scene.zones = read_zones(*zones_node, list, pairs, members, quantities);
+  if (pairs.complete && list.names_known) members.refuse_unused_groups();
+  if (simulation_node != nullptr)
+    scene.simulation = read_simulation(*simulation_node, list, quantities);
+  scene.pairs = std::move(pairs.pairs);
+  scene.objects = std::move(list.objects);
+}
+
+void CellReader::read(const YamlNode& root, Scene& scene) {
+  MapReader map(root, "a cell", complaints_);
+  if (const YamlNode* name = map.required("name")) {
+    scene.name = read_name(*name, "the cell's name", complaints_).value_or("");
+  }
+  std::optional<Units> units;
+  if (const YamlNode* node = map.required("units")) units = read_units(*node);
+  // Without units the rest is still read, for what else is wrong with it.
+  const Quantities quantities(units.value_or(Units{}), complaints_);
+  read_timing(map, quantities, scene);
+  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
+  read_objects_and_pairs(map, quantities, scene);
+  map.refuse_unknown_keys();
+}
+
+}  // namespace
+
+CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file) {
+  Complaints complaints(file.string());
+  const auto document = parse_yaml(yaml);
+  if (const auto* fault = std::get_if<YamlFault>(&document)) {
+    complaints.add(fault->line, fault->column, fault->reason);
+    return complaints.sorted();
+  }
+  Scene scene;
+  Revision revision;
+  revision.add(yaml);
+  CellReader(file, complaints, revision).read(std::get<YamlNode>(document), scene);
+  if (!complaints.empty()) return complaints.sorted();
+  scene.revision = revision.value();
+  scene.yaml = yaml;
+  return scene;
+}
+
+CellResult read_cell(const std::filesystem::path& file) {
+  const auto bytes = read_bytes(file.string());
+  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+    Complaints complaints(file.string());
+    complaints.add(1, 1, "found no cell file: " + fault->reason + "; expected a YAML file");
+    return complaints.sorted();
+  }
+  return parse_cell(std::get<std::string>(bytes), file);
+}
+
+}  // namespace clearance

@@ -1,0 +1,77 @@
+#include "config/mesh_file.hpp"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+namespace clearance {
+namespace {
+
+Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
+             std::vector<Vec3>& vertices) {
+  const aiMatrix4x4 placed = outer * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;  // stray points and lines are no part of the surface
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+        vertices.push_back(to_vec3(placed * mesh.mVertices[face.mIndices[k]]));
+      }
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    collect(scene, *node.mChildren[i], placed, vertices);
+}
+
+bool lexicographic(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+}  // namespace
+
+std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
+  std::error_code fault;
+  if (std::filesystem::is_directory(path, fault)) return MeshFault{"'" + path + "' is a directory"};
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return MeshFault{"'" + path + "' cannot be opened: " + std::strerror(errno)};
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (stream.bad()) return MeshFault{"'" + path + "' cannot be read: " + std::strerror(errno)};
+  return bytes;
+}
+
+std::variant<std::vector<Vec3>, MeshFault> mesh_vertices(const std::string& bytes,
+                                                         const std::string& extension) {
+  try {
+    Assimp::Importer importer;
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    const std::string hint = extension.substr(extension.empty() || extension[0] != '.' ? 0 : 1);
+    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint.c_str());
+    if (scene == nullptr) return MeshFault{importer.GetErrorString()};
+    std::vector<Vec3> vertices;
+    if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
+    if (vertices.empty()) return MeshFault{"it has no faces"};
+    const bool finite =
+        std::all_of(vertices.begin(), vertices.end(), [](const Vec3& v) { return v.allFinite(); });
+    if (!finite) return MeshFault{"a vertex is not finite"};
+    std::sort(vertices.begin(), vertices.end(), lexicographic);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  } catch (const std::exception& fault) {
+    return MeshFault{fault.what()};
+  }
+}
+
+}  // namespace clearance

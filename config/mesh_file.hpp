@@ -1,0 +1,26 @@
+// Vertices of a mesh file: STL, OBJ, DAE, PLY and what else assimp reads.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+struct MeshFault {
+  std::string reason;
+};
+
+// The bytes of a file, or why there are none.
+[[nodiscard]] std::variant<std::string, MeshFault> read_bytes(const std::string& path);
+
+// Every distinct vertex that a face uses, placed by the file's scene graph, in the file's own unit
+// (for DAE: metres, as its <unit> says) and axes (a DAE's up-axis is ignored, as in ROS). Single
+// precision: that is what assimp keeps. `extension` is the path's, with or without the dot. Files
+// that refer to other files for geometry (a .gltf with a .bin) are refused. Never throws.
+[[nodiscard]] std::variant<std::vector<Vec3>, MeshFault> mesh_vertices(
+    const std::string& bytes, const std::string& extension);
+
+}  // namespace clearance

@@ -1,0 +1,219 @@
+#include "config/object_reader.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
+
+class ObjectReader {
+ public:
+  ObjectReader(const ObjectDefaults& defaults, const Quantities& quantities, ShapeReader& shapes)
+      : defaults_(defaults),
+        quantities_(quantities),
+        complaints_(quantities.complaints()),
+        shapes_(shapes) {}
+
+  // Sets names_known to false when the name or a group cannot be read.
+  Object read(const YamlNode& node, bool& names_known);
+
+ private:
+  void read_groups(const YamlNode& node, Object& object, bool& names_known);
+  void read_parts(MapReader& map, const YamlNode& node, Object& object);
+  void read_part(const YamlNode& node, Object& object);
+  void add_part(const YamlNode& node, NamedShape shape, std::string name, const Pose& pose,
+                Object& object);
+  void read_motion(MapReader& map, Object& object);
+  void forbid(MapReader& map, const std::string& key, const std::string& reason);
+
+  const ObjectDefaults& defaults_;
+  const Quantities& quantities_;
+  Complaints& complaints_;
+  ShapeReader& shapes_;
+};
+
+Object ObjectReader::read(const YamlNode& node, bool& names_known) {
+  Object object;
+  MapReader map(node, "an object", complaints_);
+  const YamlNode* name_node = map.required("name");
+  const auto name =
+      name_node == nullptr ? std::nullopt : read_name(*name_node, "an object's name", complaints_);
+  object.name = name.value_or("");
+  names_known = names_known && name.has_value();
+  if (const YamlNode* groups = map.optional("groups")) read_groups(*groups, object, names_known);
+  if (const YamlNode* fixed = map.optional("fixed")) {
+    object.fixed = read_flag(*fixed, complaints_).value_or(false);
+  }
+  object.margin = defaults_.margin;
+  if (const YamlNode* margin = map.optional("margin")) {
+    object.margin = quantities_.length(*margin, "the margin", kNotNegative).value_or(0.0);
+  }
+  read_motion(map, object);
+  read_parts(map, node, object);
+  map.refuse_unknown_keys();
+  return object;
+}
+
+void ObjectReader::forbid(MapReader& map, const std::string& key, const std::string& reason) {
+  if (const YamlNode* node = map.optional(key)) {
+    complaints_.add(*node, "found '" + key + "' of " + reason);
+  }
+}
+
+// A fixed object has a pose; a moving one has limits on what arrives.
+void ObjectReader::read_motion(MapReader& map, Object& object) {
+  if (object.fixed) {
+    if (const YamlNode* pose = map.optional("pose")) {
+      object.world_from_object = quantities_.pose(*pose).value_or(Pose{});
+    }
+    object.max_speed = 0.0;
+    forbid(map, "max_speed", "a fixed object; expected it of moving objects only");
+    forbid(map, "age_limit_ms", "a fixed object; expected it of moving objects only");
+    return;
+  }
+  forbid(map, "pose",
+         "a moving object; expected it of fixed objects (fixed: true) or of parts: a moving "
+         "object's pose "
+         "arrives on the topic of poses");
+  object.max_speed = defaults_.max_speed;
+  object.age_limit_ns = defaults_.age_limit_ns;
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    object.max_speed = quantities_.speed(*speed, "the largest speed of any point of the object")
+                           .value_or(defaults_.max_speed);
+  }
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    object.age_limit_ns =
+        quantities_.milliseconds(*age, "the age limit", kPositive).value_or(defaults_.age_limit_ns);
+  }
+}
+
+void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
+  if (node.kind != YamlNode::Kind::kSequence) names_known = false;
+  for (const YamlNode& item : read_list(node, "group names", complaints_)) {
+    const auto group = read_name(item, "a group's name", complaints_);
+    if (!group) {
+      names_known = false;
+    } else if (std::find(object.groups.begin(), object.groups.end(), *group) !=
+               object.groups.end()) {
+      complaints_.add(item, "found the group '" + *group + "' again; expected it once an object");
+    } else {
+      object.groups.push_back(*group);
+    }
+  }
+}
+
+// Either `parts:`, or one shape in the object's own frame.
+void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& object) {
+  const YamlNode* parts = map.optional("parts");
+  if (parts == nullptr) {
+    if (auto shape = shapes_.read(map, node)) {
+      std::string name = shape->kind;
+      add_part(*shape->node, std::move(*shape), std::move(name), Pose{}, object);
+    }
+    return;
+  }
+  for (const std::string& kind : ShapeReader::kinds()) {
+    forbid(map, kind, "an object that has 'parts'; expected it inside of one of them");
+  }
+  if (parts->kind == YamlNode::Kind::kSequence && parts->items.empty()) {
+    complaints_.add(*parts, "found an empty list; expected at least one part");
+  }
+  for (const YamlNode& part : read_list(*parts, "parts", complaints_)) read_part(part, object);
+}
+
+void ObjectReader::read_part(const YamlNode& node, Object& object) {
+  MapReader map(node, "a part", complaints_);
+  const YamlNode* name_node = map.optional("name");
+  const YamlNode* pose_node = map.optional("pose");
+  auto shape = shapes_.read(map, node);
+  map.refuse_unknown_keys();
+  std::optional<std::string> name;
+  if (name_node != nullptr) {
+    name = read_name(*name_node, "a part's name", complaints_);
+    const bool taken = name && std::any_of(object.parts.begin(), object.parts.end(),
+                                           [&](const Part& part) { return part.name == *name; });
+    if (taken) {
+      complaints_.add(*name_node,
+                      "found the part name '" + *name + "' again; expected it once an object");
+    }
+  }
+  const Pose pose = pose_node == nullptr ? Pose{} : quantities_.pose(*pose_node).value_or(Pose{});
+  if (!shape) return;
+  std::string own_name = name.value_or(shape->kind + std::to_string(object.parts.size()));
+  add_part(node, std::move(*shape), std::move(own_name), pose, object);
+}
+
+void ObjectReader::add_part(const YamlNode& node, NamedShape shape, std::string name,
+                            const Pose& pose, Object& object) {
+  if (!object.fixed && !shape.shape.bounded()) {
+    complaints_.add(node, "found an unbounded " + shape.kind +
+                              " in a moving object; expected a bounded shape, or fixed: true");
+    return;
+  }
+  object.parts.push_back({std::move(name), std::move(shape.shape), pose});
+}
+
+// Where an object's name stands, or the object when it has none.
+const YamlNode& name_place(const YamlNode& object) {
+  for (const YamlEntry& entry : object.entries) {
+    if (entry.key.text == "name") return entry.value;
+  }
+  return object;
+}
+
+}  // namespace
+
+ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
+  ObjectDefaults defaults;
+  MapReader map(node, "the defaults", quantities.complaints());
+  if (const YamlNode* margin = map.optional("margin")) {
+    defaults.margin = quantities.length(*margin, "the margin", kNotNegative).value_or(0.0);
+  }
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    defaults.max_speed =
+        quantities.speed(*speed, "the largest speed of any point of an object").value_or(kInfinity);
+  }
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    defaults.age_limit_ns =
+        quantities.milliseconds(*age, "the age limit", kPositive).value_or(defaults.age_limit_ns);
+  }
+  map.refuse_unknown_keys();
+  return defaults;
+}
+
+ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
+                        const Quantities& quantities, ShapeReader& shapes) {
+  Complaints& complaints = quantities.complaints();
+  ObjectList list;
+  ObjectReader reader(defaults, quantities, shapes);
+  const std::vector<YamlNode>& items = read_list(node, "objects", complaints);
+  if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
+    complaints.add(node, "found an empty list; expected at least one object");
+  }
+  if (items.size() > kMaxObjects) {
+    complaints.add(items[kMaxObjects],
+                   "found " + std::to_string(items.size()) + " objects; expected at most " +
+                       std::to_string(kMaxObjects) + ", which is what a report can carry");
+  }
+  std::map<std::string, const YamlNode*> first;
+  for (const YamlNode& item : items) {
+    Object object = reader.read(item, list.names_known);
+    const YamlNode& place = name_place(item);
+    if (!object.name.empty()) {
+      if (const auto [same, is_new] = first.emplace(object.name, &place); !is_new) {
+        complaints.add(place, "found the object name '" + object.name +
+                                  "' again; expected it once (first in line " +
+                                  std::to_string(same->second->line) + ")");
+      }
+    }
+    list.objects.push_back(std::move(object));
+    list.places.push_back(&place);
+  }
+  if (node.kind != YamlNode::Kind::kSequence) list.names_known = false;
+  return list;
+}
+
+}  // namespace clearance

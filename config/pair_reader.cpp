@@ -1,0 +1,183 @@
+#include "config/pair_reader.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
+
+class PairReader {
+ public:
+  PairReader(const ObjectList& objects, Members& members, Complaints& complaints)
+      : objects_(objects), members_(members), complaints_(complaints) {}
+
+  void read_rules(const YamlNode& node);
+  void read_exceptions(const YamlNode& node);
+  PairList finish(const YamlNode& rules);
+
+ private:
+  // A watched pair while the exceptions are read.
+  struct Candidate {
+    PairKey key;
+    bool publish;
+    int allowed_line;  // of the exception that removed it; 0: none did
+  };
+
+  void read_rule(const YamlNode& node);
+  void read_exception(const YamlNode& node);
+  Candidate* find(PairKey key);
+  std::string why_nothing(const Between& between, const std::vector<PairKey>& keys);
+  void refuse_unwatched_objects() const;
+
+  const ObjectList& objects_;
+  Members& members_;
+  Complaints& complaints_;
+  std::vector<Candidate> candidates_;
+  bool complete_ = true;
+};
+
+void PairReader::read_rule(const YamlNode& node) {
+  MapReader map(node, "a rule for pairs", complaints_);
+  const auto between = members_.read_between(map);
+  bool publish = true;
+  if (const YamlNode* flag = map.optional("publish")) {
+    publish = read_flag(*flag, complaints_).value_or(true);
+  }
+  map.refuse_unknown_keys();
+  if (!between) {
+    complete_ = false;
+    return;
+  }
+  const std::vector<PairKey> keys = members_.pairs(*between);
+  if (keys.empty()) {
+    complaints_.add(node, "found no pair between '" + between->names[0] + "' and '" +
+                              between->names[1] +
+                              "'; expected at least two different objects, one of them moving");
+  }
+  for (const PairKey key : keys) candidates_.push_back({key, publish, 0});
+}
+
+// The same pair from two rules is one pair, published when either rule says so.
+void PairReader::read_rules(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kSequence && node.items.empty()) {
+    complaints_.add(node, "found an empty list; expected at least one rule: {between: [A, B]}");
+  }
+  for (const YamlNode& item : read_list(node, "rules {between: [A, B]}", complaints_))
+    read_rule(item);
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.key, !a.publish) < std::pair(b.key, !b.publish);
+  });
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
+  candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same), candidates_.end());
+  complete_ = complete_ && node.kind == YamlNode::Kind::kSequence;
+  if (complete_ && objects_.names_known) refuse_unwatched_objects();
+}
+
+void PairReader::refuse_unwatched_objects() const {
+  std::vector<bool> watched(objects_.objects.size(), false);
+  for (const Candidate& candidate : candidates_) {
+    watched[first_of(candidate.key)] = watched[second_of(candidate.key)] = true;
+  }
+  for (std::size_t i = 0; i < watched.size(); ++i) {
+    if (watched[i]) continue;
+    complaints_.add(*objects_.places[i],
+                    "found the object '" + objects_.objects[i].name +
+                        "', which no rule under 'pairs' covers; expected every object "
+                        "to be watched against some other");
+  }
+}
+
+PairReader::Candidate* PairReader::find(PairKey key) {
+  const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), key,
+                                      [](const Candidate& a, PairKey b) { return a.key < b; });
+  return found != candidates_.end() && found->key == key ? &*found : nullptr;
+}
+
+std::string PairReader::why_nothing(const Between& between, const std::vector<PairKey>& keys) {
+  if (keys.empty()) {
+    const bool itself =
+        *between.objects[0] == *between.objects[1] && between.objects[0]->size() == 1;
+    return itself ? "an object has no pair with itself" : "two fixed objects never make a pair";
+  }
+  for (const PairKey key : keys) {
+    if (const Candidate* candidate = find(key)) {
+      return "line " + std::to_string(candidate->allowed_line) + " has already allowed it";
+    }
+  }
+  return "no rule under 'pairs' covers it";
+}
+
+void PairReader::read_exception(const YamlNode& node) {
+  MapReader map(node, "an allowed collision", complaints_);
+  const auto between = members_.read_between(map);
+  const YamlNode* reason_node = map.required("reason");
+  map.refuse_unknown_keys();
+  if (reason_node != nullptr) {
+    const auto reason = read_text(*reason_node, "the reason why these may touch", complaints_);
+    if (reason && reason->find_first_not_of(" \t\n") == std::string::npos) {
+      complaints_.add(*reason_node, "found an empty reason; expected why these may touch");
+    }
+  }
+  if (!between) return;
+  const std::vector<PairKey> keys = members_.pairs(*between);
+  bool removed = false;
+  for (const PairKey key : keys) {
+    Candidate* candidate = find(key);
+    if (candidate == nullptr || candidate->allowed_line != 0) continue;
+    candidate->allowed_line = node.line;
+    removed = true;
+  }
+  if (!removed && complete_) {
+    complaints_.add(node, "found an exception that changes nothing: '" + between->names[0] +
+                              "' against '" + between->names[1] +
+                              "' is not watched anyway, since " + why_nothing(*between, keys) +
+                              "; expected a watched pair, perhaps misspelt here");
+  }
+}
+
+void PairReader::read_exceptions(const YamlNode& node) {
+  for (const YamlNode& item :
+       read_list(node, "exceptions {between: [A, B], reason: ...}", complaints_)) {
+    read_exception(item);
+  }
+}
+
+PairList PairReader::finish(const YamlNode& rules) {
+  PairList list;
+  list.complete = complete_;
+  std::size_t published = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.allowed_line != 0) {
+      list.allowed.push_back(candidate.key);
+      continue;
+    }
+    list.pairs.push_back({first_of(candidate.key), second_of(candidate.key), candidate.publish});
+    published += candidate.publish ? 1 : 0;
+  }
+  if (published > kMaxPublished) {
+    complaints_.add(
+        rules, "found " + std::to_string(published) + " pairs to publish; expected at most " +
+                   std::to_string(kMaxPublished) +
+                   ", which is what a report can carry: put publish: false on some rules (their "
+                   "pairs are watched all the same)");
+  }
+  if (list.pairs.empty() && !candidates_.empty()) {
+    complaints_.add(rules, "found every pair allowed to touch; expected at least one to watch");
+  }
+  return list;
+}
+
+}  // namespace
+
+PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
+                    Members& members, Complaints& complaints) {
+  PairReader reader(objects, members, complaints);
+  reader.read_rules(pairs);
+  if (allowed != nullptr) reader.read_exceptions(*allowed);
+  return reader.finish(pairs);
+}
+
+}  // namespace clearance

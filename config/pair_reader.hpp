@@ -1,0 +1,24 @@
+// Which objects are watched against which: `pairs:`, less `allowed_collisions:`.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "config/members.hpp"
+#include "config/scene.hpp"
+
+namespace clearance {
+
+struct PairList {
+  std::vector<ObjectPair> pairs;  // ascending by first, then second
+  std::vector<PairKey> allowed;   // ascending: pairs that an exception removed
+  bool complete = true;           // false: a rule could not be read, and its pairs are missing
+};
+
+// `allowed` may be nullptr. Complains about rules and exceptions that change nothing, about objects
+// that nothing watches, and about more published pairs than a report can carry.
+[[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
+                                  const ObjectList& objects, Members& members,
+                                  Complaints& complaints);
+
+}  // namespace clearance

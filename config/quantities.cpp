@@ -1,0 +1,198 @@
+#include "config/quantities.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "config/map_reader.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kMaxMilliseconds = 86'400'000.0;  // a day
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// A quaternion typed with this many digits is meant to be a unit one; farther off it is a mistake.
+constexpr double kUnitTolerance = 1e-3;
+
+// N numbers of a list, each checked; nothing when one of them, or their count, is wrong.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers(const YamlNode& node, const std::string& what,
+                                             const std::string& each, const Range& range,
+                                             Complaints& complaints) {
+  if (node.kind != YamlNode::Kind::kSequence || node.items.size() != N) {
+    complaints.add(node, "found " + describe(node) + "; expected " + what + ", a list of " +
+                             std::to_string(N) + " numbers");
+    return std::nullopt;
+  }
+  std::array<double, N> values{};
+  bool good = true;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto value = read_number(node.items[i], range, each, complaints);
+    good = good && value.has_value();
+    values[i] = value.value_or(0.0);
+  }
+  return good ? std::optional(values) : std::nullopt;
+}
+
+const char* word(LengthUnit unit) { return unit == LengthUnit::kMetre ? "m" : "mm"; }
+const char* word(AngleUnit unit) { return unit == AngleUnit::kRadian ? "rad" : "deg"; }
+
+double radians(double value, AngleUnit unit) {
+  return unit == AngleUnit::kRadian ? value : value * kRadPerDeg;
+}
+
+// The turn about one axis, not normalised: right angles in degrees have whole components, so that
+// products of them are exact and parallel faces stay parallel.
+Eigen::Quaterniond turn(double value, AngleUnit unit, const Vec3& axis) {
+  if (unit == AngleUnit::kDegree && std::fmod(value, 90.0) == 0.0) {
+    switch (static_cast<int>(std::fmod(value, 360.0)) / 90) {
+      case 1:
+      case -3:
+        return Eigen::Quaterniond(1.0, axis.x(), axis.y(), axis.z());
+      case 2:
+      case -2:
+        return Eigen::Quaterniond(0.0, axis.x(), axis.y(), axis.z());
+      case 3:
+      case -1:
+        return Eigen::Quaterniond(1.0, -axis.x(), -axis.y(), -axis.z());
+      default:
+        return Eigen::Quaterniond::Identity();
+    }
+  }
+  return Eigen::Quaterniond(Eigen::AngleAxisd(radians(value, unit), axis));
+}
+
+Range within_cell(const Range& range, LengthUnit unit) {
+  const double most = unit == LengthUnit::kMetre ? kMaxLength : kMaxLength * 1000.0;
+  return {std::fmax(range.least, -most), std::fmin(range.most, most), range.above_least};
+}
+
+}  // namespace
+
+std::optional<LengthUnit> read_length_unit(const YamlNode& node, Complaints& complaints) {
+  if (node.kind == YamlNode::Kind::kScalar && node.text == "m") return LengthUnit::kMetre;
+  if (node.kind == YamlNode::Kind::kScalar && node.text == "mm") return LengthUnit::kMillimetre;
+  complaints.add(node, "found " + describe(node) + "; expected the unit of length, m or mm");
+  return std::nullopt;
+}
+
+std::optional<AngleUnit> read_angle_unit(const YamlNode& node, Complaints& complaints) {
+  if (node.kind == YamlNode::Kind::kScalar && node.text == "rad") return AngleUnit::kRadian;
+  if (node.kind == YamlNode::Kind::kScalar && node.text == "deg") return AngleUnit::kDegree;
+  complaints.add(node, "found " + describe(node) + "; expected the unit of angle, rad or deg");
+  return std::nullopt;
+}
+
+// Division rounds once: 300 mm is exactly the double nearest to 0.3.
+double metres(double value, LengthUnit unit) {
+  return unit == LengthUnit::kMetre ? value : value / 1000.0;
+}
+
+std::optional<double> Quantities::length(const YamlNode& node, const std::string& what,
+                                         const Range& range) const {
+  const auto value = read_number(node, within_cell(range, units_.length),
+                                 what + " in " + word(units_.length), complaints_);
+  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+}
+
+std::optional<double> Quantities::angle(const YamlNode& node, const std::string& what) const {
+  const auto value = read_number(node, {}, what + " in " + word(units_.angle), complaints_);
+  return value ? std::optional(radians(*value, units_.angle)) : std::nullopt;
+}
+
+std::optional<double> Quantities::speed(const YamlNode& node, const std::string& what) const {
+  const auto value =
+      read_number(node, kPositive, what + " in " + word(units_.length) + "/s", complaints_);
+  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+}
+
+std::optional<std::int64_t> Quantities::milliseconds(const YamlNode& node, const std::string& what,
+                                                     const Range& range) const {
+  const Range limited{range.least, std::fmin(range.most, kMaxMilliseconds), range.above_least};
+  const auto value = read_number(node, limited, what + " in ms", complaints_);
+  return value ? std::optional<std::int64_t>(std::llround(*value * 1e6)) : std::nullopt;
+}
+
+std::optional<Vec3> Quantities::lengths(const YamlNode& node, const std::string& what,
+                                        const Range& range) const {
+  const std::string unit = word(units_.length);
+  const auto values = numbers<3>(node, what + " in " + unit, "a length in " + unit,
+                                 within_cell(range, units_.length), complaints_);
+  if (!values) return std::nullopt;
+  return Vec3(metres((*values)[0], units_.length), metres((*values)[1], units_.length),
+              metres((*values)[2], units_.length));
+}
+
+std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& what) const {
+  const std::string unit = word(units_.angle);
+  const auto values =
+      numbers<3>(node, what + " in " + unit, "an angle in " + unit, {}, complaints_);
+  if (!values) return std::nullopt;
+  return Vec3(radians((*values)[0], units_.angle), radians((*values)[1], units_.angle),
+              radians((*values)[2], units_.angle));
+}
+
+std::optional<Eigen::Vector2d> Quantities::lengths_2d(const YamlNode& node,
+                                                      const std::string& what) const {
+  const std::string unit = word(units_.length);
+  const auto values = numbers<2>(node, what + " in " + unit, "a length in " + unit,
+                                 within_cell({}, units_.length), complaints_);
+  if (!values) return std::nullopt;
+  return Eigen::Vector2d(metres((*values)[0], units_.length), metres((*values)[1], units_.length));
+}
+
+std::optional<Vec3> Quantities::direction(const YamlNode& node, const std::string& what) const {
+  const auto values = numbers<3>(node, what, "a number", {}, complaints_);
+  if (!values) return std::nullopt;
+  const Vec3 direction((*values)[0], (*values)[1], (*values)[2]);
+  if (direction == Vec3::Zero()) {
+    complaints_.add(node, "found only zeros; expected " + what + ", a direction");
+    return std::nullopt;
+  }
+  return direction;
+}
+
+std::optional<Eigen::Quaterniond> Quantities::rpy(const YamlNode& node) const {
+  const std::string unit = word(units_.angle);
+  const auto values =
+      numbers<3>(node, "roll, pitch and yaw in " + unit, "an angle in " + unit, {}, complaints_);
+  if (!values) return std::nullopt;
+  const Eigen::Quaterniond product = turn((*values)[2], units_.angle, Vec3::UnitZ()) *
+                                     turn((*values)[1], units_.angle, Vec3::UnitY()) *
+                                     turn((*values)[0], units_.angle, Vec3::UnitX());
+  return product.normalized();
+}
+
+std::optional<Eigen::Quaterniond> Quantities::quaternion(const YamlNode& node) const {
+  const auto values = numbers<4>(node, "a unit quaternion x, y, z, w", "a number", {}, complaints_);
+  if (!values) return std::nullopt;
+  const Eigen::Quaterniond found((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
+  if (!(std::fabs(found.norm() - 1.0) <= kUnitTolerance)) {
+    complaints_.add(node, "found a quaternion of length " + std::to_string(found.norm()) +
+                              "; expected a unit quaternion x, y, z, w");
+    return std::nullopt;
+  }
+  return found.normalized();
+}
+
+std::optional<Pose> Quantities::pose(const YamlNode& node) const {
+  const std::size_t before = complaints_.count();
+  MapReader map(node, "a pose", complaints_);
+  const YamlNode* xyz = map.optional("xyz");
+  const YamlNode* angles_node = map.optional("rpy");
+  const YamlNode* quaternion_node = map.optional("quaternion");
+  map.refuse_unknown_keys();
+  if (angles_node != nullptr && quaternion_node != nullptr) {
+    complaints_.add(*quaternion_node, "found a quaternion beside rpy; expected one of the two");
+  }
+  Pose pose;
+  if (xyz != nullptr) pose.position = lengths(*xyz, "a position").value_or(Vec3::Zero());
+  if (angles_node != nullptr) pose.orientation = rpy(*angles_node).value_or(pose.orientation);
+  if (quaternion_node != nullptr) {
+    pose.orientation = quaternion(*quaternion_node).value_or(pose.orientation);
+  }
+  return complaints_.count() == before ? std::optional(pose) : std::nullopt;
+}
+
+}  // namespace clearance

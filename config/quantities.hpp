@@ -1,0 +1,77 @@
+// Lengths, angles, directions and poses of a cell file, in the units that it states; out comes SI.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "config/complaints.hpp"
+#include "config/scalar.hpp"
+#include "config/yaml_node.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
+enum class AngleUnit : std::uint8_t { kRadian, kDegree };
+
+// No coordinate of a cell may be larger: what is larger is a mistake of units.
+inline constexpr double kMaxLength = 1e6;  // m
+
+struct Units {
+  LengthUnit length = LengthUnit::kMetre;
+  AngleUnit angle = AngleUnit::kRadian;
+};
+
+// "m" or "mm"; "rad" or "deg". Nothing after a complaint.
+[[nodiscard]] std::optional<LengthUnit> read_length_unit(const YamlNode& node,
+                                                         Complaints& complaints);
+[[nodiscard]] std::optional<AngleUnit> read_angle_unit(const YamlNode& node,
+                                                       Complaints& complaints);
+
+[[nodiscard]] double metres(double value, LengthUnit unit);
+
+// Every reading function returns nothing after a complaint. `what` says what the quantity is: "the
+// radius".
+class Quantities {
+ public:
+  Quantities(const Units& units, Complaints& complaints) : units_(units), complaints_(complaints) {}
+
+  [[nodiscard]] const Units& units() const { return units_; }
+  [[nodiscard]] Complaints& complaints() const { return complaints_; }
+
+  // The range is in the unit of the file.
+  [[nodiscard]] std::optional<double> length(const YamlNode& node, const std::string& what,
+                                             const Range& range = {}) const;  // m
+  [[nodiscard]] std::optional<double> angle(const YamlNode& node,
+                                            const std::string& what) const;  // rad
+  [[nodiscard]] std::optional<double> speed(const YamlNode& node,
+                                            const std::string& what) const;  // m/s
+  // At most a day; ns.
+  [[nodiscard]] std::optional<std::int64_t> milliseconds(const YamlNode& node,
+                                                         const std::string& what,
+                                                         const Range& range) const;
+
+  [[nodiscard]] std::optional<Vec3> lengths(const YamlNode& node, const std::string& what,
+                                            const Range& range = {}) const;  // m
+  [[nodiscard]] std::optional<Vec3> angles(const YamlNode& node,
+                                           const std::string& what) const;  // rad
+  [[nodiscard]] std::optional<Eigen::Vector2d> lengths_2d(const YamlNode& node,
+                                                          const std::string& what) const;  // m
+  // Numbers without a unit, not all zero; not normalised.
+  [[nodiscard]] std::optional<Vec3> direction(const YamlNode& node, const std::string& what) const;
+
+  // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each may be
+  // absent. rpy turns about the fixed axes x, then y, then z, as in URDF. Right angles in degrees
+  // are exact.
+  [[nodiscard]] std::optional<Pose> pose(const YamlNode& node) const;
+
+ private:
+  [[nodiscard]] std::optional<Eigen::Quaterniond> rpy(const YamlNode& node) const;
+  [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion(const YamlNode& node) const;
+
+  Units units_;
+  Complaints& complaints_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,24 @@
+// FNV-1a, 64 bit: what tells two scenes apart.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace clearance {
+
+class Revision {
+ public:
+  void add(std::string_view bytes) noexcept {
+    for (const char byte : bytes) {
+      hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+    }
+  }
+
+  // Never 0: on the wire that means "not checked".
+  [[nodiscard]] std::uint64_t value() const noexcept { return hash_ == 0 ? 1 : hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace clearance

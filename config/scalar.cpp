@@ -1,0 +1,163 @@
+#include "config/scalar.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <system_error>
+
+#include "config/complaints.hpp"
+
+namespace clearance {
+namespace {
+
+// The longest name that the wire carries (idl/clearance.idl, ZoneState::name).
+constexpr std::size_t kMaxName = 64;
+
+struct Parsed {
+  double value = 0.0;
+  bool number = false;    // the whole text is one
+  bool in_range = false;  // of a double
+};
+
+bool is_special(const std::string& text, const std::string& lower, const std::string& title,
+                const std::string& upper) {
+  return text == lower || text == title || text == upper;
+}
+
+Parsed parse_number(const std::string& text) {
+  std::string unsigned_text = text;
+  if (!text.empty() && (text[0] == '+' || text[0] == '-')) unsigned_text.erase(0, 1);
+  if (is_special(unsigned_text, ".inf", ".Inf", ".INF")) {
+    return {text[0] == '-' ? -HUGE_VAL : HUGE_VAL, true, true};
+  }
+  if (is_special(text, ".nan", ".NaN", ".NAN")) return {std::nan(""), true, true};
+  // from_chars would also take "inf", "nan" and a second sign; a YAML number begins with a digit or
+  // a dot.
+  if (unsigned_text.empty() ||
+      !(std::isdigit(static_cast<unsigned char>(unsigned_text[0])) || unsigned_text[0] == '.')) {
+    return {};
+  }
+  double value = 0.0;
+  const char* end = unsigned_text.data() + unsigned_text.size();
+  const auto result = std::from_chars(unsigned_text.data(), end, value);
+  if (result.ec == std::errc::invalid_argument || result.ptr != end) return {};
+  return {text[0] == '-' ? -value : value, true, result.ec == std::errc()};
+}
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string expectation(const std::string& what, const Range& range) {
+  std::string text = what;
+  if (std::isfinite(range.least)) {
+    text += (range.above_least ? ", more than " : ", at least ") + shown(range.least);
+  }
+  if (std::isfinite(range.most)) text += ", at most " + shown(range.most);
+  return text;
+}
+
+// "12 mm" is a number and then some: say what to do about it.
+std::string number_hint(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return "";
+  if (node.quoted && parse_number(node.text).number) return " (without the quotes)";
+  double value = 0.0;
+  const char* end = node.text.data() + node.text.size();
+  const auto result = std::from_chars(node.text.data(), end, value);
+  if (result.ec == std::errc() && result.ptr != end &&
+      !std::isalpha(static_cast<unsigned char>(node.text[0]))) {
+    return " (a bare number: units are stated once, under 'units')";
+  }
+  return "";
+}
+
+}  // namespace
+
+ScalarType scalar_type(const YamlNode& scalar) {
+  if (scalar.quoted) return ScalarType::kText;
+  if (is_special(scalar.text, "true", "True", "TRUE") ||
+      is_special(scalar.text, "false", "False", "FALSE")) {
+    return ScalarType::kFlag;
+  }
+  return parse_number(scalar.text).number ? ScalarType::kNumber : ScalarType::kText;
+}
+
+std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
+                                  Complaints& complaints) {
+  const std::string expected = "; expected " + expectation(what, range);
+  if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
+    complaints.add(node, "found " + describe(node) + expected + number_hint(node));
+    return std::nullopt;
+  }
+  const Parsed parsed = parse_number(node.text);
+  if (!std::isfinite(parsed.value) || !parsed.in_range) {
+    complaints.add(node, "found " + describe(node) + ", which is not a finite number" + expected);
+    return std::nullopt;
+  }
+  const bool too_small =
+      range.above_least ? parsed.value <= range.least : parsed.value < range.least;
+  if (too_small || parsed.value > range.most) {
+    complaints.add(node, "found " + describe(node) + expected);
+    return std::nullopt;
+  }
+  return parsed.value;
+}
+
+std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
+                                         std::int64_t most, const std::string& what,
+                                         Complaints& complaints) {
+  std::int64_t value = 0;
+  const char* end = node.text.data() + node.text.size();
+  const bool scalar = node.kind == YamlNode::Kind::kScalar && !node.quoted;
+  const auto result = std::from_chars(node.text.data(), end, value);
+  if (!scalar || result.ec != std::errc() || result.ptr != end || value < least || value > most) {
+    complaints.add(node, "found " + describe(node) + "; expected " + what +
+                             ", a whole number from " + std::to_string(least) + " to " +
+                             std::to_string(most));
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<bool> read_flag(const YamlNode& node, Complaints& complaints) {
+  if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kFlag) {
+    complaints.add(node, "found " + describe(node) + "; expected true or false");
+    return std::nullopt;
+  }
+  return node.text[0] == 't' || node.text[0] == 'T';
+}
+
+std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
+                                     Complaints& complaints) {
+  if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kText) {
+    const bool quotable = node.kind == YamlNode::Kind::kScalar;
+    complaints.add(
+        node, "found " + describe(node) + "; expected " + what +
+                  (quotable ? " (if it is meant as text, quote it: \"" + node.text + "\")" : ""));
+    return std::nullopt;
+  }
+  return node.text;
+}
+
+std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
+                                     Complaints& complaints) {
+  const auto text = read_text(node, what, complaints);
+  if (!text) return std::nullopt;
+  const bool bad_byte = std::any_of(text->begin(), text->end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
+  });
+  const bool blank_ends = !text->empty() && (text->front() == ' ' || text->back() == ' ');
+  if (text->empty() || text->size() > kMaxName || bad_byte || blank_ends) {
+    complaints.add(node,
+                   "found " + describe(node) + "; expected " + what + ": 1 to " +
+                       std::to_string(kMaxName) +
+                       " bytes without commas, quotes, control characters or blanks at its ends");
+    return std::nullopt;
+  }
+  return text;
+}
+
+}  // namespace clearance

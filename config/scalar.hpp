@@ -1,0 +1,44 @@
+// One value of a cell file that is neither list nor map: a number, a truth value, or a text.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "config/yaml_node.hpp"
+
+namespace clearance {
+
+class Complaints;
+
+enum class ScalarType { kNumber, kFlag, kText };
+
+// What an unquoted scalar is by the core schema of YAML 1.2; a quoted one is always text.
+[[nodiscard]] ScalarType scalar_type(const YamlNode& scalar);
+
+// Which numbers are accepted.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool above_least = false;  // `least` itself is not accepted
+};
+inline constexpr Range kPositive{.least = 0.0, .above_least = true};
+inline constexpr Range kNotNegative{.least = 0.0};
+
+// Each returns nothing after a complaint. `what` finishes "expected ...": "a length in mm".
+[[nodiscard]] std::optional<double> read_number(const YamlNode& node, const Range& range,
+                                                const std::string& what, Complaints& complaints);
+[[nodiscard]] std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
+                                                       std::int64_t most, const std::string& what,
+                                                       Complaints& complaints);
+[[nodiscard]] std::optional<bool> read_flag(const YamlNode& node, Complaints& complaints);
+[[nodiscard]] std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
+                                                   Complaints& complaints);
+
+// A name that people and CSV files can hold: 1 to 64 bytes, no control characters, commas, quotes,
+// nor blanks at its ends.
+[[nodiscard]] std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
+                                                   Complaints& complaints);
+
+}  // namespace clearance

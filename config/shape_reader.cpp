@@ -1,0 +1,253 @@
+#include "config/shape_reader.hpp"
+
+#include <array>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "config/mesh_file.hpp"
+#include "config/spelling.hpp"
+
+namespace clearance {
+namespace {
+
+const std::array<std::string, 7> kKinds = {"box",        "sphere",     "capsule", "prism",
+                                           "polyhedron", "half_space", "mesh"};
+
+// A mesh's own coordinates to metres.
+std::vector<Vec3> scaled(const std::vector<Vec3>& vertices, const Vec3& scale, LengthUnit unit) {
+  std::vector<Vec3> placed;
+  placed.reserve(vertices.size());
+  for (const Vec3& v : vertices) {
+    placed.emplace_back(metres(v.x() * scale.x(), unit), metres(v.y() * scale.y(), unit),
+                        metres(v.z() * scale.z(), unit));
+  }
+  return placed;
+}
+
+}  // namespace
+
+std::span<const std::string> ShapeReader::kinds() { return kKinds; }
+
+std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
+  NamedShape found{"", nullptr, {}};
+  for (const std::string& kind : kKinds) {
+    const YamlNode* node = map.optional(kind);
+    if (node == nullptr) continue;
+    if (found.node != nullptr) {
+      quantities_.complaints().add(
+          *node, "found '" + kind + "' beside '" + found.kind + "'; expected one shape a part");
+      return std::nullopt;
+    }
+    found.kind = kind;
+    found.node = node;
+  }
+  if (found.node == nullptr) {
+    if (map.is_map()) {
+      quantities_.complaints().add(at, "found no shape; expected one of " + one_of(kKinds));
+    }
+    return std::nullopt;
+  }
+  std::optional<ShapeResult> result = read_kind(found.kind, *found.node);
+  if (!result) return std::nullopt;
+  if (const auto* error = std::get_if<ShapeError>(&*result)) {
+    quantities_.complaints().add(
+        *found.node,
+        "found a " + found.kind + " that is not a solid convex body: " + error->reason);
+    return std::nullopt;
+  }
+  found.shape = std::get<ConvexPolyhedron>(std::move(*result));
+  return found;
+}
+
+std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const YamlNode& node) {
+  if (kind == "box") return read_box(node);
+  if (kind == "sphere") return read_sphere(node);
+  if (kind == "capsule") return read_capsule(node);
+  if (kind == "prism") return read_prism(node);
+  if (kind == "polyhedron") return read_polyhedron(node);
+  if (kind == "half_space") return read_half_space(node);
+  return read_mesh(node);
+}
+
+std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
+  MapReader map(node, "a box", quantities_.complaints());
+  const YamlNode* size_node = map.required("size");
+  map.refuse_unknown_keys();
+  if (size_node == nullptr) return std::nullopt;
+  const auto size = quantities_.lengths(*size_node, "the box's edge lengths", kPositive);
+  return size ? std::optional(box(0.5 * *size)) : std::nullopt;
+}
+
+std::optional<ShapeResult> ShapeReader::read_sphere(const YamlNode& node) const {
+  MapReader map(node, "a sphere", quantities_.complaints());
+  const YamlNode* radius_node = map.required("radius");
+  const YamlNode* centre_node = map.optional("centre");
+  map.refuse_unknown_keys();
+  std::optional<double> radius;
+  std::optional<Vec3> centre = Vec3(Vec3::Zero());
+  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kPositive);
+  if (centre_node != nullptr) centre = quantities_.lengths(*centre_node, "the sphere's centre");
+  if (!radius || !centre) return std::nullopt;
+  return point(*centre, *radius);
+}
+
+std::optional<ShapeResult> ShapeReader::read_capsule(const YamlNode& node) const {
+  MapReader map(node, "a capsule", quantities_.complaints());
+  const YamlNode* from_node = map.required("from");
+  const YamlNode* to_node = map.required("to");
+  const YamlNode* radius_node = map.required("radius");
+  map.refuse_unknown_keys();
+  std::optional<Vec3> from, to;
+  std::optional<double> radius;
+  if (from_node != nullptr) from = quantities_.lengths(*from_node, "one end of the capsule's axis");
+  if (to_node != nullptr) to = quantities_.lengths(*to_node, "the other end of the capsule's axis");
+  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kPositive);
+  if (!from || !to || !radius) return std::nullopt;
+  return segment(*from, *to, *radius);
+}
+
+std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
+  MapReader map(node, "a prism", quantities_.complaints());
+  const YamlNode* base_node = map.required("base");
+  const YamlNode* z_node = map.required("z");
+  map.refuse_unknown_keys();
+  if (base_node == nullptr || z_node == nullptr) return std::nullopt;
+  std::vector<Eigen::Vector2d> base;
+  const auto& corners = read_list(*base_node, "corners [x, y]", quantities_.complaints());
+  for (const YamlNode& corner : corners) {
+    if (const auto xy = quantities_.lengths_2d(corner, "a corner [x, y]")) base.push_back(*xy);
+  }
+  const auto z = quantities_.lengths_2d(*z_node, "the prism's lower and upper z");
+  if (!z || base.empty() || base.size() != corners.size()) return std::nullopt;
+  return prism(base, z->x(), z->y());
+}
+
+std::optional<HalfSpace> ShapeReader::read_row(const YamlNode& node) const {
+  Complaints& complaints = quantities_.complaints();
+  MapReader map(node, "a half-space", complaints);
+  const YamlNode* normal_node = map.required("normal");
+  const YamlNode* offset_node = map.optional("offset");
+  const YamlNode* through_node = map.optional("through");
+  map.refuse_unknown_keys();
+  if (map.is_map() && (offset_node == nullptr) == (through_node == nullptr)) {
+    complaints.add(node, std::string("found ") + (offset_node == nullptr ? "neither" : "both") +
+                             " of 'offset' and 'through'; expected one of the two");
+    return std::nullopt;
+  }
+  std::optional<Vec3> normal;
+  if (normal_node != nullptr) normal = quantities_.direction(*normal_node, "the outward normal");
+  if (through_node != nullptr) {
+    const auto through = quantities_.lengths(*through_node, "a point of the plane");
+    if (!normal || !through) return std::nullopt;
+    return HalfSpace{*normal, normal->dot(*through)};
+  }
+  std::optional<double> offset;
+  if (offset_node != nullptr) {
+    offset = quantities_.length(*offset_node, "the offset d of normal . x <= d,");
+  }
+  if (!normal || !offset) return std::nullopt;
+  return HalfSpace{*normal, *offset};
+}
+
+std::optional<ShapeResult> ShapeReader::read_half_space(const YamlNode& node) const {
+  const auto row = read_row(node);
+  return row ? std::optional(polyhedron_from_halfspaces(std::array{*row})) : std::nullopt;
+}
+
+std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) const {
+  Complaints& complaints = quantities_.complaints();
+  MapReader map(node, "a polyhedron", complaints);
+  const YamlNode* vertices_node = map.optional("vertices");
+  const YamlNode* rows_node = map.optional("half_spaces");
+  map.refuse_unknown_keys();
+  if (map.is_map() && (vertices_node == nullptr) == (rows_node == nullptr)) {
+    complaints.add(node, std::string("found ") + (rows_node == nullptr ? "neither" : "both") +
+                             " of 'vertices' and 'half_spaces'; expected one of the two");
+    return std::nullopt;
+  }
+  const std::size_t before = complaints.count();
+  if (vertices_node != nullptr) {
+    std::vector<Vec3> vertices;
+    for (const YamlNode& item : read_list(*vertices_node, "vertices [x, y, z]", complaints)) {
+      if (const auto vertex = quantities_.lengths(item, "a vertex")) vertices.push_back(*vertex);
+    }
+    if (complaints.count() != before) return std::nullopt;
+    return polyhedron_from_vertices(vertices);
+  }
+  if (rows_node == nullptr) return std::nullopt;
+  std::vector<HalfSpace> rows;
+  for (const YamlNode& item : read_list(*rows_node, "half-spaces {normal, offset}", complaints)) {
+    if (const auto row = read_row(item)) rows.push_back(*row);
+  }
+  if (complaints.count() != before) return std::nullopt;
+  return polyhedron_from_halfspaces(rows);
+}
+
+Vec3 ShapeReader::read_scale(const YamlNode* node) const {
+  if (node == nullptr) return Vec3::Ones();
+  if (node->kind != YamlNode::Kind::kSequence) {
+    const auto scale =
+        read_number(*node, kPositive, "a scale, or a list of 3", quantities_.complaints());
+    return Vec3::Constant(scale.value_or(1.0));
+  }
+  const Vec3 scale =
+      quantities_.direction(*node, "the scale along x, y and z").value_or(Vec3::Ones());
+  if ((scale.array() == 0.0).any()) {
+    quantities_.complaints().add(*node, "found a scale of 0; expected no zeros");
+  }
+  return scale;
+}
+
+const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std::string& file) {
+  const std::filesystem::path path = directory_ / file;
+  const auto [entry, is_new] = meshes_.try_emplace(path.string());
+  std::optional<std::vector<Vec3>>& vertices = entry->second;
+  if (is_new) {
+    const auto bytes = read_bytes(path.string());
+    if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+      quantities_.complaints().add(file_node,
+                                   "found a mesh file that cannot be used: " + fault->reason +
+                                       "; expected a path relative to the cell file");
+      return nullptr;
+    }
+    revision_.add(std::get<std::string>(bytes));
+    auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
+    if (const auto* fault = std::get_if<MeshFault>(&result)) {
+      quantities_.complaints().add(file_node, "found a mesh file that cannot be used: '" +
+                                                  path.string() + "': " + fault->reason);
+      return nullptr;
+    }
+    vertices = std::get<std::vector<Vec3>>(std::move(result));
+  }
+  return vertices ? &*vertices : nullptr;
+}
+
+std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
+  Complaints& complaints = quantities_.complaints();
+  MapReader map(node, "a mesh", complaints);
+  const YamlNode* file_node = map.required("file");
+  const YamlNode* scale_node = map.optional("scale");
+  const YamlNode* unit_node = map.optional("unit");
+  map.refuse_unknown_keys();
+  const std::size_t before = complaints.count();
+  const Vec3 scale = read_scale(scale_node);
+  LengthUnit unit = quantities_.units().length;
+  if (unit_node != nullptr) unit = read_length_unit(*unit_node, complaints).value_or(unit);
+  if (file_node == nullptr) return std::nullopt;
+  const auto file = read_text(*file_node, "the path of a mesh file", complaints);
+  const std::vector<Vec3>* vertices = file ? load(*file_node, *file) : nullptr;
+  if (vertices == nullptr || complaints.count() != before) return std::nullopt;
+
+  const std::vector<Vec3> placed = scaled(*vertices, scale, unit);
+  for (const Vec3& vertex : placed) {
+    if (!(vertex.cwiseAbs().maxCoeff() <= kMaxLength)) {
+      complaints.add(node,
+                     "found a vertex farther than 1000 km away; expected another unit or scale");
+      return std::nullopt;
+    }
+  }
+  return polyhedron_from_vertices(placed);
+}
+
+}  // namespace clearance

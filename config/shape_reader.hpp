@@ -1,0 +1,55 @@
+// Reads the convex shapes of a cell file: what stands under `box:`, `mesh:` and their like.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "config/map_reader.hpp"
+#include "config/quantities.hpp"
+#include "config/revision.hpp"
+#include "core/shapes.hpp"
+
+namespace clearance {
+
+struct NamedShape {
+  std::string kind;  // the key: "box"
+  const YamlNode* node;
+  ConvexPolyhedron shape;
+};
+
+class ShapeReader {
+ public:
+  // Mesh paths are relative to `directory`; the bytes of every mesh go into `revision` once.
+  ShapeReader(const Quantities& quantities, std::filesystem::path directory, Revision& revision)
+      : quantities_(quantities), directory_(std::move(directory)), revision_(revision) {}
+
+  // "box", "sphere", ...: the keys of which a part has exactly one.
+  [[nodiscard]] static std::span<const std::string> kinds();
+
+  // Reads the one shape among the keys of `map`; complains when there is none, or more, or a bad
+  // one. `at` is the map's own node.
+  [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
+
+ private:
+  std::optional<ShapeResult> read_kind(const std::string& kind, const YamlNode& node);
+  std::optional<ShapeResult> read_box(const YamlNode& node) const;
+  std::optional<ShapeResult> read_sphere(const YamlNode& node) const;
+  std::optional<ShapeResult> read_capsule(const YamlNode& node) const;
+  std::optional<ShapeResult> read_prism(const YamlNode& node) const;
+  std::optional<ShapeResult> read_half_space(const YamlNode& node) const;
+  std::optional<ShapeResult> read_polyhedron(const YamlNode& node) const;
+  std::optional<ShapeResult> read_mesh(const YamlNode& node);
+  std::optional<HalfSpace> read_row(const YamlNode& node) const;
+  Vec3 read_scale(const YamlNode* node) const;
+  const std::vector<Vec3>* load(const YamlNode& file_node, const std::string& file);
+
+  const Quantities& quantities_;
+  std::filesystem::path directory_;
+  Revision& revision_;
+  std::map<std::string, std::optional<std::vector<Vec3>>> meshes_;  // by path; nothing: a bad one
+};
+
+}  // namespace clearance

@@ -1,0 +1,180 @@
+#include "config/simulation_reader.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/map_reader.hpp"
+#include "config/spelling.hpp"
+
+namespace clearance {
+namespace {
+
+class SimulationReader {
+ public:
+  SimulationReader(const ObjectList& list, const Quantities& quantities)
+      : list_(list), quantities_(quantities), complaints_(quantities.complaints()) {}
+
+  SimulatedChain read_chain(const YamlNode& node);
+  SimulatedMover read_mover(const YamlNode& node);
+
+ private:
+  SimulatedJoint read_joint(const YamlNode& node);
+  Swing read_swing(MapReader& map, JointKind kind) const;
+  JointKind read_kind(MapReader& map) const;
+  std::optional<std::uint32_t> read_object(const YamlNode& node);
+  double read_frequency(const YamlNode& node) const;
+  Pose read_pose(const YamlNode* node) const;
+
+  const ObjectList& list_;
+  const Quantities& quantities_;
+  Complaints& complaints_;
+  std::map<std::uint32_t, int> moved_in_line_;
+};
+
+Pose SimulationReader::read_pose(const YamlNode* node) const {
+  return node == nullptr ? Pose{} : quantities_.pose(*node).value_or(Pose{});
+}
+
+double SimulationReader::read_frequency(const YamlNode& node) const {
+  return read_number(node, kNotNegative, "a frequency in Hz", complaints_).value_or(0.0);
+}
+
+// A moving object that nothing else of the simulation moves.
+std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node) {
+  const auto name = read_name(node, "an object's name", complaints_);
+  if (!name) return std::nullopt;
+  std::vector<std::string> names;
+  for (const Object& object : list_.objects) names.push_back(object.name);
+  const auto found = std::find(names.begin(), names.end(), *name);
+  if (found == names.end()) {
+    if (list_.names_known) {
+      complaints_.add(node, "found the unknown object '" + *name + "'; expected one of the cell's" +
+                                did_you_mean(*name, names));
+    }
+    return std::nullopt;
+  }
+  const auto index = static_cast<std::uint32_t>(found - names.begin());
+  if (list_.objects[index].fixed) {
+    complaints_.add(node, "found the fixed object '" + *name + "'; expected a moving one");
+  } else if (const auto [same, is_new] = moved_in_line_.emplace(index, node.line); !is_new) {
+    complaints_.add(node, "found the object '" + *name +
+                              "' again; expected it to be moved once (first in line " +
+                              std::to_string(same->second) + ")");
+  }
+  return index;
+}
+
+JointKind SimulationReader::read_kind(MapReader& map) const {
+  const YamlNode* node = map.optional("type");
+  if (node == nullptr) return JointKind::kRevolute;
+  const auto text = read_text(*node, "revolute or prismatic", complaints_);
+  if (text && *text != "revolute" && *text != "prismatic") {
+    complaints_.add(*node, "found " + describe(*node) + "; expected revolute or prismatic");
+  }
+  return text == "prismatic" ? JointKind::kPrismatic : JointKind::kRevolute;
+}
+
+// Centre and amplitude are angles of a revolute joint, lengths of a prismatic one.
+Swing SimulationReader::read_swing(MapReader& map, JointKind kind) const {
+  const auto value = [&](const char* key) {
+    const YamlNode* node = map.optional(key);
+    if (node == nullptr) return 0.0;
+    const std::string what = std::string("the joint's ") + key;
+    return (kind == JointKind::kRevolute ? quantities_.angle(*node, what)
+                                         : quantities_.length(*node, what))
+        .value_or(0.0);
+  };
+  Swing swing;
+  swing.centre = value("centre");
+  swing.amplitude = value("amplitude");
+  if (const YamlNode* node = map.optional("frequency_hz"))
+    swing.frequency_hz = read_frequency(*node);
+  if (const YamlNode* node = map.optional("phase")) {
+    swing.phase = quantities_.angle(*node, "the phase").value_or(0.0);
+  }
+  return swing;
+}
+
+SimulatedJoint SimulationReader::read_joint(const YamlNode& node) {
+  SimulatedJoint joint;
+  MapReader map(node, "a joint", complaints_);
+  if (const YamlNode* objects = map.optional("objects")) {
+    for (const YamlNode& item : read_list(*objects, "objects that ride on the link", complaints_)) {
+      if (const auto object = read_object(item)) joint.objects.push_back(*object);
+    }
+  }
+  joint.parent_from_joint = read_pose(map.optional("origin"));
+  if (const YamlNode* axis = map.optional("axis")) {
+    joint.axis =
+        quantities_.direction(*axis, "the joint's axis").value_or(Vec3::UnitZ()).normalized();
+  }
+  joint.kind = read_kind(map);
+  joint.motion = read_swing(map, joint.kind);
+  map.refuse_unknown_keys();
+  return joint;
+}
+
+SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
+  SimulatedChain chain;
+  MapReader map(node, "a chain", complaints_);
+  if (const YamlNode* name = map.required("name")) {
+    chain.name = read_name(*name, "a chain's name", complaints_).value_or("");
+  }
+  chain.world_from_base = read_pose(map.optional("base"));
+  if (const YamlNode* joints = map.required("joints")) {
+    for (const YamlNode& joint : read_list(*joints, "joints", complaints_)) {
+      chain.joints.push_back(read_joint(joint));
+    }
+  }
+  map.refuse_unknown_keys();
+  return chain;
+}
+
+SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
+  SimulatedMover mover;
+  MapReader map(node, "a mover", complaints_);
+  if (const YamlNode* object = map.required("object"))
+    mover.object = read_object(*object).value_or(0);
+  mover.centre = read_pose(map.optional("centre"));
+  if (const YamlNode* amplitude = map.optional("amplitude")) {
+    mover.amplitude =
+        quantities_.lengths(*amplitude, "the swing's amplitude").value_or(Vec3::Zero());
+  }
+  if (const YamlNode* frequency = map.optional("frequency_hz"))
+    mover.frequency_hz = read_frequency(*frequency);
+  if (const YamlNode* phase = map.optional("phase")) {
+    mover.phase = quantities_.angle(*phase, "the phase").value_or(0.0);
+  }
+  if (const YamlNode* spin = map.optional("spin")) {
+    mover.spin = quantities_.angles(*spin, "the spin a second").value_or(Vec3::Zero());
+  }
+  map.refuse_unknown_keys();
+  return mover;
+}
+
+}  // namespace
+
+Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
+                           const Quantities& quantities) {
+  Complaints& complaints = quantities.complaints();
+  Simulation simulation;
+  SimulationReader reader(objects, quantities);
+  MapReader map(node, "the simulation", complaints);
+  if (const YamlNode* chains = map.optional("chains")) {
+    for (const YamlNode& chain : read_list(*chains, "chains", complaints)) {
+      simulation.chains.push_back(reader.read_chain(chain));
+    }
+  }
+  if (const YamlNode* movers = map.optional("movers")) {
+    for (const YamlNode& mover : read_list(*movers, "movers", complaints)) {
+      simulation.movers.push_back(reader.read_mover(mover));
+    }
+  }
+  map.refuse_unknown_keys();
+  return simulation;
+}
+
+}  // namespace clearance

@@ -1,0 +1,20 @@
+// Which of the known names did a person mean?
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace clearance {
+
+// Insertions, deletions, substitutions and swaps of neighbours that turn one word into the other;
+// case counts for nothing, nor do '-' against '_'.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+// "; did you mean 'radius'?" when one of `known` is near enough (a third of the letters), else "".
+[[nodiscard]] std::string did_you_mean(std::string_view found, std::span<const std::string> known);
+
+// "'a', 'b' or 'c'".
+[[nodiscard]] std::string one_of(std::span<const std::string> names);
+
+}  // namespace clearance

@@ -1,0 +1,142 @@
+// The only file that knows yaml-cpp.
+#include "config/yaml_node.hpp"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <cstddef>
+#include <map>
+#include <sstream>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+// Aliases of aliases can make a short file enormous; a cell of 4096 objects needs well under a
+// million nodes.
+constexpr std::size_t kMaxNodes = 4'000'000;
+
+std::size_t count_nodes(const YamlNode& node) {
+  std::size_t count = 1;
+  for (const YamlNode& item : node.items) count += count_nodes(item);
+  for (const YamlEntry& entry : node.entries)
+    count += count_nodes(entry.key) + count_nodes(entry.value);
+  return count;
+}
+
+// Builds the tree from the parser's events.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  YamlNode root;
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    finish(node_at(mark, YamlNode::Kind::kNull), anchor);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchored_.find(anchor);
+    if (found == anchored_.end()) {
+      throw YAML::ParserException(mark, "an alias inside of the value that it stands for");
+    }
+    nodes_ += count_nodes(found->second);
+    check_size(mark);
+    finish(YamlNode(found->second), 0);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    YamlNode node = node_at(mark, YamlNode::Kind::kScalar);
+    node.text = value;
+    node.quoted = tag == "!";  // the parser's tag for quoted and block scalars; "?" is a plain one
+    finish(std::move(node), anchor);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back({node_at(mark, YamlNode::Kind::kSequence), anchor, {}, false});
+  }
+
+  void OnSequenceEnd() override { close(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open_.push_back({node_at(mark, YamlNode::Kind::kMap), anchor, {}, false});
+  }
+
+  void OnMapEnd() override { close(); }
+
+ private:
+  // A sequence or map whose end has not come yet.
+  struct Open {
+    YamlNode node;
+    YAML::anchor_t anchor;
+    YamlNode key;
+    bool has_key;
+  };
+
+  YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
+    ++nodes_;
+    check_size(mark);
+    YamlNode node;
+    node.kind = kind;
+    node.line = mark.line + 1;
+    node.column = mark.column + 1;
+    return node;
+  }
+
+  void check_size(const YAML::Mark& mark) const {
+    if (nodes_ > kMaxNodes) throw YAML::ParserException(mark, "more than 4 million values");
+  }
+
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    finish(std::move(done.node), done.anchor);
+  }
+
+  // A whole value: it belongs to what is open, or it is the document.
+  void finish(YamlNode node, YAML::anchor_t anchor) {
+    if (anchor != 0) anchored_[anchor] = node;
+    if (open_.empty()) {
+      root = std::move(node);
+    } else if (Open& parent = open_.back(); parent.node.kind == YamlNode::Kind::kSequence) {
+      parent.node.items.push_back(std::move(node));
+    } else if (parent.has_key) {
+      parent.node.entries.push_back({std::move(parent.key), std::move(node)});
+      parent.has_key = false;
+    } else {
+      parent.key = std::move(node);
+      parent.has_key = true;
+    }
+  }
+
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, YamlNode> anchored_;
+  std::size_t nodes_ = 0;
+};
+
+}  // namespace
+
+std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    TreeBuilder tree;
+    if (!parser.HandleNextDocument(tree)) return YamlNode{};
+    TreeBuilder second;
+    if (parser.HandleNextDocument(second)) {
+      return YamlFault{second.root.line, second.root.column,
+                       "a second document begins; expected one document a file"};
+    }
+    return std::move(tree.root);
+  } catch (const YAML::Exception& fault) {
+    return YamlFault{fault.mark.line + 1, fault.mark.column + 1, "not valid YAML: " + fault.msg};
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,18 @@
+// Reads `zones:`: named thresholds on the distance between two groups.
+#pragma once
+
+#include <vector>
+
+#include "config/pair_reader.hpp"
+#include "config/quantities.hpp"
+#include "config/scene.hpp"
+
+namespace clearance {
+
+// Complains about a zone that covers a pair which is neither watched nor allowed to touch: it would
+// promise what nobody looks at.
+[[nodiscard]] std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects,
+                                           const PairList& pairs, Members& members,
+                                           const Quantities& quantities);
+
+}  // namespace clearance
