@@ -1,6 +1,5 @@
 #include "tests/shared/exact_oracle.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -217,11 +216,15 @@ int ExactDistance::compare(double value) const {
   return compare(Rational(value));
 }
 
+void ExactDistance::add_radii(double of_a, double of_b) {
+  radii += Rational(of_a) + Rational(of_b);
+  enclose(*this);
+}
+
 ExactDistance exact_distance(ExactBody& a, const Pose& world_from_a, ExactBody& b,
-                             const Pose& world_from_b, double radius_sum) {
+                             const Pose& world_from_b) {
   const Placement place(world_from_a, world_from_b);
   ExactDistance out;
-  out.radii = radius_sum;
   Corral corral;
   RationalVec start_a = a.support({0, 0, 0}).vector;
   RationalVec start_b = place.a_from_b_rotation * b.support({0, 0, 0}).vector;
@@ -249,17 +252,8 @@ ExactDistance exact_distance(const Body& a, const Pose& world_from_a, const Body
                              const Pose& world_from_b) {
   ExactBody exact_a(a), exact_b(b);
   ExactDistance out = exact_distance(exact_a, world_from_a, exact_b, world_from_b);
-  out.radii = Rational(a.radius) + Rational(b.radius);
-  enclose(out);
+  out.add_radii(a.radius, b.radius);
   return out;
-}
-
-double distance_outside(const Body& body, const Pose& world_from_body, const Vec3& point_in_world) {
-  const Body point{{}, {Vec3::Zero()}, 0.0};
-  Pose world_from_point;
-  world_from_point.position = point_in_world;
-  const ExactDistance out = exact_distance(body, world_from_body, point, world_from_point);
-  return std::max(out.upper, 0.0);
 }
 
 }  // namespace clearance::oracle

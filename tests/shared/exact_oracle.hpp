@@ -4,8 +4,7 @@
 // of q/|q|, which is rational: N(q)/|q|^2. The nearest point to the origin of the set {b - a} is
 // found by Wolfe's method (P. Wolfe, "Finding the nearest point in a polytope", 1976), extended by
 // rays for unbounded bodies, in rationals: each step makes the distance strictly smaller, so it
-// ends. An answer is accepted only after its optimality has been proved on the bodies as given
-// (Optimality below).
+// ends. An answer is accepted only after its optimality has been proved on the bodies as given.
 #pragma once
 
 #include "core/pose.hpp"
@@ -26,18 +25,17 @@ struct ExactDistance {
   // Sign of (distance - value), decided exactly.
   [[nodiscard]] int compare(const Rational& value) const;
   [[nodiscard]] int compare(double value) const;  // infinities allowed
+  // The same pair with balls added to both.
+  void add_radii(double of_a, double of_b);
 };
 
-// Throws std::logic_error when the proof of optimality fails: the oracle is wrong, not the caller.
+// Without radii. Throws std::logic_error when the proof of optimality fails: the oracle is wrong,
+// not the caller.
 [[nodiscard]] ExactDistance exact_distance(ExactBody& a, const Pose& world_from_a, ExactBody& b,
-                                           const Pose& world_from_b, double radius_sum = 0.0);
-
-[[nodiscard]] ExactDistance exact_distance(const Body& a, const Pose& world_from_a, const Body& b,
                                            const Pose& world_from_b);
 
-// How far outside the body (with its radius) a world point lies: a double not below the exact
-// figure by more than its rounding, 0 when inside.
-[[nodiscard]] double distance_outside(const Body& body, const Pose& world_from_body,
-                                      const Vec3& point_in_world);
+// With radii.
+[[nodiscard]] ExactDistance exact_distance(const Body& a, const Pose& world_from_a, const Body& b,
+                                           const Pose& world_from_b);
 
 }  // namespace clearance::oracle

@@ -1,0 +1,164 @@
+#include "tests/shared/distance_judge.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+using oracle::Body;
+using oracle::ExactDistance;
+using oracle::Rational;
+
+// Twice what the worst sound derivation needs; see DistanceJudge::faults.
+constexpr double kTolerance = 1e-14;
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char out[300];
+  std::snprintf(out, sizeof out, format, values...);
+  return out;
+}
+
+// How far the point p of frame A lies outside a body, exactly rounded up.
+double outside(oracle::ExactBody& body, const Pose& pose, double radius, const Vec3& p,
+               const Pose& pose_a) {
+  oracle::ExactBody point(Body{{}, {p}, 0.0});
+  const ExactDistance d = oracle::exact_distance(body, pose, point, pose_a);
+  return std::max(0.0, d.upper - radius);
+}
+
+// `by` taken off everywhere. Bodies given by points are left as they are.
+Body eroded(Body body, double by) {
+  for (HalfSpace& row : body.rows) row.offset -= by * row.normal.norm() * (1.0 + 1e-15);
+  return body;
+}
+
+}  // namespace
+
+ShapeResult model(const Body& body) {
+  ShapeResult out;
+  if (!body.rows.empty()) {
+    out = polyhedron_from_halfspaces(body.rows);
+  } else if (body.points.size() == 1) {
+    out = point(body.points[0], body.radius);
+  } else if (body.points.size() == 2) {
+    out = segment(body.points[0], body.points[1], body.radius);
+  } else {
+    out = polyhedron_from_vertices(body.points);
+  }
+  if (auto* polyhedron = std::get_if<ConvexPolyhedron>(&out)) polyhedron->radius = body.radius;
+  return out;
+}
+
+DistanceJudge::DistanceJudge(const Body& a, const Body& b)
+    : body_a_(a), body_b_(b), exact_a_(a), exact_b_(b) {
+  ConvexPolyhedron* models[] = {&a_, &b_};
+  for (int k = 0; k < 2; ++k) {
+    ShapeResult shape = model(k == 0 ? a : b);
+    if (auto* polyhedron = std::get_if<ConvexPolyhedron>(&shape)) {
+      *models[k] = std::move(*polyhedron);
+    } else {
+      refusal_ += std::string(k == 0 ? "a: " : "b: ") + std::get<ShapeError>(shape).reason + "; ";
+    }
+  }
+}
+
+DistanceResult DistanceJudge::ask(const Pose& pose_a, const Pose& pose_b,
+                                  TrackingState& state) const {
+  return distance(a_, b_, relative_pose(pose_a, pose_b), state);
+}
+
+ExactDistance DistanceJudge::truth(const Pose& pose_a, const Pose& pose_b) {
+  ExactDistance out = oracle::exact_distance(exact_a_, pose_a, exact_b_, pose_b);
+  out.add_radii(body_a_.radius, body_b_.radius);
+  return out;
+}
+
+double DistanceJudge::size(const ExactDistance& truth, const Pose& pose_a,
+                           const Pose& pose_b) const {
+  return a_.bounding_radius + a_.radius + b_.bounding_radius + b_.radius +
+         (pose_b.position - pose_a.position).norm() + std::abs(truth.upper);
+}
+
+bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const {
+  try {
+    return oracle::exact_distance(eroded(body_a_, depth), pose_a, eroded(body_b_, depth), pose_b)
+        .cores_meet();
+  } catch (const std::invalid_argument&) {
+    return false;  // nothing left of one of them
+  }
+}
+
+std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const ExactDistance& truth,
+                                               const Pose& pose_a, const Pose& pose_b) {
+  std::vector<std::string> out;
+  const double tolerance = kTolerance * size(truth, pose_a, pose_b);
+  const auto require = [&](bool holds, const std::string& fault) {
+    if (!holds) out.push_back(fault);
+  };
+  const bool finite = std::isfinite(r.distance) && std::isfinite(r.lower) &&
+                      std::isfinite(r.upper) && r.point_on_a.allFinite() &&
+                      r.point_on_b.allFinite();
+  require(finite,
+          text("a figure is not finite: distance %g in [%g, %g]", r.distance, r.lower, r.upper));
+  if (!finite) return out;
+  require(r.lower <= r.distance && r.distance <= r.upper,
+          text("distance %.17g is not in [%.17g, %.17g]", r.distance, r.lower, r.upper));
+  require(truth.compare(r.lower) >= 0, text("LOWER %.17g is above the truth %.17g by %.3g", r.lower,
+                                            truth.lower, r.lower - truth.lower));
+  require(truth.compare(r.upper) <= 0, text("UPPER %.17g is below the truth %.17g by %.3g", r.upper,
+                                            truth.upper, truth.upper - r.upper));
+
+  const char* status = name(r.status);
+  const double gap = r.upper - r.lower;
+  require(r.status != DistanceStatus::kIterationLimit && r.status != DistanceStatus::kFarAway,
+          text("status %s, truth %.17g in [%.17g, %.17g], tolerance %.3g", status, truth.lower,
+               r.lower, r.upper, tolerance));
+  if (r.status != DistanceStatus::kIterationLimit) {
+    require(gap <= tolerance,
+            text("%s with a gap of %.3g, tolerance %.3g", status, gap, tolerance));
+  }
+  if (r.status == DistanceStatus::kOverlapping) {
+    require(truth.compare(0.0) <= 0, text("overlapping, but %.17g apart", truth.lower));
+  }
+  if (r.status == DistanceStatus::kConverged) {
+    require(truth.compare(0.0) > 0, text("converged, but the truth is %.17g", truth.lower));
+  }
+  if (r.status == DistanceStatus::kTouching) {
+    require(truth.compare(tolerance) <= 0 && truth.compare(-tolerance) >= 0,
+            text("touching, but the truth is %.17g, tolerance %.3g", truth.lower, tolerance));
+    require(!truth.cores_meet() || !overlap_by(tolerance, pose_a, pose_b),
+            text("touching, but overlapping by more than %.3g", tolerance));
+  }
+
+  const double off_a = outside(exact_a_, pose_a, body_a_.radius, r.point_on_a, pose_a);
+  const double off_b = outside(exact_b_, pose_b, body_b_.radius, r.point_on_b, pose_a);
+  require(off_a <= tolerance,
+          text("witness on A is %.3g outside, tolerance %.3g", off_a, tolerance));
+  require(off_b <= tolerance,
+          text("witness on B is %.3g outside, tolerance %.3g", off_b, tolerance));
+  const Vec3 between = r.point_on_b - r.point_on_a;
+  const bool converged = r.status == DistanceStatus::kConverged;
+  if (converged) {
+    require(std::abs(between.norm() - r.distance) <= tolerance,
+            text("witness points are %.17g apart, distance %.17g", between.norm(), r.distance));
+  }
+  if (r.normal.allFinite()) {
+    require(std::abs(r.normal.norm() - 1.0) <= 1e-14,
+            text("normal of length %.17g", r.normal.norm()));
+    if (converged) {
+      const double along = between.dot(r.normal);
+      require(std::abs(along - r.distance) <= tolerance,
+              text("witness points are %.17g apart along the normal, distance %.17g", along,
+                   r.distance));
+    }
+  } else {
+    require(!converged, "converged without a normal");
+  }
+  return out;
+}
+
+}  // namespace clearance

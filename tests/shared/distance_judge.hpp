@@ -1,0 +1,54 @@
+// Holds answers of distance() against the exact truth, and says in words what is wrong with them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/distance.hpp"
+#include "tests/shared/exact_oracle.hpp"
+
+namespace clearance {
+
+// The core's model of a body, or the reason why it was refused.
+[[nodiscard]] ShapeResult model(const oracle::Body& body);
+
+class DistanceJudge {
+ public:
+  DistanceJudge(const oracle::Body& a, const oracle::Body& b);
+
+  // Empty when both bodies have been accepted by the factories.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  [[nodiscard]] const ConvexPolyhedron& a() const { return a_; }
+  [[nodiscard]] const ConvexPolyhedron& b() const { return b_; }
+
+  [[nodiscard]] DistanceResult ask(const Pose& pose_a, const Pose& pose_b,
+                                   TrackingState& state) const;
+  [[nodiscard]] oracle::ExactDistance truth(const Pose& pose_a, const Pose& pose_b);
+
+  // What the result gets wrong; empty when nothing:
+  //  - numbers: finite where they must be, lower <= distance <= upper
+  //  - the bounds, compared exactly
+  //  - the status: converged within 1e-14 of the lengths involved; overlapping and touching only
+  //  where it is so;
+  //    never at the iteration limit
+  //  - the witness points: on their bodies and `distance` apart; the normal: unit, and it separates
+  [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
+                                                const oracle::ExactDistance& truth,
+                                                const Pose& pose_a, const Pose& pose_b);
+
+  // The lengths that a rounding error is relative to: reach of both bodies, how far their origins
+  // are apart, and the distance itself.
+  [[nodiscard]] double size(const oracle::ExactDistance& truth, const Pose& pose_a,
+                            const Pose& pose_b) const;
+
+ private:
+  [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
+
+  oracle::Body body_a_, body_b_;
+  oracle::ExactBody exact_a_, exact_b_;
+  ConvexPolyhedron a_, b_;
+  std::string refusal_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,59 @@
+// Seeded random numbers that are the same on every standard library.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15ULL + 1) { (void)next(); }
+
+  std::uint64_t next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+  }
+
+  // In [0, 1).
+  double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+  double uniform(double low, double high) { return low + (high - low) * unit(); }
+  // The exponent is uniform: for quantities that matter by their order of magnitude.
+  double log_uniform(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  // In [low, high].
+  int integer(int low, int high) {
+    return low + static_cast<int>(next() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  bool chance(double probability) { return unit() < probability; }
+  double sign() { return chance(0.5) ? 1.0 : -1.0; }
+
+  Vec3 in_box(double half) {
+    const double x = uniform(-half, half), y = uniform(-half, half), z = uniform(-half, half);
+    return {x, y, z};
+  }
+  Vec3 direction() {
+    const double z = uniform(-1.0, 1.0), angle = uniform(0.0, 2.0 * std::numbers::pi);
+    const double r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+  // Uniform over rotations (Shoemake 1992).
+  Eigen::Quaterniond rotation() {
+    const double u = unit(), a = uniform(0.0, 2.0 * std::numbers::pi),
+                 b = uniform(0.0, 2.0 * std::numbers::pi);
+    const double s = std::sqrt(1.0 - u), t = std::sqrt(u);
+    return {t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b)};
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace clearance
