@@ -1,0 +1,303 @@
+// From an exact solid to the doubles of the queries: every number rounded once, then joined up.
+#include <algorithm>
+#include <cmath>
+
+#include "core/exact_rounding.hpp"
+#include "core/exact_solid.hpp"
+
+namespace clearance::exact {
+namespace {
+
+// Beyond this, squares and products of the queries could overflow.
+constexpr double kLargestCoordinate = 1e100;
+constexpr double kHalfUlp = 0x1p-53;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Rounds the solid's numbers and keeps the largest error made.
+class Rounder {
+ public:
+  double quotient(const Integer& numerator, const Integer& denominator) {
+    return noted(nearest_quotient(numerator, denominator));
+  }
+
+  double over_root(const Integer& numerator, const Integer& square) {
+    return noted(nearest_over_root(numerator, square));
+  }
+
+  Vec3 point(const Integer4& node) {
+    Vec3 result;
+    Vec3 error = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Rounded rounded = nearest_quotient(node[i], node[3]);
+      const auto axis = static_cast<Eigen::Index>(i);
+      result[axis] = rounded.value;
+      error[axis] = error_of(rounded);
+    }
+    note(error.norm() * (1.0 + 0x1p-50));
+    return result;
+  }
+
+  [[nodiscard]] double error() const { return error_; }
+
+ private:
+  static double error_of(const Rounded& rounded) {
+    if (rounded.exact) return 0.0;
+    return std::max(kHalfUlp * std::abs(rounded.value), std::numeric_limits<double>::min());
+  }
+
+  void note(double error) { error_ = std::max(error_, error); }
+
+  double noted(const Rounded& rounded) {
+    note(error_of(rounded));
+    return rounded.value;
+  }
+
+  double error_ = 0.0;
+};
+
+Integer squared_norm(const Integer3& v) { return dot(v, v); }
+
+Vec3 unit_cross(const Integer3& a, const Integer3& b) { return unit(cross(a, b)); }
+
+class Assembler {
+ public:
+  explicit Assembler(const Solid& solid) : solid_(solid) {}
+
+  ConvexPolyhedron build() {
+    for (const Integer4& plane : solid_.planes) add_facet(plane);
+    for (const Integer4& node : solid_.nodes) body_.anchors.push_back(rounder_.point(node));
+    for (const SolidEdge& edge : solid_.edges) add_edge(edge);
+    join_facets();
+    const bool lines = std::any_of(solid_.edges.begin(), solid_.edges.end(),
+                                   [](const SolidEdge& edge) { return edge.full_line; });
+    if (!lines) add_vertices();
+    if (solid_.nodes.empty()) anchor_bare_planes();
+    place_facet_points();
+    for (const Integer3& ray : solid_.rays) {
+      const RoundedDirection direction = nearest_direction(ray);
+      body_.rays.push_back({direction.vector, direction.exact});
+    }
+    body_.position_error = rounder_.error();
+    return std::move(body_);
+  }
+
+ private:
+  void add_facet(const Integer4& plane) {
+    const Integer3 normal = head(plane);
+    body_.facets.push_back(
+        {unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), Vec3::Zero(), 0, 0});
+  }
+
+  void add_edge(const SolidEdge& edge) {
+    const Integer3 left = head(solid_.planes[at(edge.left)]);
+    const Integer3 right = head(solid_.planes[at(edge.right)]);
+    const Integer3 direction = cross(left, right);
+    Edge result;
+    result.point = body_.anchors[at(edge.start)];
+    result.direction = unit(direction);
+    result.begin = edge.full_line ? -kInfinity : 0.0;
+    result.end = edge.full_line || edge.end == kNone ? kInfinity : length(edge);
+    result.vertex[0] = edge.full_line ? kNone : edge.start;
+    result.vertex[1] = edge.full_line ? kNone : edge.end;
+    result.facet[0] = edge.left;
+    result.facet[1] = edge.right;
+    result.inward[0] = unit_cross(left, direction);
+    result.inward[1] = unit_cross(direction, right);
+    body_.edges.push_back(result);
+  }
+
+  double length(const SolidEdge& edge) {
+    const Integer4& a = solid_.nodes[at(edge.start)];
+    const Integer4& b = solid_.nodes[at(edge.end)];
+    Integer3 difference;
+    for (std::size_t i = 0; i < 3; ++i) difference[i] = b[i] * a[3] - a[i] * b[3];
+    // |difference| / weight = squared / (weight |difference|)
+    const Integer weight = a[3] * b[3];
+    const Integer squared = squared_norm(difference);
+    return rounder_.over_root(squared, squared * weight * weight);
+  }
+
+  // What one facet sees of its edges: leaves `from`, goes to `to` (kNone: infinity), facet on the
+  // left.
+  struct Side {
+    int from, to;
+    EdgeUse use;
+  };
+
+  void join_facets() {
+    std::vector<std::vector<Side>> sides(solid_.planes.size());
+    for (std::size_t e = 0; e < solid_.edges.size(); ++e) {
+      const SolidEdge& edge = solid_.edges[e];
+      const int start = edge.full_line ? kNone : edge.start;
+      const int end = edge.full_line ? kNone : edge.end;
+      const auto number = static_cast<std::int32_t>(e);
+      sides[at(edge.left)].push_back({start, end, {number, 0}});
+      sides[at(edge.right)].push_back({end, start, {number, 1}});
+    }
+    for (std::size_t f = 0; f < sides.size(); ++f) {
+      body_.facets[f].first_side = static_cast<std::int32_t>(body_.facet_edges.size());
+      body_.facets[f].sides = static_cast<std::int32_t>(sides[f].size());
+      chain(sides[f]);
+    }
+  }
+
+  // Head to tail; an open chain starts with the side that comes from infinity, a closed one
+  // anywhere.
+  void chain(std::vector<Side>& sides) {
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return a.from < b.from; });
+    if (sides.empty()) return;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      body_.facet_edges.push_back(sides[next].use);
+      const int reached = sides[next].to;
+      if (reached == kNone) {
+        next = i + 1;  // only full lines go on after infinity
+      } else {
+        next = static_cast<std::size_t>(
+            std::lower_bound(sides.begin(), sides.end(), reached,
+                             [](const Side& side, int from) { return side.from < from; }) -
+            sides.begin());
+      }
+    }
+  }
+
+  void add_vertices() {
+    std::vector<std::vector<EdgeUse>> around(solid_.nodes.size());
+    for (std::size_t e = 0; e < solid_.edges.size(); ++e) {
+      const auto number = static_cast<std::int32_t>(e);
+      const SolidEdge& edge = solid_.edges[e];
+      around[at(edge.start)].push_back({number, 0});
+      if (edge.end != kNone) around[at(edge.end)].push_back({number, 1});
+    }
+    for (std::size_t v = 0; v < around.size(); ++v) {
+      body_.vertices.push_back({body_.anchors[v],
+                                static_cast<std::int32_t>(body_.vertex_edges.size()),
+                                static_cast<std::int32_t>(around[v].size())});
+      turn(around[v]);
+    }
+  }
+
+  // Counter-clockwise as seen from outside: an edge's left facet, leaving the vertex, is the next
+  // one's right.
+  void turn(std::vector<EdgeUse>& uses) {
+    const auto right_of = [this](const EdgeUse& use) {
+      return body_.edges[at(use.edge)].facet[1 - use.side];
+    };
+    const auto left_of = [this](const EdgeUse& use) {
+      return body_.edges[at(use.edge)].facet[use.side];
+    };
+    std::sort(uses.begin(), uses.end(),
+              [&](const EdgeUse& a, const EdgeUse& b) { return right_of(a) < right_of(b); });
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      body_.vertex_edges.push_back(uses[next]);
+      next = static_cast<std::size_t>(
+          std::lower_bound(uses.begin(), uses.end(), left_of(uses[next]),
+                           [&](const EdgeUse& use, int facet) { return right_of(use) < facet; }) -
+          uses.begin());
+    }
+  }
+
+  // Half-space and slab: each plane's point nearest to the origin.
+  void anchor_bare_planes() {
+    for (const Integer4& plane : solid_.planes) {
+      const Integer3 normal = head(plane);
+      body_.anchors.push_back(
+          rounder_.point({Integer(normal[0] * plane[3]), Integer(normal[1] * plane[3]),
+                          Integer(normal[2] * plane[3]), squared_norm(normal)}));
+    }
+  }
+
+  // The anchor of each facet that is nearest to the origin: it has the smallest rounding error.
+  void place_facet_points() {
+    for (std::size_t f = 0; f < body_.facets.size(); ++f) {
+      Facet& facet = body_.facets[f];
+      if (facet.sides == 0) {
+        facet.point = body_.anchors[f];
+        continue;
+      }
+      double nearest = kInfinity;
+      for (std::int32_t i = 0; i < facet.sides; ++i) {
+        const EdgeUse& use = body_.facet_edges[at(facet.first_side + i)];
+        const Vec3& point = body_.edges[at(use.edge)].point;
+        if (point.squaredNorm() >= nearest) continue;
+        nearest = point.squaredNorm();
+        facet.point = point;
+      }
+    }
+  }
+
+  const Solid& solid_;
+  ConvexPolyhedron body_;
+  Rounder rounder_;
+};
+
+// How far inside every plane; negative outside one.
+double depth(const ConvexPolyhedron& body, const Vec3& point) {
+  double least = kInfinity;
+  for (const Facet& facet : body.facets) {
+    least = std::min(least, -facet.normal.dot(point - facet.point));
+  }
+  return least;
+}
+
+// The centre of volume, by a fan of tetrahedra from the first anchor. Bounded bodies only.
+Vec3 centroid(const ConvexPolyhedron& body) {
+  const Vec3& apex = body.anchors[0];
+  Vec3 moment = Vec3::Zero();
+  double volume = 0.0;
+  for (const Facet& facet : body.facets) {
+    for (std::int32_t i = 0; i < facet.sides; ++i) {
+      const Edge& edge = body.edges[at(body.facet_edges[at(facet.first_side + i)].edge)];
+      const Vec3 a = body.vertices[at(edge.vertex[0])].position - apex;
+      const Vec3 b = body.vertices[at(edge.vertex[1])].position - apex;
+      const Vec3 c = facet.point - apex;
+      const double share = std::abs(c.dot(a.cross(b)));
+      volume += share;
+      moment += share * (a + b + c);
+    }
+  }
+  return volume > 0.0 ? Vec3(apex + moment / (4.0 * volume)) : apex;
+}
+
+// From the mean of the anchors along every ray, as far as the anchors are spread.
+Vec3 beyond_anchors(const ConvexPolyhedron& body) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());
+  double spread = 0.0;
+  for (const Vec3& anchor : body.anchors) spread = std::max(spread, (anchor - mean).norm());
+  if (spread == 0.0) spread = std::max(mean.norm(), 1.0);
+  Vec3 along = Vec3::Zero();
+  for (const Ray& ray : body.rays) along += ray.direction.normalized();
+  return mean + spread * along;
+}
+
+Vec3 deepest_candidate(const ConvexPolyhedron& body, const Vec3& known) {
+  const Vec3 other = body.bounded() ? centroid(body) : beyond_anchors(body);
+  return depth(body, other) > depth(body, known) ? other : known;
+}
+
+}  // namespace
+
+ShapeResult rounded_polyhedron(const Solid& solid) {
+  ConvexPolyhedron body = Assembler(solid).build();
+  double farthest = 0.0;
+  for (const Vec3& anchor : body.anchors) {
+    if (!(anchor.cwiseAbs().maxCoeff() <= kLargestCoordinate)) {
+      return ShapeError{"a vertex lies more than 1e100 m from the origin"};
+    }
+    farthest = std::max(farthest, anchor.norm());
+  }
+  body.bounding_radius = farthest * (1.0 + 0x1p-50);
+  Vec3 inside;
+  for (std::size_t i = 0; i < 3; ++i) {
+    inside[static_cast<Eigen::Index>(i)] =
+        nearest_quotient(solid.interior[i], solid.interior[3]).value;
+  }
+  body.interior = deepest_candidate(body, inside);
+  return body;
+}
+
+}  // namespace clearance::exact
