@@ -1,0 +1,28 @@
+#include "monitor/record/recording_writer.hpp"
+
+namespace clearance {
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
+                                 const McapWriterOptions& options)
+    : mcap_(file, options) {
+  for (const TopicKind kind : kTopicKinds) {
+    channels_[static_cast<std::size_t>(kind)] =
+        mcap_.add_channel(topic_schema(kind), topic_name(topics, kind), kCdrEncoding);
+  }
+}
+
+void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns) {
+  mcap_.metadata(kRecordingMetadata, {{"version", CLEARANCE_VERSION},
+                                      {"scene", catalogue.scene},
+                                      {"scene_revision", std::to_string(catalogue.scene_revision)},
+                                      {"cell", catalogue.cell_yaml}});
+  write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
+}
+
+void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
+                            std::span<const std::byte> cdr) {
+  mcap_.write(channels_[static_cast<std::size_t>(kind)], static_cast<std::uint64_t>(log_ns),
+              static_cast<std::uint64_t>(publish_ns), cdr);
+}
+
+}  // namespace clearance
