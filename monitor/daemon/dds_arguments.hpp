@@ -1,0 +1,45 @@
+// The command-line options by which every program says where on DDS it is.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "monitor/daemon/dds.hpp"
+
+namespace clearance {
+
+struct DdsArguments {
+  std::optional<std::uint32_t> domain;   // not given: the cell's
+  std::optional<std::string> partition;  // not given: the cell's
+  DdsOptions options;
+
+  void add_to(CLI::App& app) {
+    app.add_option("--domain", domain, "DDS domain; otherwise the cell's, or 0")
+        ->check(CLI::Range(0, 232));
+    app.add_option("--partition", partition,
+                   "DDS partition; otherwise the cell's, or the default one");
+    app.add_option("--interface", options.interface,
+                   "Network interface; lo keeps everything on this machine")
+        ->capture_default_str();
+    app.add_option("--peer", options.peers, "Address of another machine to look for; repeatable");
+  }
+
+  [[nodiscard]] DdsOptions resolve(std::uint32_t cell_domain,
+                                   const std::string& cell_partition) const {
+    DdsOptions resolved = options;
+    resolved.domain = domain.value_or(cell_domain);
+    resolved.partition = partition.value_or(cell_partition);
+    return resolved;
+  }
+};
+
+// "--log-level" with its six values.
+inline void add_log_level(CLI::App& app, std::string& level) {
+  app.add_option("--log-level", level, "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+}
+
+}  // namespace clearance

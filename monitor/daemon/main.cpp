@@ -1,0 +1,101 @@
+// clearanced: reads a cell, then publishes its distances at a fixed rate until it is told to stop.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "config/cell_file.hpp"
+#include "monitor/daemon/daemon.hpp"
+#include "monitor/daemon/dds_arguments.hpp"
+#include "monitor/daemon/log.hpp"
+
+namespace clearance {
+namespace {
+
+enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3, kDdsFailed = 4 };
+
+constexpr const char* kFooter = R"(Exit status:
+  0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong
+  1  something else failed
+  2  wrong usage
+  3  the cell file is wrong
+  4  DDS could not be joined
+
+Example:
+  clearanced config/cells/two_arms.yaml --partition lab --priority 80)";
+
+struct Arguments {
+  std::string cell;
+  bool check = false;
+  std::string log_level = "info";
+  DdsArguments dds;
+  DaemonOptions daemon;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
+  app.add_flag("--check", arguments.check,
+               "Only check the cell: print every error in it, or a summary");
+  arguments.dds.add_to(app);
+  app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks");
+  app.add_option(
+         "--priority", arguments.daemon.fifo_priority,
+         "Run the tick thread under SCHED_FIFO and lock memory; without: ordinary scheduling")
+      ->check(CLI::Range(1, 99));
+  app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
+      ->check(CLI::NonNegativeNumber);
+  add_log_level(app, arguments.log_level);
+  app.footer(kFooter);
+}
+
+int check_only(const Scene& scene) {
+  std::printf("%s\n", summary(scene).c_str());
+  return kOk;
+}
+
+int run_daemon(const Scene& scene, Arguments& arguments) {
+  StopSignal signal;
+  arguments.daemon.dds = arguments.dds.resolve(scene.domain, scene.partition);
+  route_dds_log();
+  Daemon daemon(scene, arguments.daemon);
+  daemon.run(signal);
+  std::fputs(daemon.summary().c_str(), stdout);
+  return kOk;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  start_log("clearanced", arguments.log_level);
+
+  const CellResult cell = read_cell(arguments.cell);
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
+    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
+    std::fprintf(stderr, "%zu error%s\n", errors->size(), errors->size() == 1 ? "" : "s");
+    return kBadCell;
+  }
+  const Scene& scene = std::get<Scene>(cell);
+  return arguments.check ? check_only(scene) : run_daemon(scene, arguments);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  try {
+    return clearance::run(argc, argv);
+  } catch (const clearance::DdsError& error) {
+    spdlog::critical("{}", error.what());
+    return clearance::kDdsFailed;
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return clearance::kFailed;
+  }
+}
