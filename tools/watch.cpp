@@ -1,0 +1,138 @@
+// clearance-watch: what the daemon says, live in a terminal.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "config/cell_file.hpp"
+#include "monitor/daemon/dds_arguments.hpp"
+#include "monitor/daemon/log.hpp"
+#include "monitor/daemon/seams.hpp"
+#include "monitor/daemon/stop_signal.hpp"
+#include "tools/watch/feed.hpp"
+#include "tools/watch/view.hpp"
+
+namespace clearance {
+namespace {
+
+enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kDdsFailed = 4, kNothingCame = 5 };
+
+constexpr std::int64_t kFrameMs = 100;
+constexpr std::int64_t kPlainNs = 1'000'000'000;
+
+constexpr const char* kFooter = R"(Ctrl-C or q ends it.
+
+Exit status:
+  0  stopped by SIGINT, SIGTERM, q or --seconds
+  1  something else failed
+  2  wrong usage
+  4  DDS could not be joined
+  5  not one report came
+
+Example:
+  clearance-watch --partition lab --seconds 10)";
+
+struct Arguments {
+  double seconds = 0.0;
+  bool plain = false;
+  Topics topics;
+  DdsArguments dds;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--plain", arguments.plain,
+               "One line a second instead of a full screen; so too without a terminal");
+  app.add_option("--distances", arguments.topics.distances, "Topic name")->capture_default_str();
+  app.add_option("--catalogue", arguments.topics.catalogue, "Topic name")->capture_default_str();
+  app.add_option("--health", arguments.topics.health, "Topic name")->capture_default_str();
+  app.add_option("--zones", arguments.topics.zones, "Topic name")->capture_default_str();
+  arguments.dds.add_to(app);
+  app.footer(kFooter);
+}
+
+// Shows the feed ten times a second on a screen, or once a second in plain lines.
+class Display {
+ public:
+  Display(bool plain, std::string where) : where_(std::move(where)) {
+    if (!plain && watch::Screen::available()) screen_.emplace();
+  }
+
+  void show(const watch::Feed& feed, std::int64_t now_ns) {
+    measure_rate(feed, now_ns);
+    const watch::ViewContext context{.where = where_, .now_ns = now_ns, .reports_a_second = rate_};
+    if (screen_) {
+      screen_->draw(watch::screen_lines(feed, context, screen_->size()));
+    } else if (now_ns - shown_ns_ >= kPlainNs) {
+      shown_ns_ = now_ns;
+      std::printf("%s\n", watch::plain_line(feed, context).c_str());
+      std::fflush(stdout);
+    }
+  }
+  [[nodiscard]] bool quit() const { return screen_ && screen_->quit_key(); }
+  void close() { screen_.reset(); }
+
+ private:
+  void measure_rate(const watch::Feed& feed, std::int64_t now_ns) {
+    if (now_ns - counted_ns_ < 1'000'000'000) return;
+    const auto seconds = 1e-9 * static_cast<double>(now_ns - counted_ns_);
+    if (counted_ns_ != 0) rate_ = static_cast<double>(feed.reports() - counted_) / seconds;
+    counted_ns_ = now_ns;
+    counted_ = feed.reports();
+  }
+
+  std::string where_;
+  std::optional<watch::Screen> screen_;
+  std::int64_t shown_ns_ = 0, counted_ns_ = 0;
+  std::uint64_t counted_ = 0;
+  double rate_ = 0.0;
+};
+
+int run_watch(const Arguments& arguments) {
+  StopSignal signal;
+  route_dds_log();
+  Participant participant(arguments.dds.resolve(0, ""));
+  watch::Feed feed(participant, arguments.topics);
+  Display display(arguments.plain, participant.where());
+  SystemClock clock;
+  const std::int64_t started = clock.monotonic_ns();
+  double seconds = 0.0;
+  do {
+    feed.take(clock.realtime_ns());
+    display.show(feed, clock.realtime_ns());
+    seconds = 1e-9 * static_cast<double>(clock.monotonic_ns() - started);
+  } while ((arguments.seconds == 0.0 || seconds < arguments.seconds) && !display.quit() &&
+           !signal.wait(kFrameMs));
+  display.close();
+  std::fputs(watch::final_summary(feed, seconds).c_str(), stdout);
+  return feed.any() ? kOk : kNothingCame;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Shows live how far apart the objects of a cell are, as clearanced publishes it.");
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  start_log("clearance-watch", "error");
+  return run_watch(arguments);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  try {
+    return clearance::run(argc, argv);
+  } catch (const clearance::DdsError& error) {
+    spdlog::critical("{}", error.what());
+    return clearance::kDdsFailed;
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return clearance::kFailed;
+  }
+}

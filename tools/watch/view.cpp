@@ -1,0 +1,286 @@
+#include "tools/watch/view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/report.hpp"
+
+namespace clearance::watch {
+namespace {
+
+constexpr double kMsPerNs = 1e-6;
+constexpr std::size_t kWideColumns = 150;  // enough for witness points beside each pair
+
+const char* status_name(std::uint8_t status) {
+  return status <= static_cast<std::uint8_t>(PairStatus::kUnknown)
+             ? name(static_cast<PairStatus>(status))
+             : "?";
+}
+
+Style status_style(std::uint8_t status) {
+  switch (static_cast<PairStatus>(status)) {
+    case PairStatus::kConverged:
+      return Style::kPlain;
+    case PairStatus::kTouching:
+    case PairStatus::kOverlapping:
+      return Style::kAlarm;
+    case PairStatus::kCarried:
+      return Style::kDim;
+    default:
+      return Style::kWarning;
+  }
+}
+
+std::string metres(double value) { return fmt::format("{:9.4f}", value); }
+
+std::string point(const clearance_msg_Vector3& p) {
+  return fmt::format("({:7.3f} {:7.3f} {:7.3f})", p.x, p.y, p.z);
+}
+
+std::string contact_time(double seconds) {
+  return std::isfinite(seconds) ? fmt::format("{:7.2f}", seconds) : "      -";
+}
+
+bool silent(const Feed& feed, std::int64_t now_ns) { return now_ns - feed.last_ns() > kSilentNs; }
+
+Line title_line(const Feed& feed, const ViewContext& context, std::size_t width) {
+  Line line(width);
+  line.add("clearance", Style::kBold).add("  ");
+  if (const auto* catalogue = feed.catalogue()) {
+    line.add(fmt::format("{} at {:.0f} Hz, ", catalogue->scene, catalogue->rate_hz));
+  }
+  line.add(context.where).add("  ");
+  if (!feed.any()) return line.add("waiting for clearanced", Style::kWarning);
+  if (silent(feed, context.now_ns)) {
+    return line.add(fmt::format("clearanced is silent for {:.1f} s",
+                                1e-9 * static_cast<double>(context.now_ns - feed.last_ns())),
+                    Style::kAlarm);
+  }
+  if (feed.publishers() > 1) {
+    return line.add(fmt::format("{} daemons publish here: figures are mixed", feed.publishers()),
+                    Style::kAlarm);
+  }
+  return line.add("live", Style::kGood).add(fmt::format("  cycle {}", feed.distances().cycle));
+}
+
+void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  const clearance_msg_Distances& report = feed.distances();
+  Line& line = lines.emplace_back(width);
+  line.add("minimum   ", Style::kDim);
+  if (!report.minimum_known) {
+    line.add("none yet: no pose of any pair's objects has come", Style::kWarning);
+    return;
+  }
+  const clearance_msg_PairDistance& pair = report.minimum;
+  line.add(fmt::format("{:.4f} m  ", pair.distance), Style::kBold)
+      .add(feed.pair_name(pair), Style::kBold);
+  lines.emplace_back(width)
+      .add("          ")
+      .add(fmt::format("in [{:.6f}, {:.6f}] m  ", pair.lower, pair.upper))
+      .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
+           report.minimum_proved ? Style::kGood : Style::kWarning)
+      .add(fmt::format("  closing {:+.3f} m/s  contact in{} s", pair.closing_speed,
+                       contact_time(pair.time_to_contact)));
+  lines.emplace_back(width).add(fmt::format("          from {} to {}  normal {}",
+                                            point(pair.witness_a), point(pair.witness_b),
+                                            point(pair.normal)));
+}
+
+void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  const clearance_msg_Distances& report = feed.distances();
+  Line& line = lines.emplace_back(width);
+  line.add("pairs     ", Style::kDim)
+      .add(fmt::format("{}: {} evaluated, {} carried, ", report.pairs_total, report.evaluated,
+                       report.carried))
+      .add(fmt::format("{} stale", report.stale),
+           report.stale != 0 ? Style::kWarning : Style::kPlain)
+      .add(", ")
+      .add(fmt::format("{} unknown", report.unknown),
+           report.unknown != 0 ? Style::kWarning : Style::kPlain)
+      .add(fmt::format("; all at least {:.4f} m", report.lower_all));
+}
+
+void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  Line& line = lines.emplace_back(width);
+  line.add("zones     ", Style::kDim);
+  for (const auto& [id, zone] : feed.zones()) {
+    line.add(fmt::format("{} {}", zone.name, zone.active ? "ACTIVE" : "clear"),
+             zone.active ? Style::kAlarm : Style::kGood)
+        .add("  ");
+  }
+  if (feed.zones().empty()) line.add("none");
+}
+
+void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& context,
+                std::size_t width) {
+  const clearance_msg_Health* health = feed.health();
+  if (health == nullptr) return;
+  lines.emplace_back(width)
+      .add("tick      ", Style::kDim)
+      .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us  (last second {:.1f} us)",
+                       health->tick_p50_us, health->tick_p999_us, health->tick_max_us,
+                       health->tick_second_max_us));
+  const bool trouble = health->overruns + health->skipped_cycles + health->dropped_reports > 0;
+  lines.emplace_back(width)
+      .add("          ")
+      .add(fmt::format("{} overruns  {} skipped cycles  {} reports dropped", health->overruns,
+                       health->skipped_cycles, health->dropped_reports),
+           trouble ? Style::kWarning : Style::kPlain)
+      .add(fmt::format("  wake-up p99.9 {:.1f} us  max {:.1f} us", health->wakeup_p999_us,
+                       health->wakeup_max_us));
+  lines.emplace_back(width)
+      .add("reports   ", Style::kDim)
+      .add(fmt::format("{:.0f} a second  {} missed here", context.reports_a_second, feed.missed()));
+}
+
+void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  const clearance_msg_Distances& report = feed.distances();
+  Line& ages = lines.emplace_back(width);
+  ages.add("inputs    ", Style::kDim);
+  if (report.newest_pose_ns == 0) {
+    ages.add("no pose has come", Style::kWarning);
+  } else {
+    ages.add(fmt::format("poses in use {:.2f} to {:.2f} ms old",
+                         kMsPerNs * static_cast<double>(report.now_ns - report.newest_pose_ns),
+                         kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns)));
+  }
+  const clearance_msg_Health* health = feed.health();
+  if (health == nullptr) return;
+  for (std::uint32_t i = 0; i < health->sources._length; ++i) {
+    const clearance_msg_SourceHealth& source = health->sources._buffer[i];
+    ages.add(fmt::format("  {}: {} batches, {} lost", source.source, source.batches,
+                         source.lost_batches),
+             source.lost_batches != 0 ? Style::kWarning : Style::kPlain);
+  }
+  Line late(width);
+  std::size_t late_count = 0;
+  for (std::uint32_t i = 0; i < health->inputs._length; ++i) {
+    const clearance_msg_InputAge& input = health->inputs._buffer[i];
+    if (!input.stale) continue;
+    if (late_count++ == 0) late.add("late      ", Style::kDim);
+    late.add(input.age_ns < 0 ? fmt::format("{} never seen  ", input.name)
+                              : fmt::format("{} {:.0f} ms  ", input.name,
+                                            kMsPerNs * static_cast<double>(input.age_ns)),
+             Style::kWarning);
+  }
+  if (late_count > 0) lines.push_back(late);
+  if (health->rejected._length == 0) return;
+  Line& refused = lines.emplace_back(width);
+  refused.add("refused   ", Style::kDim);
+  for (std::uint32_t i = 0; i < health->rejected._length; ++i) {
+    const clearance_msg_RejectCount& entry = health->rejected._buffer[i];
+    refused.add(fmt::format("{}: {} ({})  ", entry.object, entry.cause, entry.count),
+                Style::kWarning);
+  }
+}
+
+Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::size_t width) {
+  Line line(width);
+  line.add(metres(pair.distance), Style::kBold)
+      .add(metres(pair.lower) + metres(pair.upper))
+      .add(fmt::format("  {:+7.3f}  {}  ", pair.closing_speed, contact_time(pair.time_to_contact)))
+      .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status));
+  if (width >= kWideColumns) line.add(point(pair.witness_a) + "  " + point(pair.witness_b) + "  ");
+  return line.add(feed.pair_name(pair));
+}
+
+// Closest first: by what is certain, so that an unknown pair is not hidden behind a known one.
+std::vector<const clearance_msg_PairDistance*> closest_first(
+    const clearance_msg_Distances& report) {
+  std::vector<const clearance_msg_PairDistance*> pairs(report.pairs._length);
+  for (std::uint32_t i = 0; i < report.pairs._length; ++i) pairs[i] = &report.pairs._buffer[i];
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const auto* a, const auto* b) { return a->lower < b->lower; });
+  return pairs;
+}
+
+void add_pairs(std::vector<Line>& lines, const Feed& feed, Size size) {
+  if (lines.size() + 3 > size.rows) return;
+  lines.emplace_back(size.columns);
+  Line& header = lines.emplace_back(size.columns);
+  header.add(" distance    lower    upper  closing  contact  status       ", Style::kDim);
+  if (size.columns >= kWideColumns) {
+    header.add("witness point on the first  on the second              ", Style::kDim);
+  }
+  header.add("published pairs, m, m/s, s", Style::kDim);
+  for (const auto* pair : closest_first(feed.distances())) {
+    if (lines.size() == size.rows) return;
+    lines.push_back(pair_line(feed, *pair, size.columns));
+  }
+}
+
+}  // namespace
+
+std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Size size) {
+  std::vector<Line> lines;
+  lines.push_back(title_line(feed, context, size.columns));
+  if (feed.any()) {
+    add_minimum(lines, feed, size.columns);
+    add_zones(lines, feed, size.columns);
+    add_counts(lines, feed, size.columns);
+    add_health(lines, feed, context, size.columns);
+    add_inputs(lines, feed, size.columns);
+    add_pairs(lines, feed, size);
+  }
+  if (lines.size() > size.rows)
+    lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(size.rows), lines.end());
+  return lines;
+}
+
+std::string plain_line(const Feed& feed, const ViewContext& context) {
+  if (!feed.any()) return "waiting for clearanced on " + context.where;
+  if (silent(feed, context.now_ns)) {
+    return fmt::format("clearanced is silent for {:.1f} s, last cycle {}",
+                       1e-9 * static_cast<double>(context.now_ns - feed.last_ns()),
+                       feed.distances().cycle);
+  }
+  const clearance_msg_Distances& report = feed.distances();
+  std::string text = fmt::format("cycle {}", report.cycle);
+  if (report.minimum_known) {
+    const clearance_msg_PairDistance& pair = report.minimum;
+    text +=
+        fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  closing {:+.3f} m/s  contact in{} s",
+                    pair.distance, pair.lower, pair.upper, feed.pair_name(pair), pair.closing_speed,
+                    contact_time(pair.time_to_contact));
+  } else {
+    text += "  no pair known";
+  }
+  for (const auto& [id, zone] : feed.zones()) {
+    if (zone.active) text += fmt::format("  zone {}", zone.name);
+  }
+  if (const auto* health = feed.health()) {
+    text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
+                        health->tick_p50_us, health->tick_p999_us, health->tick_max_us,
+                        health->overruns);
+  }
+  if (report.newest_pose_ns != 0) {
+    text += fmt::format("  poses {:.2f} ms old",
+                        kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns));
+  }
+  return text;
+}
+
+std::string final_summary(const Feed& feed, double seconds) {
+  if (!feed.any()) return fmt::format("no report came in {:.1f} s\n", seconds);
+  std::string text = fmt::format("{} reports in {:.1f} s, {} missed, {} restarts of the daemon\n",
+                                 feed.reports(), seconds, feed.missed(), feed.restarts());
+  if (feed.smallest().known) {
+    const clearance_msg_PairDistance& pair = feed.smallest().pair;
+    text += fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n", pair.distance,
+                        pair.lower, pair.upper, feed.pair_name(pair), feed.smallest().cycle);
+  } else {
+    text += "minimum  none: no pair was ever evaluated\n";
+  }
+  if (const auto* health = feed.health()) {
+    text += fmt::format(
+        "tick     p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us\n"
+        "daemon   {} overruns, {} skipped cycles, {} batches, {} lost\n",
+        health->tick_p50_us, health->tick_p999_us, health->tick_max_us, health->overruns,
+        health->skipped_cycles, health->batches, health->lost_batches);
+  }
+  return text;
+}
+
+}  // namespace clearance::watch
