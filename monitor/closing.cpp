@@ -1,5 +1,6 @@
 #include "monitor/closing.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace clearance {
@@ -14,7 +15,7 @@ double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b, const Vec3&
 }
 
 double time_to_contact(double distance, double closing_speed) noexcept {
-  if (distance != distance) return distance;
+  if (std::isnan(distance)) return distance;
   if (closing_speed <= 0.0) return std::numeric_limits<double>::infinity();
   return distance <= 0.0 ? 0.0 : distance / closing_speed;
 }

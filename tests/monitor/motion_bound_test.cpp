@@ -1,0 +1,68 @@
+#include "monitor/motion_bound.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::Random;
+
+Pose turned(const Pose& pose, const Vec3& axis, double angle) {
+  Pose result = pose;
+  result.orientation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())) * pose.orientation;
+  return result;
+}
+
+TEST(MotionBound, NoPointMovesFartherThanTheBound) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const Pose before = random.pose(5.0);
+    const double scale = std::pow(10.0, random.in(-15.0, 0.0));
+    Pose after = turned(before, random.vec(1.0), scale * random.in(-3.2, 3.2));
+    after.position += scale * random.vec(2.0);
+    after.orientation.coeffs() *= random.in(0.9991, 1.0009) * (i % 2 == 0 ? 1.0 : -1.0);
+    const Motion motion = motion_between(before, after);
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 point = random.vec(2.0);
+      const test::LongVec exact = point.cast<long double>();
+      const long double moved = (test::exactly(after, exact) - test::exactly(before, exact)).norm();
+      const double reach = static_cast<double>(exact.norm());  // rounds either way: see the slack
+      ASSERT_LE(moved, moved_at_most(motion, reach * (1.0 + 1e-15))) << "case " << i;
+    }
+  }
+}
+
+TEST(MotionBound, IsTightForAPointThatMovesStraightAndForOneThatTurns) {
+  const Pose before = test::at(1.0, 2.0, 3.0);
+  const Pose shifted = test::at(1.0, 2.5, 3.0);
+  EXPECT_NEAR(moved_at_most(motion_between(before, shifted), 7.0), 0.5, 1e-12);
+  const Pose spun = turned(before, Vec3::UnitZ(), 0.01);
+  EXPECT_NEAR(moved_at_most(motion_between(before, spun), 7.0), 7.0 * 2.0 * std::sin(0.005), 1e-6);
+}
+
+TEST(MotionBound, EqualPosesAreExactlyNoMotionEvenOfUnboundedBodies) {
+  const Pose pose = Random(2).pose(3.0);
+  EXPECT_EQ(moved_at_most(motion_between(pose, pose), kInfinity), 0.0);
+}
+
+TEST(MotionBound, AHalfTurnMovesAPointByItsDiameterAtMost) {
+  const Pose spun = turned({}, Vec3(1.0, -2.0, 0.5), M_PI);
+  EXPECT_EQ(motion_between({}, spun).chord, 2.0);
+}
+
+TEST(MotionBound, TheOppositeQuaternionIsTheSameOrientation) {
+  const Pose pose = Random(3).pose(3.0);
+  Pose opposite = pose;
+  opposite.orientation.coeffs() *= -1.0;
+  EXPECT_LT(moved_at_most(motion_between(pose, opposite), 1.0), 1e-14);
+}
+
+TEST(MotionBound, ShiftsTooSmallToSquareStillCount) {
+  EXPECT_GE(motion_between(test::at(0, 0, 0), test::at(1e-200, 0, 0)).shift, 1e-200);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,165 @@
+#include "monitor/object_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kEarliest = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kFutureLimit = 5 * kTick;
+
+PoseSample good() { return test::sample(0, test::at(1, 2, 3), kStart); }
+
+std::optional<Reject> judged(const PoseSample& sample) {
+  return refusal(sample, ObjectState{}, kStart, kFutureLimit);
+}
+
+Object late_after(std::int64_t limit_ns, double max_speed) {
+  Object object = test::moving("object", {});
+  object.age_limit_ns = limit_ns;
+  object.max_speed = max_speed;
+  return object;
+}
+
+TEST(ObjectState, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
+
+TEST(ObjectState, RefusesEveryNonFiniteFigure) {
+  for (const double bad : {kNan, kInfinity, -kInfinity, 2e9}) {
+    for (int i = 0; i < 3; ++i) {
+      PoseSample sample = good();
+      sample.world_from_object.position[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample = good();
+      sample.has_twist = true;
+      sample.twist.linear[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample.twist = {};
+      sample.twist.angular[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample.has_twist = false;  // then nobody reads it
+      EXPECT_EQ(judged(sample), std::nullopt);
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs()[i] = kNan;
+    EXPECT_EQ(judged(sample), Reject::kNonFinite);
+  }
+}
+
+TEST(ObjectState, RefusesAQuaternionFarFromUnitLength) {
+  for (const double norm : {0.0, 0.5, 0.998, 1.002, 2.0, 1e300}) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs() *= norm;
+    EXPECT_EQ(judged(sample), Reject::kNotUnit) << norm;
+  }
+  for (const double norm : {0.9991, 1.0009, -1.0}) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs() *= norm;
+    EXPECT_EQ(judged(sample), std::nullopt) << norm;
+  }
+}
+
+TEST(ObjectState, RefusesAStampFartherAheadThanTheLimit) {
+  PoseSample sample = good();
+  sample.stamp_ns = kStart + kFutureLimit;
+  EXPECT_EQ(judged(sample), std::nullopt);
+  sample.stamp_ns += 1;
+  EXPECT_EQ(judged(sample), Reject::kFuture);
+  sample.stamp_ns = kLatest;
+  EXPECT_EQ(refusal(sample, ObjectState{}, kEarliest, kFutureLimit), Reject::kFuture);
+}
+
+TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
+  ObjectState state;
+  accept(good(), state);
+  PoseSample sample = good();
+  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), std::nullopt);
+  sample.stamp_ns -= 1;
+  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), Reject::kBackwards);
+}
+
+TEST(ObjectState, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
+  ObjectState state;
+  accept(good(), state);
+  EXPECT_EQ(state.twist.linear, Vec3::Zero());
+
+  PoseSample next = good();
+  next.stamp_ns += 4 * kTick;
+  next.world_from_object.position += Vec3(0.004, 0, 0);
+  next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
+  next.world_from_object.orientation.coeffs() *= -1.0;  // the same, the short way round
+  accept(next, state);
+  EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((state.twist.angular - Vec3(0, 0.5, 0)).norm(), 0.0, 1e-9);
+
+  accept(next, state);  // again, with the same stamp: nothing new about its speed
+  EXPECT_NEAR(state.twist.linear.x(), 1.0, 1e-9);
+
+  next.has_twist = true;
+  next.twist.linear = Vec3(7, 8, 9);
+  next.stamp_ns += kTick;
+  accept(next, state);
+  EXPECT_EQ(state.twist.linear, Vec3(7, 8, 9));
+}
+
+TEST(ObjectState, MotionIsTheNetOneOfATick) {
+  const Object object = late_after(kTick, kInfinity);
+  ObjectState state;
+  accept(good(), state);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+  PoseSample there = good(), back = good();
+  there.world_from_object.position += Vec3(5, 0, 0);
+  accept(there, state);
+  accept(back, state);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+  accept(there, state);
+  advance(object, kStart, state);
+  EXPECT_NEAR(state.motion.shift, 5.0, 1e-12);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+}
+
+TEST(ObjectState, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
+  const Object stated = late_after(20 * kTick, 2.0);
+  ObjectState state;
+  accept(good(), state);
+  advance(stated, kStart + 20 * kTick, state);
+  EXPECT_FALSE(state.late);
+  EXPECT_EQ(state.may_have_moved, 0.0);
+  advance(stated, kStart + 100 * kTick, state);
+  EXPECT_TRUE(state.late);
+  EXPECT_GE(state.may_have_moved, 0.2);
+  EXPECT_NEAR(state.may_have_moved, 0.2, 1e-12);
+  EXPECT_EQ(state.age_ns, 100 * kTick);
+  EXPECT_TRUE(state.known());
+
+  advance(late_after(20 * kTick, kInfinity), kStart + 100 * kTick, state);
+  EXPECT_FALSE(state.known());
+}
+
+TEST(ObjectState, AgesOfExtremeStampsDoNotOverflow) {
+  PoseSample sample = good();
+  sample.stamp_ns = kEarliest;
+  ObjectState state;
+  accept(sample, state);
+  advance(late_after(0, 1.0), kLatest, state);
+  EXPECT_EQ(state.age_ns, kLatest);
+  sample.stamp_ns = kLatest;
+  accept(sample, state);
+  advance(late_after(0, 1.0), kEarliest, state);
+  EXPECT_EQ(state.age_ns, 0);
+}
+
+}  // namespace
+}  // namespace clearance
