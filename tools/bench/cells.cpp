@@ -1,0 +1,161 @@
+#include "tools/bench/cells.hpp"
+
+#include <benchmark/benchmark.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "config/cell_file.hpp"
+#include "core/distance.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance::bench {
+namespace {
+
+// A second of motion at 1 kHz.
+constexpr int kSteps = 1000;
+
+struct PartPair {
+  const ConvexPolyhedron* a;
+  const ConvexPolyhedron* b;
+  std::uint32_t object_a, object_b;
+  Pose a_in_object, b_in_object;
+};
+
+// A cell with its poses at every step and its part pairs, made once a cell.
+struct Workload {
+  Scene scene;
+  std::vector<std::vector<Pose>> world_from_object;  // [step][object]
+  std::vector<std::vector<PoseSample>> samples;      // [step]
+  std::vector<PartPair> pairs;
+};
+
+std::vector<PartPair> part_pairs(const Scene& scene) {
+  std::vector<PartPair> pairs;
+  for (const ObjectPair& pair : scene.pairs) {
+    for (const Part& a : scene.objects[pair.first].parts) {
+      for (const Part& b : scene.objects[pair.second].parts) {
+        pairs.push_back(
+            {&a.shape, &b.shape, pair.first, pair.second, a.object_from_part, b.object_from_part});
+      }
+    }
+  }
+  return pairs;
+}
+
+std::shared_ptr<Workload> make_workload(Scene scene) {
+  auto load = std::make_shared<Workload>();
+  load->scene = std::move(scene);
+  std::vector<PoseAt> poses;
+  for (int step = 0; step < kSteps; ++step) {
+    std::vector<Pose> world(load->scene.objects.size());
+    for (std::size_t i = 0; i < world.size(); ++i)
+      world[i] = load->scene.objects[i].world_from_object;
+    std::vector<PoseSample> samples;
+    poses_at(load->scene, 1e-3 * step, poses);
+    for (const PoseAt& p : poses) {
+      world[p.object] = p.world_from_object;
+      samples.push_back({p.object, 0, p.world_from_object, p.twist, true});
+    }
+    load->world_from_object.push_back(std::move(world));
+    load->samples.push_back(std::move(samples));
+  }
+  load->pairs = part_pairs(load->scene);
+  return load;
+}
+
+void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
+  std::vector<TrackingState> tracking(load.pairs.size());
+  double sum = 0.0, widest = 0.0;
+  std::uint64_t iterations = 0, queries = 0;
+  std::size_t step = 0;
+  for (auto _ : state) {
+    const auto& world = load.world_from_object[step++ % kSteps];
+    for (std::size_t i = 0; i < load.pairs.size(); ++i) {
+      const PartPair& p = load.pairs[i];
+      if (!tracked) tracking[i] = {};
+      const RelativePose a_from_b = relative_pose(compose(world[p.object_a], p.a_in_object),
+                                                  compose(world[p.object_b], p.b_in_object));
+      const DistanceResult r = distance(*p.a, *p.b, a_from_b, tracking[i]);
+      sum += r.distance;
+      widest = std::max(widest, r.upper - r.lower);
+      iterations += r.iterations;
+      ++queries;
+    }
+  }
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(static_cast<std::int64_t>(queries));
+  state.counters["iterations"] = static_cast<double>(iterations) / static_cast<double>(queries);
+  state.counters["widest_gap"] = widest;
+  state.counters["ns_per_pair"] =
+      benchmark::Counter(static_cast<double>(queries) * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+double cpu_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double>& sorted, double q) {
+  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
+}
+
+void time_ticks(benchmark::State& state, const Workload& load) {
+  Monitor monitor(load.scene);
+  std::vector<double> times;
+  std::int64_t now_ns = 1'000'000'000;
+  std::size_t step = 0;
+  std::uint64_t queries = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    std::vector<PoseSample> samples = load.samples[step++ % kSteps];
+    now_ns += 1'000'000;
+    for (PoseSample& s : samples) s.stamp_ns = now_ns;
+    state.ResumeTiming();
+    const double start = cpu_ns();
+    queries += monitor.tick(samples, now_ns).queries;
+    times.push_back(cpu_ns() - start);
+  }
+  std::sort(times.begin(), times.end());
+  state.counters["p50"] = quantile(times, 0.5);
+  state.counters["p99.9"] = quantile(times, 0.999);
+  state.counters["max"] = times.back();
+  state.counters["queries"] = static_cast<double>(queries) / static_cast<double>(times.size());
+  state.counters["pairs"] = static_cast<double>(load.scene.pairs.size());
+}
+
+void register_cell(const std::string& name, Scene scene) {
+  const auto load = make_workload(std::move(scene));
+  benchmark::RegisterBenchmark(("cell/tracked/" + name).c_str(),
+                               [load](benchmark::State& s) { time_queries(s, *load, true); });
+  benchmark::RegisterBenchmark(("cell/cold/" + name).c_str(),
+                               [load](benchmark::State& s) { time_queries(s, *load, false); });
+  benchmark::RegisterBenchmark(("cell/tick/" + name).c_str(),
+                               [load](benchmark::State& s) { time_ticks(s, *load); });
+}
+
+}  // namespace
+
+void register_cells(const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") files.insert(entry.path());
+  }
+  for (const auto& file : files) {
+    CellResult cell = read_cell(file);
+    if (auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
+      for (const CellError& e : *errors) std::fprintf(stderr, "%s\n", e.text.c_str());
+      continue;
+    }
+    register_cell(file.stem().string(), std::move(std::get<Scene>(cell)));
+  }
+}
+
+}  // namespace clearance::bench

@@ -1,0 +1,37 @@
+// clearance-bench: how fast, and how exact, on this machine. Google Benchmark's own options apply.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <string_view>
+
+#include "tools/bench/cells.hpp"
+
+namespace {
+
+constexpr const char* kHelp =
+    "clearance-bench: times the core and the tick. All times are thread CPU time.\n"
+    "\n"
+    "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
+    "tracked\n"
+    "  cell/cold/NAME     the same without what the last query left\n"
+    "  cell/tick/NAME     one Monitor::tick; counters p50, p99.9 and max in ns\n"
+    "\n"
+    "example: clearance-bench --benchmark_filter=cell/ --benchmark_repetitions=5\n"
+    "\n"
+    "Options of Google Benchmark:\n";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "--help" || std::string_view(argv[i]) == "-h") {
+      std::fputs(kHelp, stdout);
+    }
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  clearance::bench::register_cells(CLEARANCE_CELLS);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
