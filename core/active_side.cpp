@@ -31,7 +31,7 @@ bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& 
 
 void ActiveSide::place_cold() noexcept {
   if (!body_.facets.empty()) {
-    place(Feature::kInside, kNone, body_.interior);
+    place_inside(body_.interior);
   } else if (!body_.edges.empty()) {
     place(Feature::kEdge, 0, body_.interior);
   } else {

@@ -38,6 +38,10 @@ class ActiveSide {
   [[nodiscard]] Vec3 direction_to_common(const Vec3& v) const noexcept {
     return pose_ ? Vec3(pose_->rotation * v) : v;
   }
+  // How far direction_to_own can be from the exact rotation, per unit length.
+  [[nodiscard]] double direction_error() const noexcept {
+    return pose_ && pose_->rotation_error > 0.0 ? pose_->rotation_error + 0x1p-50 : 0.0;
+  }
   [[nodiscard]] Vec3 direction_to_own(const Vec3& v) const noexcept {
     return pose_ ? Vec3(pose_->rotation.transpose() * v) : v;
   }
@@ -60,7 +64,12 @@ class ActiveSide {
     const double s = std::clamp((own - e.point).dot(e.direction), e.begin, e.end);
     place(Feature::kEdge, index, e.point + s * e.direction);
   }
-  void move_to(const Vec3& own) noexcept { place(feature_, index_, own); }
+  // On a facet's plane: a long way along a rounded direction leaves it.
+  void place_on_facet(std::int32_t index, const Vec3& own) noexcept {
+    const Facet& f = body_.facets[index];
+    place(Feature::kFacet, index, own - (f.normal.dot(own) - f.offset) * f.normal);
+  }
+  void place_inside(const Vec3& own) noexcept { place(Feature::kInside, kNone, own); }
 
   // Where a query starts that knows nothing: inside, or on the only feature of a point or a
   // segment.

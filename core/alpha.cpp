@@ -63,9 +63,12 @@ void advance(ActiveSide& side, const Vec3& move_in_common, const Alpha& step) no
     if (step.blocking != kNone) return side.place_at_vertex(step.blocking);
     return side.place_on_edge(side.index(), to);
   }
-  if (step.blocking == kNone) return side.move_to(to);
-  if (side.feature() == Feature::kFacet) return side.place_on_edge(step.blocking, to);
-  side.place(Feature::kFacet, step.blocking, to);
+  if (side.feature() == Feature::kFacet) {
+    if (step.blocking != kNone) return side.place_on_edge(step.blocking, to);
+    return side.place_on_facet(side.index(), to);
+  }
+  if (step.blocking != kNone) return side.place_on_facet(step.blocking, to);
+  side.place_inside(to);
 }
 
 }  // namespace clearance

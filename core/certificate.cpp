@@ -55,11 +55,13 @@ std::int32_t start(const ActiveSide& s) noexcept {
 
 double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within,
              bool other_bounded) noexcept {
-  if (facet != kNone) return s.body().facets[facet].offset;
+  const bool both_unbounded = !s.body().bounded() && !other_bounded;
+  if (facet != kNone && !both_unbounded) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
   const double anchors = support(s.body(), m, start(s)).reach;
   if (s.body().bounded()) return anchors;
-  if (!other_bounded) return rays_stay_below(s.body(), m) ? anchors : kInfinity;
+  if (both_unbounded)
+    return rays_stay_below(s.body(), m, s.direction_error()) ? anchors : kInfinity;
   return anchors + reach_along_rays(s.body(), m, within);
 }
 

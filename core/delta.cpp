@@ -84,8 +84,8 @@ void facet_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_
     return;
   }
   const Vec3 between = q.common() - p.common();
-  const Vec3 on_line_p = p.common() + (between.dot(m) / m_across.dot(m)) * m_across;
-  const Vec3 on_line_q = q.common() - (between.dot(n) / n_across.dot(n)) * n_across;
+  const Vec3 on_line_p = p.common() + (between.dot(m) / sine2) * m_across;
+  const Vec3 on_line_q = q.common() - (between.dot(n) / sine2) * n_across;
   to_p = to_q = 0.5 * (on_line_p + on_line_q);
 }
 

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/simplex.hpp"
+
 namespace clearance {
 namespace {
 
@@ -43,16 +45,23 @@ class WorstNormals {
     if (size_ < items_.size()) items_[size_++] = n;
   }
   [[nodiscard]] Vec3 shortest() const noexcept {
+    std::array<WideVec, 4> simplex{wide(items_[0])};
+    std::size_t size = 1;
     Vec3 p = items_[0];
     for (int k = 0; k < kHullSteps; ++k) {
       std::size_t lowest = 0;
       for (std::size_t i = 1; i < size_; ++i) {
         if (items_[i].dot(p) < items_[lowest].dot(p)) lowest = i;
       }
-      const Vec3 to = items_[lowest] - p;
-      const double gain = -to.dot(p);
-      if (!(gain > 1e-3 * p.squaredNorm())) break;
-      p += std::min(1.0, gain / to.squaredNorm()) * to;
+      if (p.squaredNorm() - items_[lowest].dot(p) < 1e-9 * p.squaredNorm() || size == 4) break;
+      simplex[size++] = wide(items_[lowest]);
+      const ClosestPoint closest = closest_to_origin(simplex, size);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        if (closest.weights[i].high > 0.0) simplex[kept++] = simplex[i];
+      }
+      size = kept;
+      p = narrow(closest.point);
     }
     return p;
   }

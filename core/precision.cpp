@@ -24,7 +24,8 @@ Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   p.size = p.reach_a + p.reach_b + apart;
   p.slack = kEvaluation * kUlp * p.size + a.position_error + b.position_error +
             a_from_b.rotation_error * p.reach_b + a_from_b.translation_error;
-  p.tight = 8 * kUlp * p.size;
+  // Along the rays of an unbounded body, direction errors grow with the distance.
+  p.tight = (a.bounded() && b.bounded() ? 8 : 64) * kUlp * p.size;
   return p;
 }
 

@@ -117,14 +117,15 @@ double ray_condition(const ConvexPolyhedron& body) noexcept {
   }
   const double skew = line_count == 2 ? lines[0].cross(lines[1]).norm() : 1.0;
   for (std::size_t i = 0; i < line_count; ++i) middle -= middle.dot(lines[i]) * lines[i];
-  double opening = 1.0;  // least component of a pointed ray along `middle`
+  const double of_lines = line_count == 0 ? 0.0 : line_count == 1 ? 1.0 : 1.5 / skew;
+  double opening = kInfinity;  // least component of a pointed ray along `middle`
   const double length = middle.norm();
   for (const Ray& ray : rays) {
     if (is_line(ray.direction)) continue;
     opening = std::min(opening, middle.dot(ray.direction.normalized()) / length);
   }
   if (!(opening > 0.0)) return kInfinity;
-  return 1.0 / opening + 1.5 * static_cast<double>(line_count) * (1.0 + 1.0 / opening) / skew;
+  return 1.0 / opening + of_lines * (1.0 + 1.0 / opening);
 }
 
 // The sign of m.r, exactly.
@@ -154,10 +155,10 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
   return (steepest + 0x1p-50) * ray_condition(body) * (within + body.bounding_radius);
 }
 
-bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m, double uncertainty) noexcept {
   return std::all_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
-    if (ray.exact) return exact_sign(m, ray.direction) <= 0;
-    return m.dot(ray.direction) < -kFalls;
+    if (ray.exact && uncertainty == 0.0) return exact_sign(m, ray.direction) <= 0;
+    return m.dot(ray.direction) < -(kFalls + uncertainty) * ray.direction.norm();
   });
 }
 

@@ -29,8 +29,11 @@ struct Support {
 [[nodiscard]] double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m,
                                       double within) noexcept;
 
-// Whether the unbounded body certainly does not reach beyond its anchors along the exact direction
-// of m: every ray falls away by more than rounding, or stands exactly across it.
-[[nodiscard]] bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m) noexcept;
+// Whether the unbounded body certainly does not reach beyond its anchors along any direction within
+// `uncertainty` of m: every ray falls away by more than that and rounding. An uncertainty of 0
+// means exactly the direction of these three doubles; then exact rays may also stand exactly across
+// it.
+[[nodiscard]] bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m,
+                                   double uncertainty) noexcept;
 
 }  // namespace clearance
