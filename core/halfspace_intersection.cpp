@@ -19,8 +19,7 @@ Integer4 exact_plane(const HalfSpace& row) {
 }
 
 ShapeError no_interior(const NoInterior& proof) {
-  const char* listed = proof.rows.size() == 1 ? "row " : "rows ";
-  std::string rows = listed;
+  std::string rows = "rows ";
   for (std::size_t i = 0; i < proof.rows.size(); ++i) {
     if (i > 0) rows += i + 1 == proof.rows.size() ? " and " : ", ";
     rows += std::to_string(proof.rows[i] + 1);

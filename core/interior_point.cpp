@@ -96,16 +96,13 @@ NormalSpan normal_span(std::span<const HalfSpace> rows) {
 std::variant<Integer4, NoInterior> interior_point(std::span<const HalfSpace> rows) {
   const int unit = unit_exponent(rows);
   DepthProgramme programme(rows, spanning_axes(rows), unit);
-  // A deep point of a body of ordinary proportions is near its planes; only a proof needs more
-  // room.
-  constexpr int kUsualBox = 4;
-  programme.solve(kUsualBox);
-  if (!programme.has_interior()) {
-    std::optional<NoInterior> proof = programme.proof();
-    if (proof) return *proof;
-    programme.solve(programme.ample_box());
-    proof = programme.proof();
-    if (proof && !programme.has_interior()) return *proof;
+  // A deep point of a body of ordinary proportions is near its planes. One between planes that are
+  // almost parallel may be far away, and an infeasibility proof may not use the box: those need
+  // more room.
+  for (const Integer& box : {Integer(4), Integer(Integer(1) << 40), programme.ample_box()}) {
+    programme.solve(box);
+    if (programme.has_interior()) break;
+    if (const std::optional<NoInterior> proof = programme.proof()) return *proof;
   }
   // Short coordinates keep the numbers of all that follows short.
   for (const int bits : {24, 53, 106, 212}) {

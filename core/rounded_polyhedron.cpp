@@ -262,7 +262,7 @@ Vec3 centroid(const ConvexPolyhedron& body) {
   return volume > 0.0 ? Vec3(apex + moment / (4.0 * volume)) : apex;
 }
 
-// From the mean of the anchors along every ray, as far as the anchors are spread.
+// From the mean of the anchors along the rays' mean, as far as the anchors are spread.
 Vec3 beyond_anchors(const ConvexPolyhedron& body) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());
@@ -271,12 +271,15 @@ Vec3 beyond_anchors(const ConvexPolyhedron& body) {
   if (spread == 0.0) spread = std::max(mean.norm(), 1.0);
   Vec3 along = Vec3::Zero();
   for (const Ray& ray : body.rays) along += ray.direction.normalized();
-  return mean + spread * along;
+  return mean + spread * (along.isZero(0.0) ? along : along.normalized());
 }
 
-Vec3 deepest_candidate(const ConvexPolyhedron& body, const Vec3& known) {
-  const Vec3 other = body.bounded() ? centroid(body) : beyond_anchors(body);
-  return depth(body, other) > depth(body, known) ? other : known;
+// The centre, unless the body is so thin that doubles lose it; `known` is inside but may be far off
+// centre.
+Vec3 well_inside(const ConvexPolyhedron& body, const Vec3& known) {
+  const Vec3 centre = body.bounded() ? centroid(body) : beyond_anchors(body);
+  const double reached = depth(body, centre);
+  return reached > 0.0 || reached >= depth(body, known) ? centre : known;
 }
 
 }  // namespace
@@ -296,7 +299,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
     inside[static_cast<Eigen::Index>(i)] =
         nearest_quotient(solid.interior[i], solid.interior[3]).value;
   }
-  body.interior = deepest_candidate(body, inside);
+  body.interior = well_inside(body, inside);
   return body;
 }
 
