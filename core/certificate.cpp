@@ -53,16 +53,40 @@ std::int32_t start(const ActiveSide& s) noexcept {
   return std::max(0, e.vertex[0] != kNone ? e.vertex[0] : e.vertex[1]);
 }
 
-double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within,
-             bool other_bounded) noexcept {
-  const bool both_unbounded = !s.body().bounded() && !other_bounded;
-  if (facet != kNone && !both_unbounded) return s.body().facets[facet].offset;
+double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within) noexcept {
+  if (facet != kNone) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
-  const double anchors = support(s.body(), m, start(s)).reach;
-  if (s.body().bounded()) return anchors;
-  if (both_unbounded)
-    return rays_stay_below(s.body(), m, s.direction_error()) ? anchors : kInfinity;
-  return anchors + reach_along_rays(s.body(), m, within);
+  return support(s.body(), m, start(s)).reach + reach_along_rays(s.body(), m, within);
+}
+
+// Two unbounded bodies are apart only if some direction has both bodies' rays falling away or
+// standing exactly across it. How far from `n` (an angle) there certainly is one; infinity: none is
+// known.
+double tilt_to_proof(const Vec3& n, const ActiveSide& a, const ActiveSide& b) noexcept {
+  const double margin = 0x1p-40 + a.direction_error() + b.direction_error();
+  const LevelRays of_a = level_rays(a.body(), a.direction_to_own(n), margin);
+  const LevelRays of_b = level_rays(b.body(), -b.direction_to_own(n), margin);
+  const bool exact = a.direction_error() == 0.0 && b.direction_error() == 0.0;
+  if (exact && of_a.exactly_level && of_b.exactly_level) return 0.0;
+  if (of_a.directions > 1 || of_b.directions > 1) return kInfinity;
+  // One level line each: the direction across both is near n, and turns no other ray upwards.
+  const Vec3 line_a = a.direction_to_common(of_a.direction);
+  const Vec3 line_b = b.direction_to_common(of_b.direction);
+  const double sine = of_a.directions + of_b.directions < 2 ? 1.0 : line_a.cross(line_b).norm();
+  const double rounding = 0x1p-50 + a.direction_error() + b.direction_error();
+  const double tilt =
+      2.0 * (std::abs(line_a.dot(n)) + std::abs(line_b.dot(n)) + 2.0 * rounding) / sine;
+  return tilt < margin - rounding ? tilt : kInfinity;
+}
+
+double separation_of_unbounded(const Vec3& n, const ActiveSide& a, const ActiveSide& b) noexcept {
+  const double tilt = tilt_to_proof(n, a, b);
+  if (!(tilt < kInfinity)) return -kInfinity;
+  const double of_a = support(a.body(), n, start(a)).reach;
+  const double of_b = support(b.body(), -b.direction_to_own(n), start(b)).reach;
+  const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
+  const double moved = a.body().bounding_radius + b.body().bounding_radius + origin_of_b.norm();
+  return (n.dot(origin_of_b) - of_b) - of_a - tilt * moved;
 }
 
 }  // namespace
@@ -84,8 +108,9 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
 
 double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
                   const Precision& p) noexcept {
-  const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a, b.body().bounded());
-  const double of_b = reach(b, Vec3(-s.normal), s.facet_of_b, p.reach_b, a.body().bounded());
+  if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s.normal, a, b);
+  const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a);
+  const double of_b = reach(b, -s.normal, s.facet_of_b, p.reach_b);
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }

@@ -155,11 +155,23 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
   return (steepest + 0x1p-50) * ray_condition(body) * (within + body.bounding_radius);
 }
 
-bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m, double uncertainty) noexcept {
-  return std::all_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
-    if (ray.exact && uncertainty == 0.0) return exact_sign(m, ray.direction) <= 0;
-    return m.dot(ray.direction) < -(kFalls + uncertainty) * ray.direction.norm();
-  });
+LevelRays level_rays(const ConvexPolyhedron& body, const Vec3& m, double margin) noexcept {
+  LevelRays level;
+  for (const Ray& ray : body.rays) {
+    const double slope = m.dot(ray.direction) / ray.direction.norm();
+    if (slope < -margin) continue;
+    const bool across = ray.exact && exact_sign(m, ray.direction) <= 0;
+    level.exactly_level = level.exactly_level && across;
+    const Vec3 direction = ray.direction.normalized();
+    if (slope > margin ||
+        (level.directions > 0 && direction != level.direction && direction != -level.direction)) {
+      level.directions = 2;
+    } else {
+      level.directions = std::max(level.directions, 1);
+      level.direction = direction;
+    }
+  }
+  return level;
 }
 
 }  // namespace clearance

@@ -29,11 +29,16 @@ struct Support {
 [[nodiscard]] double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m,
                                       double within) noexcept;
 
-// Whether the unbounded body certainly does not reach beyond its anchors along any direction within
-// `uncertainty` of m: every ray falls away by more than that and rounding. An uncertainty of 0
-// means exactly the direction of these three doubles; then exact rays may also stand exactly across
-// it.
-[[nodiscard]] bool rays_stay_below(const ConvexPolyhedron& body, const Vec3& m,
-                                   double uncertainty) noexcept;
+// The rays of a body that rounding cannot tell from level ones, seen along m.
+struct LevelRays {
+  int directions =
+      0;  // 0: all fall away; 1: all level ones are parallel; 2: there are more, or one rises
+  Vec3 direction = Vec3::Zero();  // of the level ones, if they are all parallel; unit
+  bool exactly_level = true;      // they stand exactly across the doubles of m, or all fall away
+};
+
+// A ray falls away when it does so by more than `margin` per unit length.
+[[nodiscard]] LevelRays level_rays(const ConvexPolyhedron& body, const Vec3& m,
+                                   double margin) noexcept;
 
 }  // namespace clearance
