@@ -43,8 +43,10 @@ class TreeBuilder : public YAML::EventHandler {
     if (found == anchored_.end()) {
       throw YAML::ParserException(mark, "an alias inside of the value that it stands for");
     }
-    nodes_ += count_nodes(found->second);
-    check_size(mark);
+    copies_ += count_nodes(found->second);
+    if (copies_ > kMaxCopies) {
+      throw YAML::ParserException(mark, "aliases stand for more than a million values");
+    }
     finish(YamlNode(found->second), 0);
   }
 
@@ -79,18 +81,12 @@ class TreeBuilder : public YAML::EventHandler {
     bool has_key;
   };
 
-  YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
-    ++nodes_;
-    check_size(mark);
+  static YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
     YamlNode node;
     node.kind = kind;
     node.line = mark.line + 1;
     node.column = mark.column + 1;
     return node;
-  }
-
-  void check_size(const YAML::Mark& mark) const {
-    if (nodes_ > kMaxNodes) throw YAML::ParserException(mark, "more than 4 million values");
   }
 
   void close() {
@@ -117,7 +113,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   std::vector<Open> open_;
   std::map<YAML::anchor_t, YamlNode> anchored_;
-  std::size_t nodes_ = 0;
+  std::size_t copies_ = 0;
 };
 
 }  // namespace

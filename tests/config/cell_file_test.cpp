@@ -1,0 +1,181 @@
+#include "config/cell_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/config/cells.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CellFile, DefaultsAreThoseOfTheReference) {
+  const Scene scene = scene_of("name: test\nunits: {length: m, angle: deg}\n" + kBoxes);
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.rate_hz, 1000.0);
+  EXPECT_EQ(scene.budget, 2000u);
+  EXPECT_EQ(scene.future_limit_ns, 5'000'000);
+  EXPECT_EQ(scene.domain, 0u);
+  EXPECT_EQ(scene.partition, "");
+  EXPECT_EQ(scene.topics.distances, "clearance/distances");
+  ASSERT_EQ(scene.objects.size(), 3u);
+  EXPECT_EQ(scene.objects[0].margin, 0.0);
+  EXPECT_EQ(scene.objects[0].max_speed, kInfinity);
+  EXPECT_EQ(scene.objects[0].age_limit_ns, 20'000'000);
+  EXPECT_FALSE(scene.objects[0].fixed);
+  EXPECT_TRUE(scene.objects[2].fixed);
+  EXPECT_FALSE(scene.objects[2].parts[0].shape.bounded());
+}
+
+TEST(CellFile, EverySettingArrives) {
+  const Scene scene = scene_of(
+      "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nfuture_limit_ms: "
+      "2.5\n"
+      "dds: {domain: 42, partition: cell_7, topics: {poses: a/poses, zones: b_zones}}\n"
+      "defaults: {margin: 4, max_speed: 1500, age_limit_ms: 12}\n"
+      "objects:\n"
+      "  - {name: left, box: {size: [100, 200, 300]}}\n"
+      "  - {name: right, margin: 7, max_speed: 900, age_limit_ms: 1, sphere: {radius: 50, centre: "
+      "[1, 2, 3]}}\n"
+      "  - name: table\n"
+      "    fixed: true\n"
+      "    pose: {xyz: [1000, 0, -500], rpy: [0, 0, 90]}\n"
+      "    parts: [{name: top, box: {size: [1, 1, 1]}, pose: {xyz: [300, 0, 0]}}]\n"
+      "pairs: [{between: [left, right], publish: false}, {between: [left, table]}]\n"
+      "zones: [{name: slow, between: [left, table], enter_below: 120, leave_above: 150}]\n");
+  EXPECT_EQ(scene.rate_hz, 250.0);
+  EXPECT_EQ(scene.budget, 77u);
+  EXPECT_EQ(scene.future_limit_ns, 2'500'000);
+  EXPECT_EQ(scene.domain, 42u);
+  EXPECT_EQ(scene.partition, "cell_7");
+  EXPECT_EQ(scene.topics.poses, "a/poses");
+  EXPECT_EQ(scene.topics.zones, "b_zones");
+  EXPECT_EQ(scene.topics.health, "clearance/health");
+  EXPECT_EQ(scene.objects[0].margin, 0.004);
+  EXPECT_EQ(scene.objects[0].max_speed, 1.5);
+  EXPECT_EQ(scene.objects[1].margin, 0.007);
+  EXPECT_EQ(scene.objects[1].max_speed, 0.9);
+  EXPECT_EQ(scene.objects[1].age_limit_ns, 1'000'000);
+  EXPECT_EQ(scene.objects[1].parts[0].shape.radius, 0.05);
+  EXPECT_EQ(scene.objects[2].world_from_object.position, Vec3(1.0, 0.0, -0.5));
+  EXPECT_EQ(scene.objects[2].parts[0].object_from_part.position, Vec3(0.3, 0.0, 0.0));
+  EXPECT_EQ(scene.objects[2].parts[0].name, "top");
+  ASSERT_EQ(scene.pairs.size(), 2u);
+  EXPECT_FALSE(scene.pairs[0].publish);
+  EXPECT_TRUE(scene.pairs[1].publish);
+  ASSERT_EQ(scene.zones.size(), 1u);
+  EXPECT_EQ(scene.zones[0].enter_below, 0.12);
+  EXPECT_EQ(scene.zones[0].leave_above, 0.15);
+  EXPECT_EQ(scene.zones[0].pairs, std::vector<std::uint32_t>{1});
+}
+
+TEST(CellFile, RightAnglesInDegreesAreExact) {
+  const Scene scene = scene_of(
+      cell_text("objects:\n"
+                "  - {name: a, fixed: true, pose: {rpy: [90, 0, -90]}, box: {size: [1, 1, 1]}}\n"
+                "  - {name: b, fixed: true, pose: {rpy: [0, 450, 180]}, box: {size: [1, 1, 1]}}\n"
+                "  - {name: c, box: {size: [1, 1, 1]}}\n"
+                "pairs: [{between: [a, c]}, {between: [b, c]}]\n"));
+  const RelativePose turned = relative_pose(Pose{}, scene.objects[0].world_from_object);
+  EXPECT_EQ(turned.rotation_error, 0.0);
+  // Roll first: y to z, z to -y; then the yaw of -90 degrees: x to -y, y to x.
+  EXPECT_EQ(turned.rotation * Vec3::UnitX(), -Vec3::UnitY());
+  EXPECT_EQ(turned.rotation * Vec3::UnitY(), Vec3::UnitZ());
+  EXPECT_EQ(relative_pose(Pose{}, scene.objects[1].world_from_object).rotation_error, 0.0);
+}
+
+TEST(CellFile, RpyIsTheConventionOfUrdf) {
+  const Scene scene = scene_of(
+      cell_text("objects:\n"
+                "  - {name: a, fixed: true, pose: {rpy: [10, 20, 30]}, box: {size: [1, 1, 1]}}\n"
+                "  - {name: b, box: {size: [1, 1, 1]}}\n"
+                "pairs: [{between: [a, b]}]\n"));
+  const double deg = 3.14159265358979323846 / 180.0;
+  const Mat3 expected =
+      (Eigen::AngleAxisd(30.0 * deg, Vec3::UnitZ()) * Eigen::AngleAxisd(20.0 * deg, Vec3::UnitY()) *
+       Eigen::AngleAxisd(10.0 * deg, Vec3::UnitX()))
+          .toRotationMatrix();
+  EXPECT_LT((scene.objects[0].world_from_object.orientation.toRotationMatrix() - expected).norm(),
+            1e-15);
+}
+
+TEST(CellFile, QuaternionsAreXyzw) {
+  const Scene scene = scene_of(cell_text(
+      "objects:\n"
+      "  - {name: a, fixed: true, pose: {quaternion: [0.6, 0, 0, 0.8]}, box: {size: [1, 1, 1]}}\n"
+      "  - {name: b, box: {size: [1, 1, 1]}}\n"
+      "pairs: [{between: [a, b]}]\n"));
+  EXPECT_NEAR(scene.objects[0].world_from_object.orientation.x(), 0.6, 1e-15);
+  EXPECT_NEAR(scene.objects[0].world_from_object.orientation.w(), 0.8, 1e-15);
+}
+
+TEST(CellFile, RevisionFollowsEveryByteAndIsNeverZero) {
+  const Scene one = scene_of(cell_text(kBoxes));
+  const Scene same = scene_of(cell_text(kBoxes));
+  const Scene other = scene_of(cell_text(kBoxes + "# a comment\n"));
+  EXPECT_EQ(one.revision, same.revision);
+  EXPECT_NE(one.revision, other.revision);
+  EXPECT_NE(one.revision, 0u);
+  EXPECT_EQ(one.yaml, cell_text(kBoxes));
+}
+
+TEST(CellFile, EveryErrorIsFoundInOnePass) {
+  const std::string errors = errors_of(
+      "name: test\n"
+      "units: {length: inch, angle: deg}\n"
+      "rate_hz: fast\n"
+      "objects:\n"
+      "  - {name: a, box: {size: [1, 1]}}\n"
+      "  - {name: b, sphere: {radius: -1}}\n"
+      "  - {name: b, capsule: {from: [0, 0, 0], to: [0, 0, 1]}}\n"
+      "pairs: [{between: [a, c]}]\n"
+      "colour: red\n");
+  EXPECT_THAT(
+      errors,
+      HasSubstr("cell.yaml:2:17: found the text 'inch'; expected the unit of length, m or mm\n"));
+  EXPECT_THAT(errors, HasSubstr("cell.yaml:3:10: found the text 'fast'; expected the rate in Hz"));
+  EXPECT_THAT(errors,
+              HasSubstr("cell.yaml:5:27: found a list of 2; expected the box's edge lengths"));
+  EXPECT_THAT(
+      errors,
+      HasSubstr("cell.yaml:6:32: found the number -1; expected the radius in m, more than 0"));
+  EXPECT_THAT(errors, HasSubstr("cell.yaml:7:12: found the object name 'b' again"));
+  EXPECT_THAT(errors, HasSubstr("cell.yaml:7:24: found no key 'radius'; expected it in a capsule"));
+  EXPECT_THAT(errors, HasSubstr("cell.yaml:8:21: found the unknown name 'c'"));
+  EXPECT_THAT(errors, HasSubstr("cell.yaml:9:1: found the unknown key 'colour' in a cell"));
+}
+
+TEST(CellFile, ErrorsComeInTheOrderOfTheFile) {
+  const CellResult result = parse_cell("zzz: 1\nname: 7\nunits: 3\n", "cell.yaml");
+  const auto* errors = std::get_if<std::vector<CellError>>(&result);
+  ASSERT_NE(errors, nullptr);
+  int last = 0;
+  for (const CellError& error : *errors) {
+    const int line = std::stoi(error.text.substr(10));
+    EXPECT_LE(last, line) << error.text;
+    last = line;
+  }
+}
+
+TEST(CellFile, AMissingFileIsAnError) {
+  const CellResult result = read_cell("/nowhere/at/all.yaml");
+  const auto* errors = std::get_if<std::vector<CellError>>(&result);
+  ASSERT_NE(errors, nullptr);
+  EXPECT_THAT(errors->front().text, HasSubstr("/nowhere/at/all.yaml:1:1: found no cell file"));
+}
+
+TEST(CellFile, ADirectoryIsNoCell) {
+  EXPECT_TRUE(std::holds_alternative<std::vector<CellError>>(read_cell("/")));
+}
+
+TEST(CellFile, ASummaryCountsEverything) {
+  EXPECT_EQ(
+      summary(scene_of(cell_text(kBoxes))),
+      "test: 3 objects (2 moving, 1 fixed), 3 parts, 13 facets, 2 pairs (2 published), 0 zones");
+}
+
+}  // namespace
+}  // namespace clearance

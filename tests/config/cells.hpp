@@ -1,0 +1,48 @@
+// Small cells for the tests of the reader.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "config/cell_file.hpp"
+
+namespace clearance {
+
+// A whole cell from what follows its first three lines: `sections` begins in line 4.
+inline std::string cell_text(const std::string& sections) {
+  return "name: test\nunits: {length: m, angle: deg}\nrate_hz: 500\n" + sections;
+}
+
+// The scene of a text that must be good.
+inline Scene scene_of(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
+  CellResult result = parse_cell(text, file);
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
+    for (const CellError& error : *errors) ADD_FAILURE() << error.text;
+    return {};
+  }
+  return std::get<Scene>(std::move(result));
+}
+
+// The errors of a text, a line each; empty for a good one.
+inline std::string errors_of(const std::string& text,
+                             const std::filesystem::path& file = "cell.yaml") {
+  const CellResult result = parse_cell(text, file);
+  std::string lines;
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
+    for (const CellError& error : *errors) lines += error.text + "\n";
+  }
+  return lines;
+}
+
+// Two moving boxes and a floor; every test adds what it is about.
+inline const std::string kBoxes =
+    "objects:\n"
+    "  - {name: left, groups: [arm], box: {size: [1, 1, 1]}}\n"
+    "  - {name: right, groups: [arm], box: {size: [1, 1, 1]}}\n"
+    "  - {name: floor, groups: [still], fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}\n"
+    "pairs:\n"
+    "  - {between: [arm, still]}\n";
+
+}  // namespace clearance
