@@ -51,13 +51,11 @@ std::string shown(double value) {
   return text.str();
 }
 
-std::string expectation(const std::string& what, const Range& range) {
-  std::string text = what;
-  if (std::isfinite(range.least)) {
-    text += (range.above_least ? ", more than " : ", at least ") + shown(range.least);
-  }
-  if (std::isfinite(range.most)) text += ", at most " + shown(range.most);
-  return text;
+// The limit that was not kept, or the lower one.
+std::string expectation(const std::string& what, const Range& range, bool too_large) {
+  if (too_large) return what + ", at most " + shown(range.most);
+  if (!std::isfinite(range.least)) return what;
+  return what + (range.above_least ? ", more than " : ", at least ") + shown(range.least);
 }
 
 // "12 mm" is a number and then some: say what to do about it.
@@ -87,20 +85,24 @@ ScalarType scalar_type(const YamlNode& scalar) {
 
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
                                   Complaints& complaints) {
-  const std::string expected = "; expected " + expectation(what, range);
+  const auto expected = [&](bool too_large) {
+    return "; expected " + expectation(what, range, too_large);
+  };
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
-    complaints.add(node, "found " + describe(node) + expected + number_hint(node));
+    complaints.add(node, "found " + describe(node) + expected(false) + number_hint(node));
     return std::nullopt;
   }
   const Parsed parsed = parse_number(node.text);
   if (!std::isfinite(parsed.value) || !parsed.in_range) {
-    complaints.add(node, "found " + describe(node) + ", which is not a finite number" + expected);
+    complaints.add(node,
+                   "found " + describe(node) + ", which is not a finite number" + expected(false));
     return std::nullopt;
   }
   const bool too_small =
       range.above_least ? parsed.value <= range.least : parsed.value < range.least;
-  if (too_small || parsed.value > range.most) {
-    complaints.add(node, "found " + describe(node) + expected);
+  const bool too_large = parsed.value > range.most;
+  if (too_small || too_large) {
+    complaints.add(node, "found " + describe(node) + expected(too_large));
     return std::nullopt;
   }
   return parsed.value;

@@ -14,9 +14,8 @@
 namespace clearance {
 namespace {
 
-// Aliases of aliases can make a short file enormous; a cell of 4096 objects needs well under a
-// million nodes.
-constexpr std::size_t kMaxNodes = 4'000'000;
+// Aliases of aliases can make a short file enormous: how many values they may add.
+constexpr std::size_t kMaxCopies = 1'000'000;
 
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/config/cells.hpp"
@@ -11,8 +12,8 @@ namespace {
 
 struct Mistake {
   const char* name;
-  std::string sections;  // after the three lines of cell_text()
-  std::string error;     // what one of the errors must contain
+  std::string sections;  // after the three lines of cell_text(); '@' stands before the mistake
+  std::string error;     // how the error there begins
 };
 
 // One object with this shape, and something to pair it with.
@@ -21,196 +22,210 @@ std::string with_shape(const std::string& shape, const std::string& more = "") {
          "}\n  - {name: b, sphere: {radius: 1}}\n" + "pairs: [{between: [a, b]}]\n";
 }
 
+// kBoxes with the mark before the rules for pairs.
+std::string boxes_with_marked_rules() {
+  std::string text = kBoxes;
+  return text.insert(text.find("- {between"), "@");
+}
+
 class CellMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(CellMistake, IsRefusedWhereItStands) {
-  const std::string errors = errors_of(cell_text(GetParam().sections));
-  EXPECT_THAT(errors, testing::HasSubstr("cell.yaml:" + GetParam().error));
+  std::string text = cell_text(GetParam().sections);
+  const std::size_t place = text.find('@');
+  ASSERT_NE(place, std::string::npos);
+  text.erase(place, 1);
+  const std::size_t line_start = text.rfind('\n', place - 1) + 1;
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n');
+  const std::string where =
+      "cell.yaml:" + std::to_string(line) + ":" + std::to_string(place - line_start + 1) + ": ";
+  EXPECT_THAT(errors_of(text), testing::HasSubstr(where + GetParam().error));
 }
 
 const Mistake kMistakes[] = {
-    {"UnknownKey", with_shape("spere: {radius: 1}"),
-     "5:14: found the unknown key 'spere' in an object"},
-    {"UnknownKeySuggestion", with_shape("sphere: {raduis: 1}"),
-     "5:23: found the unknown key 'raduis' in a sphere; expected 'radius' or 'centre'; did you "
+    {"UnknownKey", with_shape("@spere: {radius: 1}"), "found the unknown key 'spere' in an object"},
+    {"UnknownKeySuggestion", with_shape("sphere: {@raduis: 1}"),
+     "found the unknown key 'raduis' in a sphere; expected 'radius' or 'centre'; did you "
      "mean 'radius'?"},
-    {"RepeatedKey", "budget: 3\nbudget: 4\n" + kBoxes,
-     "5:1: found the key 'budget' again; expected it once in a cell (first in line 4)"},
-    {"RepeatedKeyDeepDown", with_shape("sphere: {radius: 1, radius: 2}"),
-     "5:34: found the key 'radius' again"},
-    {"KeyThatIsAList", "? [a, b]\n: 3\n" + kBoxes, "4:3: found a list of 2 as a key"},
-    {"TextForNumber", with_shape("sphere: {radius: big}"),
-     "5:31: found the text 'big'; expected the radius in m"},
-    {"NumberWithUnit", with_shape("sphere: {radius: 12 mm}"),
-     "5:31: found the text '12 mm'; expected the radius in m, more than 0, at most 1e+06 (a bare "
+    {"RepeatedKey", "budget: 3\n@budget: 4\n" + kBoxes,
+     "found the key 'budget' again; expected it once in a cell (first in line 4)"},
+    {"RepeatedKeyDeepDown", with_shape("sphere: {radius: 1, @radius: 2}"),
+     "found the key 'radius' again"},
+    {"KeyThatIsAList", "? @[a, b]\n: 3\n" + kBoxes, "found a list of 2 as a key"},
+    {"TextForNumber", with_shape("sphere: {radius: @big}"),
+     "found the text 'big'; expected the radius in m"},
+    {"NumberWithUnit", with_shape("sphere: {radius: @12 mm}"),
+     "found the text '12 mm'; expected the radius in m, more than 0 (a bare "
      "number: units are stated once, under 'units')"},
-    {"QuotedNumber", with_shape("sphere: {radius: \"12\"}"),
-     "5:31: found the text '12'; expected the radius in m, more than 0, at most 1e+06 (without the "
+    {"QuotedNumber", with_shape("sphere: {radius: @\"12\"}"),
+     "found the text '12'; expected the radius in m, more than 0 (without the "
      "quotes)"},
-    {"NumberForName", "objects: [{name: 12, sphere: {radius: 1}}]\n",
-     "4:18: found the number 12; expected an object's name (if it is meant as text, quote it: "
+    {"NumberForName", "objects: [{name: @12, sphere: {radius: 1}}]\n",
+     "found the number 12; expected an object's name (if it is meant as text, quote it: "
      "\"12\")"},
-    {"TruthForNumber", with_shape("sphere: {radius: true}"),
-     "5:31: found true; expected the radius"},
-    {"NothingForNumber", with_shape("sphere: {radius: }"), "found nothing; expected the radius"},
-    {"MapForNumber", with_shape("sphere: {radius: {m: 1}}"),
-     "5:31: found a map; expected the radius"},
-    {"NaN", with_shape("sphere: {radius: .nan}"),
-     "5:31: found the number .nan, which is not a finite number"},
-    {"Infinity", with_shape("box: {size: [1, 1, .inf]}"),
-     "5:33: found the number .inf, which is not a finite number"},
-    {"TooLargeForADouble", with_shape("box: {size: [1, 1, 1e999]}"),
-     "5:33: found the number 1e999, which is not a finite number"},
-    {"FartherThanAnyCell", with_shape("box: {size: [1, 1, 1e7]}"),
-     "5:33: found the number 1e7; expected a length in m"},
-    {"ZeroBox", with_shape("box: {size: [1, 0, 1]}"),
-     "5:30: found the number 0; expected a length in m, more than 0"},
-    {"NegativeRadius", with_shape("capsule: {from: [0, 0, 0], to: [0, 0, 1], radius: -0.1}"),
-     "5:64: found the number -0.1; expected the radius"},
-    {"CapsuleWithoutLength", with_shape("capsule: {from: [0, 0, 1], to: [0, 0, 1], radius: 1}"),
-     "5:23: found a capsule that is not a solid convex body"},
-    {"FlatPrism", with_shape("prism: {base: [[0, 0], [1, 0], [0, 1]], z: [1, 1]}"),
-     "5:21: found a prism that is not a solid convex body"},
-    {"PrismOverALine", with_shape("prism: {base: [[0, 0], [1, 0], [2, 0]], z: [0, 1]}"),
-     "5:21: found a prism that is not a solid convex body"},
+    {"TruthForNumber", with_shape("sphere: {radius: @true}"), "found true; expected the radius"},
+    {"NothingForNumber", with_shape("sphere: {radius: @}"), "found nothing; expected the radius"},
+    {"MapForNumber", with_shape("sphere: {radius: @{m: 1}}"), "found a map; expected the radius"},
+    {"NaN", with_shape("sphere: {radius: @.nan}"),
+     "found the number .nan, which is not a finite number"},
+    {"Infinity", with_shape("box: {size: [1, 1, @.inf]}"),
+     "found the number .inf, which is not a finite number"},
+    {"TooLargeForADouble", with_shape("box: {size: [1, 1, @1e999]}"),
+     "found the number 1e999, which is not a finite number"},
+    {"FartherThanAnyCell", with_shape("box: {size: [1, 1, @1e7]}"),
+     "found the number 1e7; expected a length in m"},
+    {"ZeroBox", with_shape("box: {size: [1, @0, 1]}"),
+     "found the number 0; expected a length in m, more than 0"},
+    {"NegativeRadius", with_shape("capsule: {from: [0, 0, 0], to: [0, 0, 1], radius: @-0.1}"),
+     "found the number -0.1; expected the radius"},
+    {"CapsuleWithoutLength", with_shape("capsule: @{from: [0, 0, 1], to: [0, 0, 1], radius: 1}"),
+     "found a capsule that is not a solid convex body"},
+    {"FlatPrism", with_shape("prism: @{base: [[0, 0], [1, 0], [0, 1]], z: [1, 1]}"),
+     "found a prism that is not a solid convex body"},
+    {"PrismOverALine", with_shape("prism: @{base: [[0, 0], [1, 0], [2, 0]], z: [0, 1]}"),
+     "found a prism that is not a solid convex body"},
     {"FlatVertices",
-     with_shape("polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}"),
-     "5:26: found a polyhedron that is not a solid convex body"},
-    {"NoVertices", with_shape("polyhedron: {vertices: []}"),
-     "5:26: found a polyhedron that is not a solid convex body"},
+     with_shape("polyhedron: @{vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}"),
+     "found a polyhedron that is not a solid convex body"},
+    {"NoVertices", with_shape("polyhedron: @{vertices: []}"),
+     "found a polyhedron that is not a solid convex body"},
     {"EmptyIntersection",
-     with_shape("polyhedron: {half_spaces: [{normal: [1, 0, 0], offset: 0}, {normal: [-1, 0, 0], "
+     with_shape("polyhedron: @{half_spaces: [{normal: [1, 0, 0], offset: 0}, {normal: [-1, 0, 0], "
                 "offset: -1}]}",
                 ", fixed: true"),
-     "5:39: found a polyhedron that is not a solid convex body"},
-    {"ZeroNormal", with_shape("half_space: {normal: [0, 0, 0], offset: 1}", ", fixed: true"),
-     "5:48: found only zeros; expected the outward normal, a direction"},
+     "found a polyhedron that is not a solid convex body"},
+    {"ZeroNormal", with_shape("half_space: {normal: @[0, 0, 0], offset: 1}", ", fixed: true"),
+     "found only zeros; expected the outward normal, a direction"},
     {"OffsetAndThrough",
-     with_shape("half_space: {normal: [0, 0, 1], offset: 1, through: [0, 0, 0]}", ", fixed: true"),
-     "5:39: found both of 'offset' and 'through'; expected one of the two"},
-    {"NeitherOffsetNorThrough", with_shape("half_space: {normal: [0, 0, 1]}", ", fixed: true"),
-     "5:39: found neither of 'offset' and 'through'"},
-    {"UnboundedMovingHalfSpace", with_shape("half_space: {normal: [0, 0, 1], offset: 0}"),
-     "5:26: found an unbounded half_space in a moving object; expected a bounded shape, or fixed: "
+     with_shape("half_space: @{normal: [0, 0, 1], offset: 1, through: [0, 0, 0]}", ", fixed: true"),
+     "found both of 'offset' and 'through'; expected one of the two"},
+    {"NeitherOffsetNorThrough", with_shape("half_space: @{normal: [0, 0, 1]}", ", fixed: true"),
+     "found neither of 'offset' and 'through'"},
+    {"UnboundedMovingHalfSpace", with_shape("half_space: @{normal: [0, 0, 1], offset: 0}"),
+     "found an unbounded half_space in a moving object; expected a bounded shape, or fixed: "
      "true"},
     {"UnboundedMovingPolyhedron",
-     with_shape("polyhedron: {half_spaces: [{normal: [1, 0, 0], offset: 0}, {normal: [0, 1, 0], "
+     with_shape("polyhedron: @{half_spaces: [{normal: [1, 0, 0], offset: 0}, {normal: [0, 1, 0], "
                 "offset: 0}]}"),
-     "5:26: found an unbounded polyhedron in a moving object"},
-    {"TwoShapes", with_shape("box: {size: [1, 1, 1]}, sphere: {radius: 1}"),
-     "5:46: found 'sphere' beside 'box'; expected one shape a part"},
-    {"NoShape", with_shape("margin: 0.1"), "5:5: found no shape; expected one of 'box', 'sphere'"},
-    {"ShapeBesideParts", with_shape("parts: [{sphere: {radius: 1}}], box: {size: [1, 1, 1]}"),
+     "found an unbounded polyhedron in a moving object"},
+    {"TwoShapes", with_shape("box: {size: [1, 1, 1]}, sphere: @{radius: 1}"),
+     "found 'sphere' beside 'box'; expected one shape a part"},
+    {"NoShape", "objects:\n  - @{name: a}\npairs: []\n",
+     "found no shape; expected one of 'box', 'sphere'"},
+    {"ShapeBesideParts", with_shape("parts: [{sphere: {radius: 1}}], box: @{size: [1, 1, 1]}"),
      "found 'box' of an object that has 'parts'"},
-    {"NoParts", with_shape("parts: []"), "5:21: found an empty list; expected at least one part"},
+    {"NoParts", with_shape("parts: @[]"), "found an empty list; expected at least one part"},
     {"RepeatedPartName",
-     with_shape("parts: [{name: p, sphere: {radius: 1}}, {name: p, sphere: {radius: 2}}]"),
-     "5:61: found the part name 'p' again"},
-    {"MissingMesh", with_shape("mesh: {file: nowhere.stl}"),
-     "5:27: found a mesh file that cannot be used: 'nowhere.stl' cannot be opened"},
-    {"PoseOfAMovingObject", with_shape("sphere: {radius: 1}, pose: {xyz: [0, 0, 1]}"),
-     "5:41: found 'pose' of a moving object; expected it of fixed objects"},
-    {"SpeedOfAFixedObject", with_shape("sphere: {radius: 1}", ", fixed: true, max_speed: 1"),
-     "5:38: found 'max_speed' of a fixed object"},
+     with_shape("parts: [{name: p, sphere: {radius: 1}}, {name: @p, sphere: {radius: 2}}]"),
+     "found the part name 'p' again"},
+    {"MissingMesh", with_shape("mesh: {file: @nowhere.stl}"),
+     "found a mesh file that cannot be used: 'nowhere.stl' cannot be opened"},
+    {"PoseOfAMovingObject", with_shape("sphere: {radius: 1}, pose: @{xyz: [0, 0, 1]}"),
+     "found 'pose' of a moving object; expected it of fixed objects"},
+    {"SpeedOfAFixedObject", with_shape("sphere: {radius: 1}", ", fixed: true, max_speed: @1"),
+     "found 'max_speed' of a fixed object"},
     {"TwoOrientations",
      with_shape("sphere: {radius: 1}",
-                ", fixed: true, pose: {rpy: [0, 0, 0], quaternion: [0, 0, 0, 1]}"),
-     "5:62: found a quaternion beside rpy"},
+                ", fixed: true, pose: {rpy: [0, 0, 0], quaternion: @[0, 0, 0, 1]}"),
+     "found a quaternion beside rpy"},
     {"QuaternionOfLengthTwo",
-     with_shape("sphere: {radius: 1}", ", fixed: true, pose: {quaternion: [0, 0, 0, 2]}"),
-     "5:46: found a quaternion of length 2.0"},
-    {"NegativeMargin", with_shape("sphere: {radius: 1}, margin: -1"),
-     "5:43: found the number -1; expected the margin in m, at least 0"},
-    {"ZeroAgeLimit", with_shape("sphere: {radius: 1}, age_limit_ms: 0"),
-     "5:49: found the number 0; expected the age limit in ms, more than 0"},
-    {"FractionalBudget", "budget: 1.5\n" + kBoxes,
-     "4:9: found the number 1.5; expected distance queries a tick, a whole number from 1"},
-    {"NumberForFlag", with_shape("sphere: {radius: 1}, fixed: 1"),
-     "5:42: found the number 1; expected true or false"},
-    {"NameTooLong", "objects: [{name: " + std::string(65, 'x') + ", sphere: {radius: 1}}]\n",
-     "4:18: found the text 'xxx"},
-    {"NameWithComma", "objects: [{name: \"a,b\", sphere: {radius: 1}}]\n",
-     "4:18: found the text 'a,b'; expected an object's name: 1 to 64 bytes without commas"},
-    {"NoObjects", "objects: []\npairs: []\n",
-     "4:10: found an empty list; expected at least one object"},
-    {"ObjectsAreNoList", "objects: {a: 1}\npairs: []\n",
-     "4:10: found a map; expected a list of objects"},
-    {"UnknownGroup", kBoxes + "  - {between: [amr, still]}\n",
-     "10:16: found the unknown name 'amr'; expected a group or an object; did you mean 'arm'?"},
+     with_shape("sphere: {radius: 1}", ", fixed: true, pose: {quaternion: @[0, 0, 0, 2]}"),
+     "found a quaternion of length 2.0"},
+    {"NegativeMargin", with_shape("sphere: {radius: 1}, margin: @-1"),
+     "found the number -1; expected the margin in m, at least 0"},
+    {"ZeroAgeLimit", with_shape("sphere: {radius: 1}, age_limit_ms: @0"),
+     "found the number 0; expected the age limit in ms, more than 0"},
+    {"FractionalBudget", "budget: @1.5\n" + kBoxes,
+     "found the number 1.5; expected distance queries a tick, a whole number from 1"},
+    {"NumberForFlag", with_shape("sphere: {radius: 1}, fixed: @1"),
+     "found the number 1; expected true or false"},
+    {"NameTooLong", "objects: [{name: @" + std::string(65, 'x') + ", sphere: {radius: 1}}]\n",
+     "found the text 'xxx"},
+    {"NameWithComma", "objects: [{name: @\"a,b\", sphere: {radius: 1}}]\n",
+     "found the text 'a,b'; expected an object's name: 1 to 64 bytes without commas"},
+    {"NoObjects", "objects: @[]\npairs: []\n", "found an empty list; expected at least one object"},
+    {"ObjectsAreNoList", "objects: @{a: 1}\npairs: []\n",
+     "found a map; expected a list of objects"},
+    {"UnknownGroup", kBoxes + "  - {between: [@amr, still]}\n",
+     "found the unknown name 'amr'; expected a group or an object; did you mean 'arm'?"},
     {"UnusedGroup",
-     "objects: [{name: a, groups: [arm], sphere: {radius: 1}}, {name: b, groups: [amr], sphere: "
+     "objects: [{name: a, groups: [arm], sphere: {radius: 1}}, {name: @b, groups: [amr], sphere: "
      "{radius: 1}}]\npairs: [{between: [arm, b]}]\n",
-     "4:65: found the group 'amr' of object 'b', which nothing under 'pairs', 'allowed_collisions' "
+     "found the group 'amr' of object 'b', which nothing under 'pairs', 'allowed_collisions' "
      "or 'zones' names; expected every group to be used; did you mean 'arm'?"},
     {"GroupNamedAsAnObject",
-     "objects: [{name: a, groups: [b], sphere: {radius: 1}}, {name: b, sphere: {radius: "
+     "objects: [{name: @a, groups: [b], sphere: {radius: 1}}, {name: b, sphere: {radius: "
      "1}}]\npairs: [{between: [a, b]}]\n",
-     "4:18: found the group 'b' of object 'a'; expected another name"},
-    {"RepeatedGroup", with_shape("sphere: {radius: 1}, groups: [g, g]"),
-     "5:47: found the group 'g' again"},
+     "found the group 'b' of object 'a'; expected another name"},
+    {"RepeatedGroup", with_shape("sphere: {radius: 1}, groups: [g, @g]"),
+     "found the group 'g' again"},
     {"UnwatchedObject",
-     "objects: [{name: a, sphere: {radius: 1}}, {name: b, sphere: {radius: 1}}, {name: c, sphere: "
+     "objects: [{name: a, sphere: {radius: 1}}, {name: b, sphere: {radius: 1}}, {name: @c, sphere: "
      "{radius: 1}}]\npairs: [{between: [a, b]}]\n",
-     "4:82: found the object 'c', which no rule under 'pairs' covers"},
-    {"PairOfFixedObjects", kBoxes + "  - {between: [still, floor]}\n",
-     "10:5: found no pair between 'still' and 'floor'"},
-    {"PairWithItself", kBoxes + "  - {between: [left, left]}\n",
-     "10:5: found no pair between 'left' and 'left'"},
-    {"ThreeSides", kBoxes + "  - {between: [left, right, floor]}\n",
-     "10:15: found a list of 3; expected two groups or objects: [A, B]"},
-    {"ExceptionWithoutReason", kBoxes + "allowed_collisions: [{between: [left, floor]}]\n",
-     "10:22: found no key 'reason'; expected it in an allowed collision"},
+     "found the object 'c', which no rule under 'pairs' covers"},
+    {"PairOfFixedObjects", kBoxes + "  - @{between: [still, floor]}\n",
+     "found no pair between 'still' and 'floor'"},
+    {"PairWithItself", kBoxes + "  - @{between: [left, left]}\n",
+     "found no pair between 'left' and 'left'"},
+    {"ThreeSides", kBoxes + "  - {between: @[left, right, floor]}\n",
+     "found a list of 3; expected two groups or objects: [A, B]"},
+    {"ExceptionWithoutReason", kBoxes + "allowed_collisions: [@{between: [left, floor]}]\n",
+     "found no key 'reason'; expected it in an allowed collision"},
     {"ExceptionWithEmptyReason",
-     kBoxes + "allowed_collisions: [{between: [left, floor], reason: \"\"}]\n",
-     "10:55: found an empty reason"},
+     kBoxes + "allowed_collisions: [{between: [left, floor], reason: @\"\"}]\n",
+     "found an empty reason"},
     {"ExceptionForUnwatchedPair",
-     kBoxes + "allowed_collisions: [{between: [left, right], reason: x}]\n",
-     "10:22: found an exception that changes nothing: 'left' against 'right' is not watched "
+     kBoxes + "allowed_collisions: [@{between: [left, right], reason: x}]\n",
+     "found an exception that changes nothing: 'left' against 'right' is not watched "
      "anyway, since no rule under 'pairs' covers it"},
     {"ExceptionTwice",
-     kBoxes + "allowed_collisions:\n  - {between: [left, floor], reason: x}\n  - {between: [floor, "
-              "left], reason: x}\n",
-     "12:5: found an exception that changes nothing: 'floor' against 'left' is not watched anyway, "
+     kBoxes +
+         "allowed_collisions:\n  - {between: [left, floor], reason: x}\n  - @{between: [floor, "
+         "left], reason: x}\n",
+     "found an exception that changes nothing: 'floor' against 'left' is not watched anyway, "
      "since line 11 has already allowed it"},
-    {"ExceptionForItself", kBoxes + "allowed_collisions: [{between: [left, left], reason: x}]\n",
-     "since an object has no pair with itself"},
-    {"EveryPairAllowed", kBoxes + "allowed_collisions: [{between: [arm, still], reason: x}]\n",
-     "9:3: found every pair allowed to touch"},
+    {"ExceptionForItself", kBoxes + "allowed_collisions: [@{between: [left, left], reason: x}]\n",
+     "found an exception that changes nothing: 'left' against 'left' is not watched anyway, since "
+     "an object has no pair with itself"},
+    {"EveryPairAllowed",
+     boxes_with_marked_rules() + "allowed_collisions: [{between: [arm, still], reason: x}]\n",
+     "found every pair allowed to touch"},
     {"ZoneOverUnwatchedPair",
-     kBoxes + "zones: [{name: z, between: [arm, arm], enter_below: 1, leave_above: 1}]\n",
-     "10:9: found a zone over 1 pairs that are not watched, such as 'left' against 'right'"},
+     kBoxes + "zones: [@{name: z, between: [arm, arm], enter_below: 1, leave_above: 1}]\n",
+     "found a zone over 1 pairs that are not watched, such as 'left' against 'right'"},
     {"ZoneOverAllowedPairsOnly",
-     kBoxes + "allowed_collisions: [{between: [left, floor], reason: x}]\nzones: [{name: z, "
+     kBoxes + "allowed_collisions: [{between: [left, floor], reason: x}]\nzones: [@{name: z, "
               "between: [left, floor], enter_below: 1, leave_above: 1}]\n",
-     "11:9: found a zone over no pair"},
+     "found a zone over no pair"},
     {"ZoneNameTwice",
      kBoxes + "zones:\n  - {name: z, between: [left, floor], enter_below: 1, leave_above: 1}\n  - "
-              "{name: z, between: [right, floor], enter_below: 1, leave_above: 1}\n",
-     "12:12: found the zone name 'z' again"},
+              "{name: @z, between: [right, floor], enter_below: 1, leave_above: 1}\n",
+     "found the zone name 'z' again"},
     {"ZoneWithNegativeHysteresis",
-     kBoxes + "zones: [{name: z, between: [left, floor], enter_below: 2, leave_above: 1}]\n",
-     "10:72: found leave_above: 1 below enter_below: 2"},
+     kBoxes + "zones: [{name: z, between: [left, floor], enter_below: 2, leave_above: @1}]\n",
+     "found leave_above: 1 below enter_below: 2"},
     {"ZoneWithoutHysteresis",
-     kBoxes + "zones: [{name: z, between: [left, floor], enter_below: 2}]\n",
-     "10:9: found no key 'leave_above'"},
-    {"DomainTooLarge", "dds: {domain: 233}\n" + kBoxes,
-     "4:15: found the number 233; expected a DDS domain, a whole number from 0 to 232"},
-    {"PartitionWithWildcard", "dds: {partition: \"a*\"}\n" + kBoxes,
-     "4:18: found the text 'a*'; expected a partition"},
-    {"TopicWithBlank", "dds: {topics: {poses: a b}}\n" + kBoxes,
-     "4:23: found the text 'a b'; expected a topic's name"},
-    {"TopicTwice", "dds: {topics: {poses: clearance/health}}\n" + kBoxes,
+     kBoxes + "zones: [@{name: z, between: [left, floor], enter_below: 2}]\n",
+     "found no key 'leave_above'"},
+    {"DomainTooLarge", "dds: {domain: @233}\n" + kBoxes,
+     "found the number 233; expected a DDS domain, a whole number from 0 to 232"},
+    {"PartitionWithWildcard", "dds: {partition: @\"a*\"}\n" + kBoxes,
+     "found the text 'a*'; expected a partition"},
+    {"TopicWithBlank", "dds: {topics: {poses: @a b}}\n" + kBoxes,
+     "found the text 'a b'; expected a topic's name"},
+    {"TopicTwice", "dds: {topics: @{poses: clearance/health}}\n" + kBoxes,
      "found the topic 'clearance/health' for both 'poses' and 'health'"},
-    {"RateZero", "dds: {domain: 1}\nrate_hz: 0\n" + kBoxes, "5:1: found the key 'rate_hz' again"},
-    {"SimulatedFixedObject", kBoxes + "simulation: {movers: [{object: floor}]}\n",
-     "10:32: found the fixed object 'floor'; expected a moving one"},
-    {"SimulatedTwice", kBoxes + "simulation: {movers: [{object: left}, {object: left}]}\n",
-     "10:48: found the object 'left' again"},
-    {"SimulatedUnknown", kBoxes + "simulation: {movers: [{object: lefd}]}\n",
-     "10:32: found the unknown object 'lefd'; expected one of the cell's; did you mean 'left'?"},
-    {"JointType", kBoxes + "simulation: {chains: [{name: c, joints: [{type: ball}]}]}\n",
-     "10:49: found the text 'ball'; expected revolute or prismatic"},
-    {"BrokenYaml", "objects: [\n", "5:1: not valid YAML"},
+    {"RateZero", "dds: {domain: 1}\n@rate_hz: 0\n" + kBoxes, "found the key 'rate_hz' again"},
+    {"SimulatedFixedObject", kBoxes + "simulation: {movers: [{object: @floor}]}\n",
+     "found the fixed object 'floor'; expected a moving one"},
+    {"SimulatedTwice", kBoxes + "simulation: {movers: [{object: left}, {object: @left}]}\n",
+     "found the object 'left' again"},
+    {"SimulatedUnknown", kBoxes + "simulation: {movers: [{object: @lefd}]}\n",
+     "found the unknown object 'lefd'; expected one of the cell's; did you mean 'left'?"},
+    {"JointType", kBoxes + "simulation: {chains: [{name: c, joints: [{type: @ball}]}]}\n",
+     "found the text 'ball'; expected revolute or prismatic"},
+    {"BrokenYaml", "objects: [\n@", "not valid YAML"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, CellMistake, testing::ValuesIn(kMistakes),
