@@ -36,6 +36,13 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
     collect(scene, *node.mChildren[i], placed, vertices);
 }
 
+// Assimp's message, without the name that it invents for what it reads from memory.
+std::string plain(std::string message) {
+  const std::size_t start = message.find("$$$___magic___$$$");
+  if (start == std::string::npos) return message;
+  return message.replace(start, message.find_first_of(" :,", start) - start, "it");
+}
+
 bool lexicographic(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
@@ -59,7 +66,7 @@ std::variant<std::vector<Vec3>, MeshFault> mesh_vertices(const std::string& byte
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     const std::string hint = extension.substr(extension.empty() || extension[0] != '.' ? 0 : 1);
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint.c_str());
-    if (scene == nullptr) return MeshFault{importer.GetErrorString()};
+    if (scene == nullptr) return MeshFault{plain(importer.GetErrorString())};
     std::vector<Vec3> vertices;
     if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
     if (vertices.empty()) return MeshFault{"it has no faces"};

@@ -25,7 +25,7 @@ std::string with_shape(const std::string& shape, const std::string& more = "") {
 // kBoxes with the mark before the rules for pairs.
 std::string boxes_with_marked_rules() {
   std::string text = kBoxes;
-  return text.insert(text.find("- {between"), "@");
+  return text.insert(text.find("- {between"), 1, '@');
 }
 
 class CellMistake : public testing::TestWithParam<Mistake> {};

@@ -1,0 +1,154 @@
+#include "config/mesh_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "tests/config/cells.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+
+// A directory of its own for each test, gone afterwards.
+class MeshFile : public testing::Test {
+ protected:
+  MeshFile() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "clearance_mesh_XXXXXX").string();
+    directory_ = mkdtemp(pattern.data());
+  }
+  ~MeshFile() override { std::filesystem::remove_all(directory_); }
+
+  void write(const std::string& name, const std::string& bytes) {
+    std::ofstream(directory_ / name, std::ios::binary) << bytes;
+  }
+
+  std::string cell(const std::string& mesh) const {
+    return cell_text("objects:\n  - {name: a, mesh: {" + mesh +
+                     "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
+  }
+
+  Scene scene(const std::string& mesh) const {
+    return scene_of(cell(mesh), directory_ / "cell.yaml");
+  }
+  std::string errors(const std::string& mesh) const {
+    return errors_of(cell(mesh), directory_ / "cell.yaml");
+  }
+
+  std::filesystem::path directory_;
+};
+
+// A unit cube's corners and one point within, as triangles of a binary STL: hull of 8 vertices, 6
+// facets.
+std::string binary_stl() {
+  const float corners[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},         {0, 0, 1},
+                               {1, 0, 1}, {0, 1, 1}, {1, 1, 1}, {0.5f, 0.5f, 0.5f}};
+  const int triangles[5][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {0, 3, 5}, {2, 4, 7}};
+  std::string bytes(80, ' ');
+  const std::uint32_t count = 5;
+  bytes.append(reinterpret_cast<const char*>(&count), 4);
+  for (const auto& triangle : triangles) {
+    bytes.append(12, '\0');
+    for (const int corner : triangle)
+      bytes.append(reinterpret_cast<const char*>(corners[corner]), 12);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+const std::string kTetrahedronObj =
+    "mtllib nowhere.mtl\nv 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
+
+TEST_F(MeshFile, ItsHullIsThePart) {
+  write("cube.stl", binary_stl());
+  const ConvexPolyhedron shape = scene("file: cube.stl").objects.at(0).parts.at(0).shape;
+  EXPECT_EQ(shape.vertices.size(), 8u);
+  EXPECT_EQ(shape.facets.size(), 6u);
+  EXPECT_NEAR(shape.bounding_radius, std::sqrt(3.0), 1e-14);
+}
+
+TEST_F(MeshFile, UnitAndScaleApply) {
+  write("cube.stl", binary_stl());
+  const ConvexPolyhedron mm = scene("file: cube.stl, unit: mm").objects.at(0).parts.at(0).shape;
+  EXPECT_NEAR(mm.bounding_radius, std::sqrt(3.0) / 1000.0, 1e-15);
+  const ConvexPolyhedron scaled =
+      scene("file: cube.stl, scale: [2, 1, -3]").objects.at(0).parts.at(0).shape;
+  EXPECT_NEAR(scaled.bounding_radius, std::sqrt(4.0 + 1.0 + 9.0), 1e-12);
+}
+
+TEST_F(MeshFile, ObjIsReadEvenWithoutItsMaterials) {
+  write("tetrahedron.obj", kTetrahedronObj);
+  EXPECT_EQ(scene("file: tetrahedron.obj").objects.at(0).parts.at(0).shape.vertices.size(), 4u);
+}
+
+TEST_F(MeshFile, ColladaKeepsItsAxesAndItsUnit) {
+  write("tetrahedron.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.001" name="millimeter"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1000 0 0 0 2000 0 0 0 4000</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 0 1 3 0 2 3 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+  const ConvexPolyhedron shape = scene("file: tetrahedron.dae").objects.at(0).parts.at(0).shape;
+  double highest = 0.0;
+  for (const Vertex& vertex : shape.vertices) highest = std::max(highest, vertex.position.z());
+  EXPECT_NEAR(highest, 4.0, 1e-6);
+}
+
+TEST_F(MeshFile, RevisionFollowsItsBytes) {
+  write("mesh.obj", kTetrahedronObj);
+  const std::uint64_t before = scene("file: mesh.obj").revision;
+  EXPECT_EQ(scene("file: mesh.obj").revision, before);
+  write("mesh.obj", kTetrahedronObj + "# changed\n");
+  EXPECT_NE(scene("file: mesh.obj").revision, before);
+}
+
+TEST_F(MeshFile, WhatIsNoMeshIsRefusedByName) {
+  write("text.stl", "this is no mesh");
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
+  write("short.stl", binary_stl().substr(0, 200));
+  write("mesh.xyz", "1 2 3");
+  EXPECT_THAT(errors("file: text.stl"),
+              HasSubstr("cell.yaml:5:28: found a mesh file that cannot be used: '"));
+  EXPECT_THAT(errors("file: flat.obj"), HasSubstr("found a mesh that is not a solid convex body"));
+  EXPECT_THAT(errors("file: points.obj"), HasSubstr("found a mesh file that cannot be used"));
+  EXPECT_THAT(errors("file: short.stl"), HasSubstr("found a mesh file that cannot be used"));
+  EXPECT_THAT(errors("file: mesh.xyz"), HasSubstr("found a mesh file that cannot be used"));
+  EXPECT_THAT(errors("file: ."), HasSubstr("is a directory"));
+}
+
+TEST_F(MeshFile, VerticesThatAreNotFiniteAreRefused) {
+  std::string bytes = binary_stl();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(bytes.data() + 84 + 12, &nan, 4);
+  write("nan.stl", bytes);
+  EXPECT_THAT(errors("file: nan.stl"), HasSubstr("a vertex is not finite"));
+}
+
+TEST_F(MeshFile, AnUnknownUnitOrAScaleOfZeroIsRefused) {
+  write("mesh.obj", kTetrahedronObj);
+  EXPECT_THAT(errors("file: mesh.obj, unit: cm"),
+              HasSubstr("expected the unit of length, m or mm"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: 0"),
+              HasSubstr("expected a scale, or a list of 3, more than 0"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: [1, 0, 1]"), HasSubstr("found a scale of 0"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: 1e9"), HasSubstr("expected another unit or scale"));
+}
+
+}  // namespace
+}  // namespace clearance
