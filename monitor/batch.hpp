@@ -44,7 +44,7 @@ struct PoseBatch {
   return batch.scene_revision == 0 || batch.scene_revision == scene_revision;
 }
 
-// The last batch of a source that a tick used.
+// The last batch of a source that a tick took in.
 struct SourceUse {
   SourceName source;
   std::uint64_t sequence_number = 0;

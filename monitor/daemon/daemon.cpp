@@ -28,6 +28,12 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
   return options.dds;
 }
 
+std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
+                                          const DdsPoses& poses) {
+  if (options.record_file.empty()) return nullptr;
+  return std::make_unique<Recording>(options.record_file, scene, poses);
+}
+
 }  // namespace
 
 Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
@@ -36,11 +42,13 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       participant_(prepare_threads(options)),
       poses_(scene, participant_),
       publish_queue_(scene, {.reports = kQueuedReports}),
-      reports_(std::make_unique<DdsReports>(scene, participant_, publish_queue_, poses_)) {
+      reports_(std::make_unique<DdsReports>(scene, participant_, publish_queue_, poses_)),
+      recording_(open_recording(scene, options, poses_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene)};
-  loop_ = std::make_unique<TickLoop>(scene, poses_, std::vector<ReportSink*>{&publish_queue_},
-                                     clock_, loop);
+  std::vector<ReportSink*> sinks{&publish_queue_};
+  if (recording_) sinks.push_back(&recording_->sink());
+  loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
 }
 
 Daemon::~Daemon() {
@@ -67,6 +75,7 @@ void Daemon::run(StopSignal& signal) {
   publish_queue_.close();
   dropped_reports_ = publish_queue_.dropped_reports() + reports_->failed_writes();
   reports_.reset();
+  if (recording_) recording_->finish();
   spdlog::info("stopped after {} ticks", loop_->vitals().cycle);
 }
 
@@ -79,7 +88,10 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
 }
 
 std::string Daemon::summary() const {
-  return run_summary(scene_, loop_->vitals(), seconds_, dropped_reports_);
+  return run_summary(scene_, loop_->vitals(), seconds_, dropped_reports_) +
+         (recording_ ? recording_->summary() : "");
 }
+
+bool Daemon::recording_complete() const noexcept { return !recording_ || recording_->complete(); }
 
 }  // namespace clearance

@@ -1,4 +1,5 @@
-// The daemon as one object: the tick loop in a thread of its own and DDS on either side of it.
+// The daemon as one object: the tick loop in a thread of its own, DDS on either side of it, and a
+// recording if asked for.
 #pragma once
 
 #include <atomic>
@@ -12,6 +13,7 @@
 #include "monitor/daemon/dds.hpp"
 #include "monitor/daemon/dds_poses.hpp"
 #include "monitor/daemon/dds_reports.hpp"
+#include "monitor/daemon/recording.hpp"
 #include "monitor/daemon/report_queue.hpp"
 #include "monitor/daemon/stop_signal.hpp"
 #include "monitor/daemon/tick_loop.hpp"
@@ -21,13 +23,15 @@ namespace clearance {
 struct DaemonOptions {
   DdsOptions dds;
   std::uint64_t max_ticks = 0;  // 0: until a signal comes
-  int fifo_priority = 0;   // of the tick thread; the threads around it get one less; 0: ordinary
-  std::optional<int> cpu;  // that the tick thread is pinned to
+  int fifo_priority = 0;  // of the tick thread; the threads around it get one less; 0: ordinary
+  std::filesystem::path record_file;  // empty: no recording
+  std::optional<int> cpu;             // that the tick thread is pinned to
 };
 
 class Daemon {
  public:
-  // Joins DDS and announces the catalogue. Throws DdsError.
+  // Joins DDS and announces the catalogue. Throws DdsError, and RecordError when the
+  // recording cannot be made.
   Daemon(const Scene& scene, const DaemonOptions& options);
   ~Daemon();
   Daemon(const Daemon&) = delete;
@@ -38,6 +42,8 @@ class Daemon {
 
   // After run(): what happened, for a person.
   [[nodiscard]] std::string summary() const;
+  // After run(): nothing was to be recorded, or all of it is in the file.
+  [[nodiscard]] bool recording_complete() const noexcept;
 
  private:
   void tick_thread(std::atomic<bool>& done);
@@ -48,6 +54,7 @@ class Daemon {
   DdsPoses poses_;
   ReportQueue publish_queue_;
   std::unique_ptr<DdsReports> reports_;
+  std::unique_ptr<Recording> recording_;
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
   std::atomic<bool> stop_{false};

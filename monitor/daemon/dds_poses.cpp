@@ -39,7 +39,7 @@ dds_entity_t make_reader(const Scene& scene, Participant& participant) {
 
 std::size_t DdsPoses::samples_a_batch(const Scene& scene) noexcept {
   // Several poses of one object in a batch are fine: a sensor may be faster than its sender.
-  return std::min<std::size_t>(4 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
+  return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
 }
 
 DdsPoses::DdsPoses(const Scene& scene, Participant& participant)

@@ -12,7 +12,14 @@
 namespace clearance {
 namespace {
 
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3, kDdsFailed = 4 };
+enum ExitCode : int {
+  kOk = 0,
+  kFailed = 1,
+  kUsage = 2,
+  kBadCell = 3,
+  kDdsFailed = 4,
+  kRecordFailed = 5
+};
 
 constexpr const char* kFooter = R"(Exit status:
   0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong
@@ -20,6 +27,7 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
+  5  the recording could not be made, or is incomplete
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80)";
@@ -37,6 +45,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--check", arguments.check,
                "Only check the cell: print every error in it, or a summary");
   arguments.dds.add_to(app);
+  app.add_option("--record", arguments.daemon.record_file,
+                 "Record inputs and reports to this new MCAP file");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks");
   app.add_option(
          "--priority", arguments.daemon.fifo_priority,
@@ -60,7 +70,7 @@ int run_daemon(const Scene& scene, Arguments& arguments) {
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
   std::fputs(daemon.summary().c_str(), stdout);
-  return kOk;
+  return daemon.recording_complete() ? kOk : kRecordFailed;
 }
 
 int run(int argc, char** argv) {
@@ -94,6 +104,9 @@ int main(int argc, char** argv) {
   } catch (const clearance::DdsError& error) {
     spdlog::critical("{}", error.what());
     return clearance::kDdsFailed;
+  } catch (const clearance::RecordError& error) {
+    spdlog::critical("{}", error.what());
+    return clearance::kRecordFailed;
   } catch (const std::exception& error) {
     spdlog::critical("{}", error.what());
     return clearance::kFailed;

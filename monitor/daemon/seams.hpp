@@ -25,9 +25,9 @@ class PoseSource {
 class ReportSink {
  public:
   virtual ~ReportSink() = default;
-  // A batch that the next report will have used; called in the order in which the tick used them.
+  // A batch that the coming tick takes in; called in the order in which it does.
   virtual void input(const PoseBatch& batch) noexcept = 0;
-  // `sources`: the last batch of each source that this tick used; empty when it used none.
+  // `sources`: the last batch of each source that this tick took in; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.
   virtual void vitals(const Vitals& vitals) noexcept = 0;

@@ -74,6 +74,7 @@ void TickLoop::take_in() noexcept {
 }
 
 void TickLoop::use(const PoseBatch& batch) noexcept {
+  note_source(batch);
   if (!made_for(batch, scene_.revision)) {
     for (const PoseSample& sample : batch.samples) {
       monitor_.refuse(sample.object, Reject::kWrongRevision);
@@ -81,6 +82,9 @@ void TickLoop::use(const PoseBatch& batch) noexcept {
     return;
   }
   samples_.insert(samples_.end(), batch.samples.begin(), batch.samples.end());
+}
+
+void TickLoop::note_source(const PoseBatch& batch) noexcept {
   const auto end = used_.begin() + static_cast<std::ptrdiff_t>(used_count_);
   const auto found = std::find_if(
       used_.begin(), end, [&batch](const SourceUse& use) { return use.source == batch.source; });

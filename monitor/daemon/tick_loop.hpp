@@ -39,6 +39,7 @@ class TickLoop {
   void take_in() noexcept;
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
+  void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_vitals() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;

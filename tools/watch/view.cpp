@@ -39,8 +39,9 @@ std::string point(const clearance_msg_Vector3& p) {
   return fmt::format("({:7.3f} {:7.3f} {:7.3f})", p.x, p.y, p.z);
 }
 
+// Seven columns; what is more than a quarter of an hour away is no news.
 std::string contact_time(double seconds) {
-  return std::isfinite(seconds) ? fmt::format("{:7.2f}", seconds) : "      -";
+  return seconds < 1000.0 ? fmt::format("{:7.2f}", seconds) : "      -";
 }
 
 bool silent(const Feed& feed, std::int64_t now_ns) { return now_ns - feed.last_ns() > kSilentNs; }
@@ -81,7 +82,7 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add(fmt::format("in [{:.6f}, {:.6f}] m  ", pair.lower, pair.upper))
       .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
            report.minimum_proved ? Style::kGood : Style::kWarning)
-      .add(fmt::format("  closing {:+.3f} m/s  contact in{} s", pair.closing_speed,
+      .add(fmt::format("  closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
                        contact_time(pair.time_to_contact)));
   lines.emplace_back(width).add(fmt::format("          from {} to {}  normal {}",
                                             point(pair.witness_a), point(pair.witness_b),
@@ -241,7 +242,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (report.minimum_known) {
     const clearance_msg_PairDistance& pair = report.minimum;
     text +=
-        fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  closing {:+.3f} m/s  contact in{} s",
+        fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  closing {:+.3f} m/s  contact in {} s",
                     pair.distance, pair.lower, pair.upper, feed.pair_name(pair), pair.closing_speed,
                     contact_time(pair.time_to_contact));
   } else {

@@ -1,0 +1,93 @@
+#include "monitor/daemon/recording.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "monitor/daemon/health.hpp"
+#include "monitor/daemon/realtime.hpp"
+
+namespace clearance {
+namespace {
+
+// How much a disk may stall: a second at 1 kHz for a cell of usual size, less for a huge one.
+constexpr std::size_t kMostSlots = 1024, kFewestSlots = 64;
+constexpr std::size_t kQueueBytes = std::size_t{64} << 20;
+
+std::size_t slots(std::size_t bytes_a_slot) {
+  return std::clamp(kQueueBytes / std::max<std::size_t>(bytes_a_slot, 1), kFewestSlots, kMostSlots);
+}
+
+ReportQueueOptions queue_options(const Scene& scene) {
+  const std::size_t samples = DdsPoses::samples_a_batch(scene);
+  return {.reports = slots(sizeof(PairReport) * scene.pairs.size()),
+          .inputs = slots(sizeof(PoseSample) * samples),
+          .samples_a_batch = samples};
+}
+
+}  // namespace
+
+Recording::Recording(const std::filesystem::path& file, const Scene& scene, const DdsPoses& poses)
+    : scene_(scene),
+      file_(file.string()),
+      poses_(poses),
+      queue_(scene, queue_options(scene)),
+      recorder_(file, scene, SystemClock().realtime_ns()) {
+  if (!recorder_.ok()) throw RecordError("recording: " + recorder_.error());
+  thread_ = std::thread([this] { run(); });
+}
+
+Recording::~Recording() { finish(); }
+
+void Recording::finish() {
+  if (!thread_.joinable()) return;
+  queue_.close();
+  thread_.join();
+}
+
+void Recording::run() {
+  name_thread("record");
+  // A file can wait: no priority over the rest of the machine.
+  if (const Refusal refusal = use_fifo_scheduling(0)) spdlog::warn("{}", *refusal);
+  for (bool closed = false; !closed;) {
+    queue_.wait();
+    closed = queue_.closed();  // asked before the last look, so that nothing is left behind
+    while (const QueuedReport* queued = queue_.reports().front()) {
+      // What this report used is in the queue already; what later ones used may be as well.
+      while (const PoseBatch* batch = queue_.inputs().front()) {
+        recorder_.poses(*batch);
+        queue_.inputs().pop();
+      }
+      recorder_.report(queued->report, queued->sources());
+      queue_.reports().pop();
+    }
+    while (const Vitals* vitals = queue_.vitals().front()) {
+      recorder_.health(*make_health(scene_, *vitals, poses_.tallies(), queue_.dropped_reports()));
+      queue_.vitals().pop();
+      log_trouble();
+    }
+  }
+  complete_ = recorder_.close() && queue_.dropped_reports() + queue_.dropped_inputs() == 0;
+  log_trouble();
+}
+
+void Recording::log_trouble() {
+  if (!recorder_.ok() && !std::exchange(error_logged_, true)) {
+    spdlog::error("recording stopped: {}", recorder_.error());
+  }
+  const std::uint64_t dropped = queue_.dropped_reports() + queue_.dropped_inputs();
+  if (dropped > dropped_logged_) {
+    spdlog::error("recording: the disk is too slow, {} reports and {} batches are missing so far",
+                  queue_.dropped_reports(), queue_.dropped_inputs());
+    dropped_logged_ = dropped;
+  }
+}
+
+std::string Recording::summary() const {
+  return fmt::format("recorded {} messages, {:.1f} MB, in {}{}\n", recorder_.messages(),
+                     1e-6 * static_cast<double>(recorder_.bytes()), file_,
+                     complete_ ? "" : ": INCOMPLETE, the log says why");
+}
+
+}  // namespace clearance
