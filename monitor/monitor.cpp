@@ -76,7 +76,7 @@ Monitor::State::State(const Scene& the_scene)
     : scene(the_scene),
       parts(parts_of(the_scene)),
       table(the_scene, parts),
-      triage(the_scene, table),
+      triage(the_scene, parts, table),
       summaries(the_scene.pairs.size()) {
   for (const Object& object : scene.objects) objects.push_back(initial_state(object));
   report.scene_revision = scene.revision;
@@ -136,24 +136,27 @@ void Monitor::State::report_inputs() noexcept {
 }
 
 void Monitor::State::report_pairs() noexcept {
-  report.evaluated = report.carried = report.stale = report.unknown = 0;
-  report.lower_all = kInfinity;
-  report.oldest_evaluation_cycles = 0;
+  std::array<std::uint32_t, kPairStatuses> with_status{};
+  double lower_all = kInfinity;
+  std::uint64_t oldest_cycle = report.cycle;
   std::size_t published = 0;
   for (std::uint32_t p = 0; p < summaries.size(); ++p) {
     PairSummary& pair = summaries[p];
-    pair = summarise(p, objects, parts, report.cycle, table);
-    report.evaluated += is_evaluated(pair.status);
-    report.carried += pair.status == PairStatus::kCarried;
-    report.stale += pair.status == PairStatus::kStale;
-    report.unknown += pair.status == PairStatus::kUnknown;
-    report.lower_all = std::min(report.lower_all, pair.lower);
+    summarise(p, objects, report.cycle, table, pair);
+    ++with_status[static_cast<std::size_t>(pair.status)];
+    lower_all = std::min(lower_all, pair.lower);
     if (pair.status != PairStatus::kUnknown) {
-      report.oldest_evaluation_cycles =
-          std::max(report.oldest_evaluation_cycles, report.cycle - pair.evaluated_cycle);
+      oldest_cycle = std::min(oldest_cycle, pair.evaluated_cycle);
     }
     if (scene.pairs[p].publish) report.pairs[published++] = report_pair(p);
   }
+  const auto having = [&](PairStatus s) { return with_status[static_cast<std::size_t>(s)]; };
+  report.carried = having(PairStatus::kCarried);
+  report.stale = having(PairStatus::kStale);
+  report.unknown = having(PairStatus::kUnknown);
+  report.evaluated = report.pairs_total - report.carried - report.stale - report.unknown;
+  report.lower_all = lower_all;
+  report.oldest_evaluation_cycles = report.cycle - oldest_cycle;
 }
 
 void Monitor::State::report_minimum() noexcept {

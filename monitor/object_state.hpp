@@ -13,24 +13,25 @@
 namespace clearance {
 
 struct ObjectState {
-  bool seen = false;          // some pose is in use; always so for a fixed object
-  Pose pose;                  // in use; as sent, its orientation is normalised where it is used
-  std::int64_t stamp_ns = 0;  // of that pose
-  Twist twist;                // as sent with it, else from the last two poses; zero after the first
-
-  // Of this tick, by advance().
-  bool moved = false;           // the pose is not that of the last tick
-  Motion motion;                // since the last tick; none when first seen
+  // What every pair asks of both its objects each tick comes first: one cache line.
+  bool seen = false;            // some pose is in use; always so for a fixed object
+  bool late = false;            // that pose is older than the object's limit
+  bool moved = false;           // it is not that of the last tick
+  double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
   std::int64_t age_ns = -1;     // now - stamp, never negative; 0 for a fixed object, -1: never seen
-  bool late = false;            // older than the object's limit
-  double may_have_moved = 0.0;  // since then, m, at most: 0 unless late; infinity: nobody said
-  std::array<std::uint64_t, kRejects> rejected{};
 
-  // Whether anything can be said about where it is now.
-  [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
+  // As sent; the orientation is normalised where it is used.
+  Pose pose;
+  std::int64_t stamp_ns = 0;
+  Twist twist;    // as sent with the pose, else from the last two poses; zero after the first
+  Motion motion;  // since the last tick; none when first seen
+  std::array<std::uint64_t, kRejects> rejected{};
 
   Pose pose_last_tick;
   bool seen_last_tick = false;
+
+  // Whether anything can be said about where it is now.
+  [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
 };
 
 // Before any input: a fixed object stands where the scene says.

@@ -30,8 +30,8 @@ PairStatus status_of(DistanceStatus status) noexcept {
 std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTable& table) noexcept {
   std::uint32_t closest = first;
   for (std::uint32_t row = first; row < end; ++row) {
-    const bool evaluated = table.evaluation[row].cycle > 0;
-    const bool closest_evaluated = table.evaluation[closest].cycle > 0;
+    const bool evaluated = table.row_evaluated_cycle[row] > 0;
+    const bool closest_evaluated = table.row_evaluated_cycle[closest] > 0;
     if (evaluated != closest_evaluated ? evaluated : table.upper[row] < table.upper[closest]) {
       closest = row;
     }
@@ -42,12 +42,12 @@ std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTabl
 // What this tick's evaluations say about the pair; kCarried when they do not decide it.
 PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_t closest,
                             std::uint64_t cycle, const PairTable& table) noexcept {
-  if (table.evaluation[closest].cycle != cycle) return PairStatus::kCarried;
-  PairStatus status = status_of(table.evaluation[closest].status);
+  if (table.row_evaluated_cycle[closest] != cycle) return PairStatus::kCarried;
+  PairStatus status = status_of(table.status[closest]);
   for (std::uint32_t row = first; row < end; ++row) {
     if (row == closest || table.lower[row] >= table.upper[closest]) continue;
-    if (table.evaluation[row].cycle != cycle) return PairStatus::kCarried;
-    if (status_of(table.evaluation[row].status) == PairStatus::kLoose) status = PairStatus::kLoose;
+    if (table.row_evaluated_cycle[row] != cycle) return PairStatus::kCarried;
+    if (status_of(table.status[row]) == PairStatus::kLoose) status = PairStatus::kLoose;
   }
   return status;
 }
@@ -64,30 +64,28 @@ PairReport unknown_report() noexcept {
   return report;
 }
 
-PairSummary summarise(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                      const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                      const PairTable& table) noexcept {
+void summarise(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
+               const PairTable& table, PairSummary& summary) noexcept {
   const std::uint32_t first = table.first_row[pair];
   const std::uint32_t end = table.first_row[pair + 1];
-  PairSummary summary;
-  summary.row = first;
-  const ObjectState& a = objects[parts[table.part_a[first]].object];
-  const ObjectState& b = objects[parts[table.part_b[first]].object];
-  if (!a.known() || !b.known()) return summary;
-
+  const ObjectState& a = objects[table.object_a[pair]];
+  const ObjectState& b = objects[table.object_b[pair]];
+  if (!a.known() || !b.known()) {
+    summary = {};
+    return;
+  }
   summary.row = closest_row(first, end, table);
-  summary.evaluated_cycle = table.evaluation[summary.row].cycle;
-  summary.lower = *std::min_element(table.lower.begin() + first, table.lower.begin() + end);
+  summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
+  summary.lower = table.least_lower[pair];
   summary.upper = *std::min_element(table.upper.begin() + first, table.upper.begin() + end);
   if (!a.late && !b.late) {
     summary.status = evaluated_status(first, end, summary.row, cycle, table);
-    return summary;
+    return;
   }
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   summary.lower = rounded_down(summary.lower - may_have_moved);
   summary.upper = rounded_up(summary.upper + may_have_moved);
   summary.status = PairStatus::kStale;
-  return summary;
 }
 
 PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& summary,
@@ -104,18 +102,18 @@ PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& 
   report.status = summary.status;
   report.lower = summary.lower;
   report.upper = summary.upper;
-  const Evaluation& evaluation = table.evaluation[summary.row];
+  const ClosestPoints& closest = table.closest[summary.row];
   report.part_a = parts[table.part_a[summary.row]].index_in_object;
   report.part_b = parts[table.part_b[summary.row]].index_in_object;
-  report.distance = evaluation.distance;
-  report.witness_a = evaluation.witness_a;
-  report.witness_b = evaluation.witness_b;
-  report.normal = evaluation.normal;
+  report.distance = closest.distance;
+  report.witness_a = closest.witness_a;
+  report.witness_b = closest.witness_b;
+  report.normal = closest.normal;
   report.closing_speed =
-      closing_speed(velocity_at(evaluation.witness_a, a.pose, a.twist),
-                    velocity_at(evaluation.witness_b, b.pose, b.twist), evaluation.normal);
+      closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
+                    velocity_at(closest.witness_b, b.pose, b.twist), closest.normal);
   report.time_to_contact = time_to_contact(report.distance, report.closing_speed);
-  report.evaluated_cycle = evaluation.cycle;
+  report.evaluated_cycle = summary.evaluated_cycle;
   return report;
 }
 

@@ -26,7 +26,7 @@ void carry_row(const PlacedPart& a, const PlacedPart& b, double& lower, double& 
 
 }  // namespace
 
-Evaluation::Evaluation() noexcept
+ClosestPoints::ClosestPoints() noexcept
     : distance(kNan),
       witness_a(Vec3::Constant(kNan)),
       witness_b(Vec3::Constant(kNan)),
@@ -38,55 +38,39 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
     parts_by_object[parts[part].object].push_back(part);
   }
   first_row.push_back(0);
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    for (const std::uint32_t a : parts_by_object[scene.pairs[p].first]) {
-      for (const std::uint32_t b : parts_by_object[scene.pairs[p].second]) {
+  for (const ObjectPair& pair : scene.pairs) {
+    object_a.push_back(pair.first);
+    object_b.push_back(pair.second);
+    for (const std::uint32_t a : parts_by_object[pair.first]) {
+      for (const std::uint32_t b : parts_by_object[pair.second]) {
         part_a.push_back(a);
         part_b.push_back(b);
-        pair.push_back(p);
       }
     }
-    first_row.push_back(static_cast<std::uint32_t>(pair.size()));
+    first_row.push_back(rows());
   }
+  least_lower.assign(pairs(), -kInfinity);
+  evaluated_cycle.assign(pairs(), 0);
   lower.assign(rows(), -kInfinity);
   upper.assign(rows(), kInfinity);
+  row_evaluated_cycle.assign(rows(), 0);
+  status.assign(rows(), DistanceStatus::kIterationLimit);
   tracking.resize(rows());
-  evaluation.resize(rows());
+  closest.resize(rows());
 }
 
 void carry(const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
            PairTable& table) noexcept {
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const PlacedPart& a = parts[table.part_a[row]];
-    const PlacedPart& b = parts[table.part_b[row]];
-    if (!objects[a.object].seen || !objects[b.object].seen) continue;
-    carry_row(a, b, table.lower[row], table.upper[row]);
+  for (std::uint32_t pair = 0; pair < table.pairs(); ++pair) {
+    if (!objects[table.object_a[pair]].seen || !objects[table.object_b[pair]].seen) continue;
+    double least = kInfinity;
+    for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+      carry_row(parts[table.part_a[row]], parts[table.part_b[row]], table.lower[row],
+                table.upper[row]);
+      least = std::min(least, table.lower[row]);
+    }
+    table.least_lower[pair] = least;
   }
-}
-
-void evaluate(const std::vector<PlacedPart>& parts, std::uint32_t row, std::uint64_t cycle,
-              PairTable& table) noexcept {
-  const PlacedPart& a = parts[table.part_a[row]];
-  const PlacedPart& b = parts[table.part_b[row]];
-  const DistanceResult found = distance(
-      *a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), table.tracking[row]);
-
-  const double error = placing_error(a, b);
-  const double lower = error == 0.0 ? found.lower : rounded_down(found.lower - error);
-  const double upper = error == 0.0 ? found.upper : rounded_up(found.upper + error);
-  // The carried bounds are true as well, and a query that was cut short may know less.
-  const bool cut_short = found.status == DistanceStatus::kIterationLimit;
-  table.lower[row] = cut_short ? std::max(lower, table.lower[row]) : lower;
-  table.upper[row] = cut_short ? std::min(upper, table.upper[row]) : upper;
-
-  const Mat3& turn = a.world_from_part_rotation;
-  Evaluation& evaluation = table.evaluation[row];
-  evaluation.cycle = cycle;
-  evaluation.status = found.status;
-  evaluation.distance = found.distance;
-  evaluation.witness_a = turn * found.point_on_a + a.world_from_part.position;
-  evaluation.witness_b = turn * found.point_on_b + a.world_from_part.position;
-  evaluation.normal = turn * found.normal;
 }
 
 }  // namespace clearance

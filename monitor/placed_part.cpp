@@ -96,13 +96,11 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
   std::vector<PlacedPart> parts;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    const bool stated = !object.fixed && std::isfinite(object.max_speed);
     for (std::uint32_t j = 0; j < object.parts.size(); ++j) {
       const Part& part = object.parts[j];
       PlacedPart placed;
       placed.object = i;
       placed.index_in_object = j;
-      placed.stated_speed = stated ? object.max_speed : 0.0;
       placed.shape = &part.shape;
       placed.object_from_part = part.object_from_part;
       placed.reach = reach_of(part);
@@ -123,9 +121,6 @@ void place(const ObjectState& object, PlacedPart& part) noexcept {
     part.placed = true;
   }
   part.moved = moved_at_most(object.motion, part.reach);
-  const double measured =
-      object.twist.linear.norm() + swept(object.twist.angular.norm(), part.reach);
-  part.speed = std::max(part.stated_speed, measured);
 }
 
 double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept {

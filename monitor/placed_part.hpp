@@ -20,25 +20,24 @@ struct Ball {
 };
 
 struct PlacedPart {
-  // From the scene.
   std::uint32_t object = 0;           // index into Scene::objects
   std::uint32_t index_in_object = 0;  // into Object::parts
+
+  // Of this tick, once the object has been seen.
+  bool placed = false;
+  double moved = 0.0;  // no point of it moved farther since the last tick, m
+  Ball ball_in_world;
+  Pose world_from_part;      // as the queries use it
+  double shift_error = 0.0;  // its position is at most this far from the exact one, m
+  double turn_error = 0.0;   // |R - R_exact| is at most this
+  Mat3 world_from_part_rotation = Mat3::Identity();
+
+  // From the scene.
   const ConvexPolyhedron* shape = nullptr;
   Pose object_from_part;
   double reach = kInfinity;   // no point of it is farther from its object's origin, m
   double extent = kInfinity;  // no point of it is farther from its own origin, m
   Ball ball_in_part;
-  double stated_speed = 0.0;  // of any point of it, m/s; 0: fixed, or nobody said
-
-  // Of this tick, once the object has been seen.
-  bool placed = false;
-  Pose world_from_part;      // as the queries use it
-  double shift_error = 0.0;  // its position is at most this far from the exact one, m
-  double turn_error = 0.0;   // |R - R_exact| is at most this
-  Mat3 world_from_part_rotation = Mat3::Identity();
-  Ball ball_in_world;
-  double moved = 0.0;  // no point of it moved farther since the last tick, m
-  double speed = 0.0;  // it may reach: as stated, or as measured where that is more, m/s
 };
 
 // All parts of the scene, object by object; none placed yet.

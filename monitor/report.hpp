@@ -24,6 +24,7 @@ enum class PairStatus : std::uint8_t {
   // lower = -infinity, upper = +infinity.
   kUnknown = 6,
 };
+inline constexpr std::size_t kPairStatuses = 7;
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.

@@ -1,0 +1,69 @@
+#include "monitor/evaluation.hpp"
+
+#include <algorithm>
+
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// The query's bounds are for the poses as the query used them; the table's for the exact ones.
+void keep_bounds(const DistanceResult& found, double placing_error, double& lower,
+                 double& upper) noexcept {
+  const bool exact = placing_error == 0.0;
+  const double found_lower = exact ? found.lower : rounded_down(found.lower - placing_error);
+  const double found_upper = exact ? found.upper : rounded_up(found.upper + placing_error);
+  // The carried bounds are true as well, and a query that was cut short may know less.
+  const bool cut_short = found.status == DistanceStatus::kIterationLimit;
+  lower = cut_short ? std::max(found_lower, lower) : found_lower;
+  upper = cut_short ? std::min(found_upper, upper) : found_upper;
+}
+
+void query(std::uint32_t row, Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  const PlacedPart& a = evaluation.parts[table.part_a[row]];
+  const PlacedPart& b = evaluation.parts[table.part_b[row]];
+  const DistanceResult found = distance(
+      *a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), table.tracking[row]);
+  keep_bounds(found, placing_error(a, b), table.lower[row], table.upper[row]);
+
+  const Mat3& turn = a.world_from_part_rotation;
+  ClosestPoints& closest = table.closest[row];
+  closest.distance = std::clamp(found.distance, table.lower[row], table.upper[row]);
+  closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
+  closest.witness_b = turn * found.point_on_b + a.world_from_part.position;
+  closest.normal = turn * found.normal;
+  table.status[row] = found.status;
+  table.row_evaluated_cycle[row] = evaluation.cycle;
+  --evaluation.queries_left;
+}
+
+std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noexcept {
+  const auto first = table.lower.begin() + table.first_row[pair];
+  const auto end = table.lower.begin() + table.first_row[pair + 1];
+  return static_cast<std::uint32_t>(std::min_element(first, end) - table.lower.begin());
+}
+
+}  // namespace
+
+void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  if (evaluation.queries_left == 0) return;
+  const std::uint32_t likely = row_of_least_lower(pair, table);
+  query(likely, evaluation);
+  double smallest_upper = table.upper[likely];
+  bool all_that_matter = true;
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    if (row == likely || table.lower[row] >= smallest_upper) continue;
+    if (evaluation.queries_left == 0) {
+      all_that_matter = false;
+      break;
+    }
+    query(row, evaluation);
+    smallest_upper = std::min(smallest_upper, table.upper[row]);
+  }
+  table.least_lower[pair] = table.lower[row_of_least_lower(pair, table)];
+  if (all_that_matter) table.evaluated_cycle[pair] = evaluation.cycle;
+}
+
+}  // namespace clearance

@@ -1,0 +1,24 @@
+// Distance queries: from true bounds to tight ones.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/pair_table.hpp"
+
+namespace clearance {
+
+// What the queries of one tick work on, and how many are left of its budget.
+struct Evaluation {
+  const std::vector<PlacedPart>& parts;
+  const std::uint64_t cycle;
+  PairTable& table;
+  std::uint32_t queries_left;
+};
+
+// Evaluates an object pair as far as the budget goes: the row that may be closest, then every other
+// one that may be closer still. Rows whose carried bounds prove that they are not are left as they
+// are: the pair's distance does not depend on them.
+void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept;
+
+}  // namespace clearance
