@@ -221,6 +221,43 @@ TEST(Triage, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
   EXPECT_FALSE(monitor.tick(std::span(&sample, 1), kStart).zones[0].proved);
 }
 
+TEST(Triage, PartsThatCannotBeTheClosestAreNotEvaluatedAndThePairIsDecidedAllTheSame) {
+  std::vector<Part> chain;
+  for (int i = 0; i < 5; ++i) chain.push_back(test::ball(0.1, test::at(0, i, 0)));
+  const Scene scene = test::cell_of(
+      {test::moving("chain", chain), test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
+  Monitor monitor(scene);
+  for (int t = 0; t < 5; ++t) {
+    const PoseSample sample = test::sample(0, test::at(0, 1e-3 * t, 0), kStart + t * kTick);
+    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    EXPECT_EQ(report.queries, 1u);
+    EXPECT_EQ(report.evaluated, 1u);
+    EXPECT_EQ(report.minimum.status, PairStatus::kConverged);
+    EXPECT_EQ(report.minimum.part_a, 0u);
+  }
+  // Turned about, the far end comes near.
+  Pose turned = test::at(0, 3, 0);
+  turned.orientation = Eigen::AngleAxisd(M_PI, Vec3::UnitZ());
+  const PoseSample sample = test::sample(0, turned, kStart + 5 * kTick);
+  const PairReport& pair = monitor.tick(std::span(&sample, 1), sample.stamp_ns).minimum;
+  EXPECT_EQ(pair.part_a, 3u);
+  EXPECT_NEAR(pair.distance, 0.8, 1e-12);
+}
+
+TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
+  Scene scene = far_apart(20);
+  for (std::size_t p = 0; p < 15; ++p) scene.pairs[p].publish = true;
+  scene.budget = 4;
+  Monitor monitor(scene);
+  std::uint64_t oldest = 0;
+  for (int t = 0; t < 50; ++t) {
+    const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
+    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    if (t >= 20) oldest = std::max(oldest, report.oldest_evaluation_cycles);
+  }
+  EXPECT_LE(oldest, 7u);
+}
+
 TEST(Triage, PublishedPairsComeBeforeTheRest) {
   Scene scene = far_apart(20);
   scene.pairs[17].publish = true;

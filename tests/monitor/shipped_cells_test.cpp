@@ -1,0 +1,142 @@
+// The tick on the cells that are shipped, in the motion that they simulate.
+//
+// Oracle: every pair of parts asked afresh, without tracking, triage or a motion bound.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/cell_file.hpp"
+#include "config/simulation.hpp"
+#include "core/distance.hpp"
+#include "monitor/monitor.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+
+Scene shipped(const std::string& name) {
+  const CellResult read =
+      read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells" / name);
+  return std::get<Scene>(read);
+}
+
+// Distance of two objects, as far as the queries can tell.
+struct Truth {
+  double lower = kInfinity, upper = kInfinity;
+};
+
+Truth fresh_distance(const Object& a, const Pose& world_from_a, const Object& b,
+                     const Pose& world_from_b) {
+  Truth truth;
+  for (const Part& part_a : a.parts) {
+    for (const Part& part_b : b.parts) {
+      TrackingState cold;
+      const DistanceResult found =
+          distance(part_a.shape, part_b.shape,
+                   relative_pose(compose(world_from_a, part_a.object_from_part),
+                                 compose(world_from_b, part_b.object_from_part)),
+                   cold);
+      truth.lower = std::min(truth.lower, found.lower);
+      truth.upper = std::min(truth.upper, found.upper);
+    }
+  }
+  return truth;
+}
+
+// A cell in its simulated motion.
+class SimulatedCell {
+ public:
+  explicit SimulatedCell(const std::string& name) : scene(shipped(name)) {
+    for (const Object& object : scene.objects)
+      world_from_object_.push_back(object.world_from_object);
+  }
+
+  const Report& tick(Monitor& monitor, double t_s) {
+    poses_at(scene, t_s, poses_);
+    const std::int64_t now_ns = kStart + std::llround(t_s * 1e9);
+    samples_.clear();
+    for (const PoseAt& pose : poses_) {
+      world_from_object_[pose.object] = pose.world_from_object;
+      samples_.push_back(test::sample(pose.object, pose.world_from_object, now_ns));
+      samples_.back().twist = pose.twist;
+      samples_.back().has_twist = true;
+    }
+    return monitor.tick(samples_, now_ns);
+  }
+
+  [[nodiscard]] Truth truth(std::uint32_t pair) const {
+    const auto [a, b, publish] = scene.pairs[pair];
+    return fresh_distance(scene.objects[a], world_from_object_[a], scene.objects[b],
+                          world_from_object_[b]);
+  }
+
+  Scene scene;
+
+ private:
+  std::vector<Pose> world_from_object_;
+  std::vector<PoseAt> poses_;
+  std::vector<PoseSample> samples_;
+};
+
+struct Drive {
+  const char* cell;
+  std::uint32_t budget;
+  double step_s;
+};
+class ShippedCells : public testing::TestWithParam<Drive> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Monitor, ShippedCells,
+    testing::Values(Drive{"mcintyre.yaml", 100, 0.1}, Drive{"mcintyre.yaml", 5, 0.001},
+                    Drive{"mcintyre.yaml", 5, 0.1}, Drive{"two_arms.yaml", 2000, 0.1},
+                    Drive{"two_arms.yaml", 150, 0.001}, Drive{"two_arms.yaml", 150, 0.1}));
+
+TEST_P(ShippedCells, EveryBoundHoldsAndTheProvedMinimumIsTheMinimum) {
+  const Drive run = GetParam();
+  SimulatedCell cell(run.cell);
+  cell.scene.budget = run.budget;
+  for (Object& object : cell.scene.objects) object.age_limit_ns = std::llround(2e9 * run.step_s);
+  Monitor monitor(cell.scene);
+  for (int t = 0; t < 60; ++t) {
+    const Report& report = cell.tick(monitor, run.step_s * t);
+    ASSERT_LE(report.queries, run.budget);
+    ASSERT_EQ(report.evaluated + report.carried, report.pairs_total);
+    Truth least;
+    for (std::uint32_t p = 0; p < report.pairs_total; ++p) {
+      const Truth truth = cell.truth(p);
+      const PairReport pair = monitor.pair(p);
+      ASSERT_LE(pair.lower, truth.upper) << "tick " << t << " pair " << p;
+      ASSERT_GE(pair.upper, truth.lower) << "tick " << t << " pair " << p;
+      if (pair.status == PairStatus::kConverged) {
+        ASSERT_NEAR(pair.upper, truth.upper, 1e-12) << "tick " << t << " pair " << p;
+        ASSERT_NEAR(pair.lower, truth.lower, 1e-12) << "tick " << t << " pair " << p;
+        ASSERT_NEAR((pair.witness_b - pair.witness_a).norm(), std::abs(pair.distance), 1e-12);
+      }
+      least.lower = std::min(least.lower, truth.lower);
+      least.upper = std::min(least.upper, truth.upper);
+    }
+    ASSERT_LE(report.lower_all, least.upper);
+    if (report.minimum_proved) {
+      ASSERT_NEAR(report.minimum.distance, least.upper, 1e-12) << "tick " << t;
+    }
+  }
+}
+
+TEST(Monitor, ShippedCellsAreEvaluatedWholeInEveryTickWithinTheirBudget) {
+  for (const char* name : {"mcintyre.yaml", "two_arms.yaml"}) {
+    SimulatedCell cell(name);
+    Monitor monitor(cell.scene);
+    for (int t = 0; t < 100; ++t) {
+      const Report& report = cell.tick(monitor, 0.001 * t);
+      EXPECT_EQ(report.evaluated, report.pairs_total) << name << " tick " << t;
+      EXPECT_TRUE(report.minimum_proved);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance
