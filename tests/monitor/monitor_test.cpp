@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/monitor/allocation_count.hpp"
+#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {

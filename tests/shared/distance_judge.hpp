@@ -29,7 +29,7 @@ class DistanceJudge {
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
   //  - the bounds, compared exactly
-  //  - the status: converged within 1e-14 of the lengths involved; overlapping and touching only
+  //  - the status: converged within 1.5e-14 of size(); overlapping and touching only
   //  where it is so;
   //    never at the iteration limit
   //  - the witness points: on their bodies and `distance` apart; the normal: unit, and it separates
@@ -37,8 +37,8 @@ class DistanceJudge {
                                                 const oracle::ExactDistance& truth,
                                                 const Pose& pose_a, const Pose& pose_b);
 
-  // The lengths that a rounding error is relative to: reach of both bodies, how far their origins
-  // are apart, and the distance itself.
+  // The lengths that a rounding error is relative to: reach of both bodies (of an unbounded one as
+  // far as the closest points may lie), how far their origins are apart, and the distance itself.
   [[nodiscard]] double size(const oracle::ExactDistance& truth, const Pose& pose_a,
                             const Pose& pose_b) const;
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <sstream>
 
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/hard_cases.hpp"
@@ -160,8 +161,12 @@ std::string number(double x) {
 template <class List, class Print>
 std::string json_list(const List& list, Print print) {
   std::string out = "[";
-  for (const auto& item : list) out += (out.size() > 1 ? "," : "") + print(item);
-  return out + "]";
+  for (const auto& item : list) {
+    if (out.size() > 1) out += ',';
+    out += print(item);
+  }
+  out += ']';
+  return out;
 }
 
 std::string json(const Vec3& v) { return json_list(v, number); }
@@ -178,18 +183,21 @@ std::string json(const Body& body) {
     const double all[] = {r.normal.x(), r.normal.y(), r.normal.z(), r.offset};
     return json_list(all, number);
   };
-  std::string out = "{\"halfspaces\":";
-  out += body.rows.empty() ? "null" : json_list(body.rows, row);
-  out += ",\"vertices\":";
-  out +=
-      body.points.empty() ? "null" : json_list(body.points, [](const Vec3& p) { return json(p); });
-  return out + ",\"radius\":" + number(body.radius) + "}";
+  std::ostringstream out;
+  out << R"({"halfspaces":)" << (body.rows.empty() ? "null" : json_list(body.rows, row))
+      << R"(,"vertices":)"
+      << (body.points.empty() ? "null"
+                              : json_list(body.points, [](const Vec3& p) { return json(p); }))
+      << R"(,"radius":)" << number(body.radius) << '}';
+  return out.str();
 }
 
 std::string json_head(const std::string& id, const std::string& family, const std::string& note,
                       const Body& a, const Body& b) {
-  return "{\"id\":\"" + id + "\",\"family\":\"" + family + "\",\"note\":\"" + note +
-         "\",\"a\":" + json(a) + ",\"b\":" + json(b);
+  std::ostringstream out;
+  out << R"({"id":")" << id << R"(","family":")" << family << R"(","note":")" << note << R"(","a":)"
+      << json(a) << R"(,"b":)" << json(b);
+  return out.str();
 }
 
 }  // namespace
@@ -197,15 +205,21 @@ std::string json_head(const std::string& id, const std::string& family, const st
 std::span<const MotionFamily> motion_families() { return kFamilies; }
 
 std::string json_line(const std::string& id, const std::string& family, const HardCase& c) {
-  return json_head(id, family, c.note, c.a, c.b) + ",\"pose_a\":" + json(c.pose_a) +
-         ",\"pose_b\":" + json(c.pose_b) + "}";
+  std::ostringstream out;
+  out << json_head(id, family, c.note, c.a, c.b) << R"(,"pose_a":)" << json(c.pose_a)
+      << R"(,"pose_b":)" << json(c.pose_b) << '}';
+  return out.str();
 }
 
 std::string json_line(const std::string& id, const std::string& family, const HardMotion& m) {
   const auto step = [](const std::pair<Pose, Pose>& poses) {
-    return "[" + json(poses.first) + "," + json(poses.second) + "]";
+    const Pose both[] = {poses.first, poses.second};
+    return json_list(both, [](const Pose& pose) { return json(pose); });
   };
-  return json_head(id, family, m.note, m.a, m.b) + ",\"poses\":" + json_list(m.poses, step) + "}";
+  std::ostringstream out;
+  out << json_head(id, family, m.note, m.a, m.b) << R"(,"poses":)" << json_list(m.poses, step)
+      << '}';
+  return out.str();
 }
 
 }  // namespace clearance::hard

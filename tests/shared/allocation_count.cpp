@@ -1,4 +1,4 @@
-#include "tests/monitor/allocation_count.hpp"
+#include "tests/shared/allocation_count.hpp"
 
 #include <cstddef>
 #include <cstdlib>

@@ -1,0 +1,66 @@
+// distance() against the exact truth, on every family of hard cases and motions.
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance {
+namespace hard {
+
+void PrintTo(const CaseFamily& family, std::ostream* out) { *out << family.name; }
+void PrintTo(const MotionFamily& family, std::ostream* out) { *out << family.name; }
+
+}  // namespace hard
+
+namespace {
+
+std::string joined(const std::vector<std::string>& faults) {
+  std::string out;
+  for (const std::string& fault : faults) out += "\n  " + fault;
+  return out;
+}
+
+class DistanceOfPairs : public testing::TestWithParam<hard::CaseFamily> {};
+
+TEST_P(DistanceOfPairs, HoldsAgainstTheExactTruth) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const hard::HardCase c = GetParam().make(random);
+    DistanceJudge judge(c.a, c.b);
+    ASSERT_EQ(judge.refusal(), "") << GetParam().name << " seed " << seed;
+    TrackingState state;
+    const DistanceResult result = judge.ask(c.pose_a, c.pose_b, state);
+    const auto faults = judge.faults(result, judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
+    EXPECT_TRUE(faults.empty()) << GetParam().name << " seed " << seed << joined(faults);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hard, DistanceOfPairs, testing::ValuesIn(hard::case_families()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+class DistanceAlongMotions : public testing::TestWithParam<hard::MotionFamily> {};
+
+TEST_P(DistanceAlongMotions, HoldsAgainstTheExactTruthAtEveryStep) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    Random random(seed);
+    const hard::HardMotion m = GetParam().make(random, 40);
+    DistanceJudge judge(m.a, m.b);
+    ASSERT_EQ(judge.refusal(), "") << GetParam().name << " seed " << seed;
+    TrackingState state;
+    for (std::size_t k = 0; k < m.poses.size(); ++k) {
+      const auto& [pose_a, pose_b] = m.poses[k];
+      const DistanceResult result = judge.ask(pose_a, pose_b, state);
+      const auto faults = judge.faults(result, judge.truth(pose_a, pose_b), pose_a, pose_b);
+      EXPECT_TRUE(faults.empty()) << GetParam().name << " seed " << seed << " step " << k
+                                  << joined(faults);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hard, DistanceAlongMotions, testing::ValuesIn(hard::motion_families()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,168 @@
+// What must hold between answers, whatever the bodies: laws that need no oracle to be checked.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/shared/allocation_count.hpp"
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::uint64_t kSeeds = 8;
+
+struct Example {
+  std::string name;
+  hard::HardCase c;
+  ConvexPolyhedron a, b;
+
+  [[nodiscard]] RelativePose pose() const { return relative_pose(c.pose_a, c.pose_b); }
+  // What rounding errors are relative to (see DistanceJudge::size).
+  [[nodiscard]] double size(const DistanceResult& r) const {
+    return a.bounding_radius + a.radius + b.bounding_radius + b.radius +
+           (c.pose_a.position - c.pose_b.position).norm() + std::abs(r.upper);
+  }
+};
+
+void for_each_example(const std::function<void(const Example&, Random&)>& visit) {
+  for (const hard::CaseFamily& family : hard::case_families()) {
+    for (std::uint64_t seed = 100; seed < 100 + kSeeds; ++seed) {
+      Random random(seed);
+      Example example{
+          family.name + std::string(" seed ") + std::to_string(seed), family.make(random), {}, {}};
+      example.a = std::get<ConvexPolyhedron>(model(example.c.a));
+      example.b = std::get<ConvexPolyhedron>(model(example.c.b));
+      visit(example, random);
+    }
+  }
+}
+
+DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                    const RelativePose& pose) {
+  TrackingState state;
+  return distance(a, b, pose, state);
+}
+
+// Both enclose the same number.
+void expect_same_truth(const DistanceResult& r, const DistanceResult& s, const std::string& what) {
+  EXPECT_LE(r.lower, s.upper) << what;
+  EXPECT_LE(s.lower, r.upper) << what;
+}
+
+TrackingState::Side nonsense(const ConvexPolyhedron& body, Random& random) {
+  TrackingState::Side out;
+  out.dimension = static_cast<std::uint8_t>(random.integer(0, 6));
+  const std::size_t most = std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
+  out.feature = random.integer(-2, static_cast<int>(most) + 1);
+  out.point = random.in_box(random.log_uniform(1e-3, 1e6));
+  if (random.chance(0.2)) out.point.x() = std::nan("");
+  if (random.chance(0.2)) out.point.y() = kInfinity;
+  return out;
+}
+
+TEST(Distance, SwappingTheBodiesSwapsTheAnswer) {
+  for_each_example([](const Example& e, Random&) {
+    const DistanceResult r = cold(e.a, e.b, e.pose());
+    const DistanceResult s = cold(e.b, e.a, relative_pose(e.c.pose_b, e.c.pose_a));
+    expect_same_truth(r, s, e.name);
+  });
+}
+
+TEST(Distance, IsZeroAfterMovingByItAlongTheNormal) {
+  for_each_example([](const Example& e, Random&) {
+    const DistanceResult r = cold(e.a, e.b, e.pose());
+    if (r.status != DistanceStatus::kConverged || !e.a.bounded() || !e.b.bounded()) return;
+    RelativePose moved = e.pose();
+    moved.translation -= r.distance * r.normal;
+    moved.translation_error += 0x1p-50 * (moved.translation.norm() + r.distance);
+    const DistanceResult s = cold(e.a, e.b, moved);
+    EXPECT_LE(std::abs(s.distance), 2e-14 * e.size(r)) << e.name;
+  });
+}
+
+TEST(Distance, GrowsByAsMuchAsTheBodiesAreTakenApartAlongTheNormal) {
+  for_each_example([](const Example& e, Random&) {
+    const DistanceResult r = cold(e.a, e.b, e.pose());
+    if (r.status != DistanceStatus::kConverged) return;
+    RelativePose moved = e.pose();
+    moved.translation += r.normal * r.distance;
+    moved.translation_error += 0x1p-50 * (moved.translation.norm() + r.distance);
+    const DistanceResult s = cold(e.a, e.b, moved);
+    EXPECT_NEAR(s.distance, 2 * r.distance, 3e-14 * e.size(s)) << e.name;
+  });
+}
+
+TEST(Distance, TrackedEqualsColdWithinTheBounds) {
+  for_each_example([](const Example& e, Random& random) {
+    TrackingState state;
+    Pose pose_b = e.c.pose_b;
+    const double step = 0.05 * (e.a.bounding_radius + e.b.bounding_radius);
+    for (int k = 0; k < 20; ++k) {
+      pose_b.position += random.in_box(step);
+      const RelativePose pose = relative_pose(e.c.pose_a, pose_b);
+      expect_same_truth(distance(e.a, e.b, pose, state), cold(e.a, e.b, pose), e.name);
+    }
+  });
+}
+
+TEST(Distance, BoundsHoldEvenWhenTheStateIsNonsense) {
+  for_each_example([](const Example& e, Random& random) {
+    const DistanceResult r = cold(e.a, e.b, e.pose());
+    for (int k = 0; k < 10; ++k) {
+      TrackingState state{nonsense(e.a, random), nonsense(e.b, random)};
+      const DistanceResult s = distance(e.a, e.b, e.pose(), state);
+      EXPECT_TRUE(std::isfinite(s.distance) && std::isfinite(s.lower)) << e.name;
+      EXPECT_FALSE(std::isnan(s.upper)) << e.name;
+      expect_same_truth(r, s, e.name);
+    }
+  });
+}
+
+TEST(Distance, ScalesExactlyWithPowersOfTwo) {
+  for_each_example([](const Example& e, Random& random) {
+    // Where a query starts on an unbounded body is a fixed length from its boundary.
+    if (!e.a.bounded() || !e.b.bounded()) return;
+    const double factor = std::ldexp(1.0, random.integer(-30, 30));
+    const ShapeResult a = model(hard::scaled(e.c.a, factor)),
+                      b = model(hard::scaled(e.c.b, factor));
+    Pose pose_a = e.c.pose_a, pose_b = e.c.pose_b;
+    pose_a.position *= factor;
+    pose_b.position *= factor;
+    const DistanceResult r = cold(e.a, e.b, e.pose());
+    const DistanceResult s = cold(std::get<ConvexPolyhedron>(a), std::get<ConvexPolyhedron>(b),
+                                  relative_pose(pose_a, pose_b));
+    EXPECT_EQ(s.distance, factor * r.distance) << e.name;
+    EXPECT_EQ(s.lower, factor * r.lower) << e.name;
+    EXPECT_EQ(s.upper, factor * r.upper) << e.name;
+    EXPECT_EQ(s.status, r.status) << e.name;
+    EXPECT_EQ(s.iterations, r.iterations) << e.name;
+  });
+}
+
+TEST(Distance, GivesTheSameBitsForTheSameQuestion) {
+  for_each_example([](const Example& e, Random&) {
+    const DistanceResult r = cold(e.a, e.b, e.pose()), s = cold(e.a, e.b, e.pose());
+    EXPECT_EQ(r.distance, s.distance) << e.name;
+    EXPECT_EQ(r.lower, s.lower) << e.name;
+    EXPECT_EQ(r.point_on_a, s.point_on_a) << e.name;
+    EXPECT_EQ(r.point_on_b, s.point_on_b) << e.name;
+  });
+}
+
+TEST(Distance, AllocatesNothing) {
+  for_each_example([](const Example& e, Random& random) {
+    TrackingState tracked;
+    TrackingState wrong{nonsense(e.a, random), nonsense(e.b, random)};
+    const std::uint64_t before = allocations();
+    const RelativePose pose = e.pose();
+    (void)distance(e.a, e.b, pose, tracked);
+    (void)distance(e.a, e.b, pose, tracked);
+    (void)distance(e.a, e.b, pose, wrong);
+    EXPECT_EQ(allocations(), before) << e.name;
+  });
+}
+
+}  // namespace
+}  // namespace clearance

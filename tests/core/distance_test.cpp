@@ -1,0 +1,188 @@
+// distance() in closed form: answers that a person can check.
+#include "core/distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "core/shapes.hpp"
+
+namespace clearance {
+namespace {
+
+// Roundings of numbers of about one.
+constexpr double kRounding = 1e-14;
+
+ConvexPolyhedron made(ShapeResult shape) {
+  if (const auto* error = std::get_if<ShapeError>(&shape)) throw std::logic_error(error->reason);
+  return std::get<ConvexPolyhedron>(std::move(shape));
+}
+
+ConvexPolyhedron cube() { return made(box({0.5, 0.5, 0.5})); }
+ConvexPolyhedron ball(double radius) { return made(point(Vec3::Zero(), radius)); }
+ConvexPolyhedron capsule(double half_length, double radius) {
+  return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
+}
+ConvexPolyhedron half_space(const Vec3& normal, double offset) {
+  const HalfSpace row{normal, offset};
+  return made(polyhedron_from_halfspaces({&row, 1}));
+}
+
+Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
+Pose turned(const Vec3& position, double angle, const Vec3& axis) {
+  return {position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))};
+}
+
+DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
+  TrackingState state;
+  return distance(a, b, relative_pose(Pose{}, pose_b), state);
+}
+
+// `size`: of the largest number involved, which rounding is relative to.
+void expect_distance(const DistanceResult& r, double truth, double size = 1.0) {
+  EXPECT_NEAR(r.distance, truth, kRounding * size);
+  EXPECT_LE(r.lower, truth);
+  EXPECT_GE(r.upper, truth);
+  EXPECT_LE(r.upper - r.lower, 4 * kRounding * size);
+}
+
+void expect_near(const Vec3& found, const Vec3& expected) {
+  EXPECT_LT((found - expected).norm(), kRounding) << found.transpose();
+}
+
+TEST(Distance, OfCubesFaceToFaceIsTheGap) {
+  const DistanceResult r = ask(cube(), cube(), at(1.5, 0.25, 0));
+  expect_distance(r, 0.5);
+  EXPECT_EQ(r.status, DistanceStatus::kConverged);
+  expect_near(r.normal, Vec3::UnitX());
+  expect_near(r.point_on_b - r.point_on_a, {0.5, 0, 0});
+}
+
+TEST(Distance, OfCubesEdgeToEdgeAndCornerToCornerIsTheDiagonal) {
+  expect_distance(ask(cube(), cube(), at(4, 5, 0.5)), 5.0);
+  const DistanceResult r = ask(cube(), cube(), at(2, 3, 3));
+  expect_distance(r, 3.0);
+  expect_near(r.point_on_a, {0.5, 0.5, 0.5});
+  expect_near(r.point_on_b, {1.5, 2.5, 2.5});
+  expect_near(r.normal, Vec3(1, 2, 2) / 3.0);
+}
+
+TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
+  // Both cubes turned by 45 degrees: edges along y and x face each other on the z axis.
+  const double half_diagonal = std::numbers::sqrt2 / 2;
+  TrackingState state;
+  const Pose pose_a = turned({0, 0, 0}, std::numbers::pi / 4, Vec3::UnitY());
+  const Pose pose_b = turned({0.1, 0.2, 3}, std::numbers::pi / 4, Vec3::UnitX());
+  const DistanceResult r = distance(cube(), cube(), relative_pose(pose_a, pose_b), state);
+  expect_distance(r, 3 - 2 * half_diagonal);
+  EXPECT_EQ(state.a.dimension, 1);
+  EXPECT_EQ(state.b.dimension, 1);
+}
+
+TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
+  for (const Pose& pose : {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0.3, 1)}) {
+    const DistanceResult r = ask(cube(), cube(), pose);
+    expect_distance(r, 0.0);
+    EXPECT_EQ(r.status, DistanceStatus::kTouching);
+    EXPECT_EQ(r.lower, 0.0);
+  }
+}
+
+TEST(Distance, OfOverlappingCubesIsExactlyZeroAndSaysOverlapping) {
+  for (const Pose& pose : {at(0, 0, 0), at(0.9, 0, 0), at(0.5, 0.5, 0.5), at(0, 0, 0.999999)}) {
+    const DistanceResult r = ask(cube(), cube(), pose);
+    EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+    EXPECT_EQ(r.distance, 0.0);
+    EXPECT_EQ(r.lower, 0.0);
+    EXPECT_EQ(r.upper, 0.0);
+    expect_near(r.point_on_a, r.point_on_b);
+    EXPECT_LE(r.point_on_a.cwiseAbs().maxCoeff(), 0.5 + kRounding);
+  }
+}
+
+TEST(Distance, OfSpheresIsThatOfTheCentresLessTheRadii) {
+  const DistanceResult r = ask(ball(0.5), ball(0.25), at(3, 4, 0));
+  expect_distance(r, 4.25);
+  expect_near(r.point_on_a, {0.3, 0.4, 0});
+  expect_near(r.normal, {0.6, 0.8, 0});
+}
+
+TEST(Distance, OfOverlappingSpheresIsMinusTheDepth) {
+  const DistanceResult r = ask(ball(0.5), ball(0.5), at(0.75, 0, 0));
+  expect_distance(r, -0.25);
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfSpheresWithOneCentreIsMinusBothRadii) {
+  const DistanceResult r = ask(ball(0.5), ball(0.25), at(0, 0, 0));
+  expect_distance(r, -0.75);
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfCapsulesParallelCrossedAndEndToEnd) {
+  const ConvexPolyhedron a = capsule(1.0, 0.25);
+  expect_distance(ask(a, a, at(1, 0, 0.5)), 0.5);
+  expect_distance(ask(a, a, turned({1, 0, 0}, std::numbers::pi / 2, Vec3::UnitX())), 0.5);
+  expect_distance(ask(a, a, at(0, 0, 3)), 0.5);
+  expect_distance(ask(a, a, at(3, 0, 6)), 4.5);
+}
+
+TEST(Distance, OfASphereAndABoxIsMeasuredFromTheCore) {
+  expect_distance(ask(cube(), ball(0.25), at(2, 0, 0)), 1.25);
+  expect_distance(ask(cube(), ball(0.25), at(3.5, 4.5, 0)), 4.75);
+  expect_distance(ask(cube(), ball(0.25), at(0.6, 0, 0)), 0.1 - 0.25);
+  // The centre lies within the box: no deeper depth is claimed.
+  const DistanceResult inside = ask(cube(), ball(0.25), at(0.1, 0, 0));
+  expect_distance(inside, -0.25);
+  EXPECT_EQ(inside.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
+  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
+  expect_distance(ask(floor, cube(), at(100, -100, 2)), 1.5, 200);
+  const DistanceResult corner =
+      ask(floor, cube(), turned({0, 0, 2}, std::acos(1 / std::sqrt(3.0)), {1, -1, 0}));
+  expect_distance(corner, 2 - std::sqrt(3.0) / 2);
+  expect_near(corner.normal, Vec3::UnitZ());
+  EXPECT_EQ(ask(floor, cube(), at(0, 0, 0.4)).status, DistanceStatus::kOverlapping);
+  EXPECT_EQ(ask(floor, cube(), at(0, 0, -1e6)).status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
+  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
+  expect_distance(ask(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
+  // The last bit of tilt makes them meet, far away.
+  const DistanceResult tilted = ask(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
+  EXPECT_EQ(tilted.lower, 0.0);
+}
+
+TEST(Distance, OfPointsIsEuclid) {
+  const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
+  const DistanceResult r = ask(p, q, at(2, 3, 6));
+  expect_distance(r, 7.0, 10);
+  expect_near(r.point_on_a, {1, 2, 2});
+  expect_distance(ask(cube(), p, at(0, 0, 0)), std::sqrt(0.25 + 2 * 2.25));
+}
+
+TEST(Distance, StopsEarlyWhenNobodyAskedHowFar) {
+  TrackingState state;
+  const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));
+  const DistanceResult r = distance(cube(), cube(), pose, state, {.far_away = 10.0});
+  EXPECT_EQ(r.status, DistanceStatus::kFarAway);
+  EXPECT_GE(r.lower, 10.0);
+  EXPECT_LE(r.lower, 99.0);
+  EXPECT_GE(r.upper, 99.0);
+}
+
+TEST(Distance, NamesEveryStatus) {
+  EXPECT_STREQ(name(DistanceStatus::kConverged), "converged");
+  EXPECT_STREQ(name(DistanceStatus::kFarAway), "far_away");
+  EXPECT_STREQ(name(DistanceStatus::kTouching), "touching");
+  EXPECT_STREQ(name(DistanceStatus::kOverlapping), "overlapping");
+  EXPECT_STREQ(name(DistanceStatus::kIterationLimit), "iteration_limit");
+}
+
+}  // namespace
+}  // namespace clearance
