@@ -1,0 +1,40 @@
+// Writes the cell file of a robot from its URDF and SRDF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "config/urdf.hpp"
+
+namespace clearance {
+
+struct RobotCellOptions {
+  std::filesystem::path urdf;
+  std::filesystem::path srdf;       // empty: no pair is disabled
+  std::filesystem::path directory;  // of the cell: mesh paths are written relative to it
+  // package:// names and where they are. Others are looked for in the URDF's directory and those
+  // above it: a directory of that name, or one within.
+  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  std::string group;       // of all links; empty: the robot's name
+  double max_speed = 0.0;  // m/s; 0: not stated
+  double age_limit_ms = 20.0;
+  // The root link, and what fixed joints join to it, is fixed at the origin of the world. Otherwise
+  // every link moves, and its pose has to arrive.
+  bool fixed_base = false;
+};
+
+// What was written, and what a person should know about it.
+struct RobotCell {
+  std::string yaml;
+  std::vector<std::string> notes;
+};
+
+// An object a link that has collision shapes, named as the link, in the link's frame; every pair of
+// them but the SRDF's disabled ones, with their reasons. A cylinder becomes a prism of 24 sides
+// around it, at most 0.9 % of its radius farther out: never smaller than the robot.
+[[nodiscard]] std::variant<RobotCell, UrdfFault> robot_cell(const RobotCellOptions& options);
+
+}  // namespace clearance

@@ -1,0 +1,72 @@
+// What a cell needs of a robot's description: the collision shapes of URDF, and the pairs that SRDF
+// disables.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+struct UrdfMesh {
+  std::string file;  // as written: package://..., file://..., or a path
+  Vec3 scale = Vec3::Ones();
+};
+struct UrdfBox {
+  Vec3 size;  // edge lengths, m
+};
+struct UrdfCylinder {
+  double radius, length;  // m; along z, centred
+};
+struct UrdfSphere {
+  double radius;  // m
+};
+
+// Where a child's frame is in its parent's, as written: rpy about the fixed axes x, y, z.
+struct UrdfOrigin {
+  Vec3 xyz = Vec3::Zero();  // m
+  Vec3 rpy = Vec3::Zero();  // rad
+};
+
+struct UrdfCollision {
+  std::variant<UrdfMesh, UrdfBox, UrdfCylinder, UrdfSphere> shape;
+  UrdfOrigin link_from_shape;
+};
+
+struct UrdfLink {
+  std::string name;
+  std::vector<UrdfCollision> collisions;
+};
+
+struct UrdfJoint {
+  std::string type, parent, child;
+  UrdfOrigin parent_from_child;  // at position zero
+};
+
+struct UrdfRobot {
+  std::string name;
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+};
+
+struct SrdfDisabled {
+  std::string link_a, link_b, reason;
+};
+
+// "FILE:LINE: what was found, what was expected".
+struct UrdfFault {
+  std::string text;
+};
+
+// Plain URDF: xacro has to be expanded before. Checks that joints join links that exist, once each.
+[[nodiscard]] std::variant<UrdfRobot, UrdfFault> read_urdf(const std::filesystem::path& file);
+
+// The <disable_collisions> of an SRDF, in its order. The newer <disable_default_collisions> and
+// <enable_collisions> are refused, since ignoring them would watch the wrong pairs.
+[[nodiscard]] std::variant<std::vector<SrdfDisabled>, UrdfFault> read_srdf(
+    const std::filesystem::path& file);
+
+}  // namespace clearance

@@ -1,0 +1,173 @@
+#include "config/robot_cell.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/config/cells.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kUrdf = R"(<?xml version="1.0"?>
+<robot name="little">
+  <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
+  <link name="mast">
+    <collision>
+      <origin xyz="0 0 0.5" rpy="0 0 0.3"/>
+      <geometry><cylinder radius="0.1" length="1"/></geometry>
+    </collision>
+    <collision><geometry><sphere radius="0.12"/></geometry></collision>
+  </link>
+  <link name="head"><collision><geometry><mesh filename="package://little_description/head.obj" scale="0.001 0.001 0.001"/></geometry></collision></link>
+  <link name="frame"/>
+  <joint name="a" type="fixed"><origin xyz="0 0 0.05" rpy="0 0 1.5"/><parent link="foot"/><child link="mast"/></joint>
+  <joint name="b" type="revolute"><origin xyz="0 0 1.2"/><parent link="mast"/><child link="head"/></joint>
+  <joint name="c" type="fixed"><parent link="head"/><child link="frame"/></joint>
+</robot>
+)";
+
+const std::string kSrdf = R"(<robot name="little">
+  <disable_collisions link1="foot" link2="mast" reason="Adjacent"/>
+  <disable_collisions link1="mast" link2="foot" reason="Adjacent"/>
+  <disable_collisions link1="frame" link2="foot" reason="Never"/>
+  <disable_collisions link1="head" link2="mast" reason="Say &quot;never&quot;"/>
+</robot>
+)";
+
+// A package directory of its own for each test, gone afterwards.
+class RobotCellFile : public testing::Test {
+ protected:
+  RobotCellFile() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "clearance_robot_XXXXXX").string();
+    root_ = mkdtemp(pattern.data());
+    std::filesystem::create_directories(root_ / "little_description" / "urdf");
+    std::filesystem::create_directories(root_ / "cells");
+    write("little_description/head.obj",
+          "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+    write("little_description/urdf/little.urdf", kUrdf);
+    write("little_description/urdf/little.srdf", kSrdf);
+    options_.urdf = root_ / "little_description" / "urdf" / "little.urdf";
+    options_.srdf = root_ / "little_description" / "urdf" / "little.srdf";
+    options_.directory = root_ / "cells";
+  }
+  ~RobotCellFile() override { std::filesystem::remove_all(root_); }
+
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(root_ / name) << text;
+  }
+
+  RobotCell cell() {
+    auto result = robot_cell(options_);
+    if (const auto* fault = std::get_if<UrdfFault>(&result)) {
+      ADD_FAILURE() << fault->text;
+      return {};
+    }
+    return std::get<RobotCell>(std::move(result));
+  }
+
+  Scene scene() { return scene_of(cell().yaml, root_ / "cells" / "little.yaml"); }
+
+  std::string fault() {
+    const auto result = robot_cell(options_);
+    const auto* found = std::get_if<UrdfFault>(&result);
+    return found == nullptr ? "" : found->text;
+  }
+
+  std::filesystem::path root_;
+  RobotCellOptions options_;
+};
+
+TEST_F(RobotCellFile, EveryLinkWithShapesIsAnObjectInItsLinkFrame) {
+  const Scene scene = this->scene();
+  ASSERT_EQ(scene.objects.size(), 3u);
+  EXPECT_EQ(scene.name, "little");
+  EXPECT_EQ(scene.objects[0].name, "foot");
+  EXPECT_FALSE(scene.objects[0].fixed);
+  ASSERT_EQ(scene.objects[1].parts.size(), 2u);
+  EXPECT_EQ(scene.objects[1].parts[0].object_from_part.position, Vec3(0.0, 0.0, 0.5));
+  EXPECT_NEAR(scene.objects[1].parts[0].object_from_part.orientation.z(), std::sin(0.15), 1e-15);
+  EXPECT_EQ(scene.objects[1].parts[1].shape.radius, 0.12);
+  EXPECT_NEAR(scene.objects[2].parts[0].shape.bounding_radius, 0.2, 1e-12);
+}
+
+TEST_F(RobotCellFile, DisabledPairsAreAllowedWithTheirReasons) {
+  const Scene scene = this->scene();
+  ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
+  EXPECT_EQ(scene.pairs[0].first, 0u);
+  EXPECT_EQ(scene.pairs[0].second, 2u);
+  EXPECT_THAT(scene.yaml, HasSubstr(R"(between: ["head", "mast"], reason: "Say \"never\"")"));
+}
+
+TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
+  EXPECT_THAT(cell().notes,
+              ElementsAre(HasSubstr("left out: frame"), HasSubstr("2 disabled pairs left out")));
+}
+
+TEST_F(RobotCellFile, ACylinderIsNeverSmallerThanItIs) {
+  const ConvexPolyhedron prism = scene().objects.at(1).parts.at(0).shape;
+  for (const Facet& facet : prism.facets) {
+    const bool end = std::abs(facet.normal.z()) > 0.5;
+    EXPECT_GE(facet.offset, end ? 0.5 : 0.1);
+    EXPECT_LE(facet.offset, end ? 0.5 : 0.1 * 1.009);
+  }
+}
+
+TEST_F(RobotCellFile, AFixedBaseTakesItsFixedJointsAlong) {
+  options_.fixed_base = true;
+  const Scene scene = this->scene();
+  EXPECT_TRUE(scene.objects[0].fixed);
+  EXPECT_TRUE(scene.objects[1].fixed);
+  EXPECT_FALSE(scene.objects[2].fixed);
+  EXPECT_EQ(scene.objects[1].world_from_object.position, Vec3(0.0, 0.0, 0.05));
+  EXPECT_NEAR(scene.objects[1].world_from_object.orientation.z(), std::sin(0.75), 1e-15);
+  EXPECT_EQ(scene.pairs.size(), 1u);
+}
+
+TEST_F(RobotCellFile, APackageIsWhereItIsSaidToBe) {
+  std::filesystem::create_directories(root_ / "elsewhere");
+  std::filesystem::rename(root_ / "little_description" / "head.obj",
+                          root_ / "elsewhere" / "head.obj");
+  EXPECT_THAT(fault(), HasSubstr("no file"));
+  options_.packages = {{"little_description", root_ / "elsewhere"}};
+  EXPECT_THAT(cell().yaml, HasSubstr("file: \"../elsewhere/head.obj\""));
+}
+
+TEST_F(RobotCellFile, FaultsNameFileAndLine) {
+  const auto with = [&](const std::string& found, const std::string& replacement) {
+    std::string text = kUrdf;
+    text.replace(text.find(found), found.size(), replacement);
+    write("little_description/urdf/little.urdf", text);
+    return fault();
+  };
+  EXPECT_THAT(with("radius=\"0.1\"", "radius=\"wide\""),
+              HasSubstr("little.urdf:7: found radius=\"wide\"; expected 1 number"));
+  EXPECT_THAT(with("0.4 0.4 0.1", "0.4 0.4"),
+              HasSubstr("little.urdf:3: found size=\"0.4 0.4\"; expected 3 numbers"));
+  EXPECT_THAT(with("<sphere radius=\"0.12\"/>", "<cone/>"),
+              HasSubstr("little.urdf:9: found a geometry of an unknown kind"));
+  EXPECT_THAT(with("name=\"frame\"", "name=\"foot\""),
+              HasSubstr("little.urdf:12: found the link 'foot' again"));
+  EXPECT_THAT(with("child link=\"frame\"", "child link=\"farm\""),
+              HasSubstr("little.urdf:15: found a joint of the link 'farm'"));
+  EXPECT_THAT(with("little_description/", "unknown/"),
+              HasSubstr("expected --package unknown=DIRECTORY"));
+  EXPECT_THAT(with("</robot>", ""), HasSubstr("not readable as XML"));
+}
+
+TEST_F(RobotCellFile, NewerSrdfIsRefusedRatherThanMisread) {
+  write("little_description/urdf/little.srdf",
+        "<robot name=\"little\">\n  <disable_default_collisions link=\"foot\"/>\n</robot>\n");
+  EXPECT_THAT(fault(), HasSubstr("little.srdf:2: found <disable_default_collisions>"));
+}
+
+}  // namespace
+}  // namespace clearance
