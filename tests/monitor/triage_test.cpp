@@ -153,6 +153,24 @@ TEST(Triage, ProvesTheMinimumOnAFractionOfTheBudget) {
   EXPECT_GE(proved, 480);
 }
 
+// The boxes of these two corners are nearer to each other than the corners.
+TEST(Triage, BoundsHoldBeforeAnythingIsEvaluated) {
+  const auto corner = [](double size) {
+    const std::array<Vec3, 4> points{Vec3::Zero(), size * Vec3::UnitX(), size * Vec3::UnitY(),
+                                     size * Vec3::UnitZ()};
+    return Part{"corner", test::made(polyhedron_from_vertices(points)), {}};
+  };
+  Scene scene = test::cell_of(
+      {test::moving("a", {corner(1.0)}), test::fixed("b", {corner(-1.0)}, test::at(3, 3, 3))});
+  scene.budget = 0;
+  Monitor monitor(scene);
+  const PoseSample sample = test::sample(0, test::at(0, 0, 0), kStart);
+  monitor.tick(std::span(&sample, 1), kStart);
+  EXPECT_LE(monitor.pair(0).lower, 7.0 / std::sqrt(3.0));
+  EXPECT_GE(monitor.pair(0).upper, 7.0 / std::sqrt(3.0));
+  EXPECT_GT(monitor.pair(0).lower, 0.0);
+}
+
 TEST(Triage, SaysWhenTheBudgetEndsBeforeTheMinimumIsProved) {
   Random random(45);
   Scene scene = thin_bodies(random);
@@ -187,15 +205,19 @@ TEST(Triage, TheRestIsEvaluatedRoundRobinStalestFirst) {
 
 TEST(Triage, FirstBinsAreEvaluatedEveryTick) {
   Scene scene = far_apart(20);
+  scene.objects.push_back(test::fixed("near", {test::ball(0.1)}, test::at(11.0, 0.41, 0)));
+  scene.pairs.push_back({0, 21, false});
   scene.objects[0].max_speed = 2.0;  // 2 mm a tick
-  scene.budget = 3;
+  scene.budget = 2;
   Monitor monitor(scene);
-  // 10 mm from the second post, which is within the last urgent bin; 9.2 m from the first.
+  // Between the two: 5 mm from the second post, which is the minimum, and 5 ticks from the near
+  // one.
   for (int t = 0; t < 30; ++t) {
-    const PoseSample sample = test::sample(0, test::at(11.0 - 0.21, 0, 0), kStart + t * kTick);
+    const PoseSample sample = test::sample(0, test::at(11.0, 0.205 - 0.005, 0), kStart + t * kTick);
     const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
     EXPECT_EQ(report.minimum.pair, 1u);
     EXPECT_EQ(report.minimum.evaluated_cycle, report.cycle);
+    EXPECT_EQ(monitor.pair(20).evaluated_cycle, report.cycle);
   }
 }
 
