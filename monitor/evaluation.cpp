@@ -7,16 +7,13 @@
 namespace clearance {
 namespace {
 
-// The query's bounds are for the poses as the query used them; the table's for the exact ones.
-void keep_bounds(const DistanceResult& found, double placing_error, double& lower,
-                 double& upper) noexcept {
+// The query's bounds are for the poses as the query used them; the table's for the exact ones. What
+// was carried is true as well, and a query that was cut short may know less.
+void tighten(const DistanceResult& found, double placing_error, double& lower,
+             double& upper) noexcept {
   const bool exact = placing_error == 0.0;
-  const double found_lower = exact ? found.lower : rounded_down(found.lower - placing_error);
-  const double found_upper = exact ? found.upper : rounded_up(found.upper + placing_error);
-  // The carried bounds are true as well, and a query that was cut short may know less.
-  const bool cut_short = found.status == DistanceStatus::kIterationLimit;
-  lower = cut_short ? std::max(found_lower, lower) : found_lower;
-  upper = cut_short ? std::min(found_upper, upper) : found_upper;
+  lower = std::max(lower, exact ? found.lower : rounded_down(found.lower - placing_error));
+  upper = std::min(upper, exact ? found.upper : rounded_up(found.upper + placing_error));
 }
 
 void query(std::uint32_t row, Evaluation& evaluation) noexcept {
@@ -25,7 +22,7 @@ void query(std::uint32_t row, Evaluation& evaluation) noexcept {
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
   const DistanceResult found = distance(
       *a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), table.tracking[row]);
-  keep_bounds(found, placing_error(a, b), table.lower[row], table.upper[row]);
+  tighten(found, placing_error(a, b), table.lower[row], table.upper[row]);
 
   const Mat3& turn = a.world_from_part_rotation;
   ClosestPoints& closest = table.closest[row];
