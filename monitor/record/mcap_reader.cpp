@@ -31,6 +31,10 @@ McapFile::McapFile(const std::filesystem::path& path) : file_(std::fopen(path.c_
 
 bool McapFile::read(std::uint64_t offset, std::span<std::byte> out) {
   if (offset > size_ || out.size() > size_ - offset) return false;
+  if (!file_) {
+    std::ranges::copy(memory_.subspan(static_cast<std::size_t>(offset), out.size()), out.begin());
+    return true;
+  }
   if (offset != position_ && ::fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0) {
     return false;
   }
@@ -41,9 +45,19 @@ bool McapFile::read(std::uint64_t offset, std::span<std::byte> out) {
 
 McapReader::McapReader(const std::filesystem::path& file, const McapWindow& window)
     : path_(file), window_(window), file_(file) {
+  begin();
+}
+
+McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name,
+                       const McapWindow& window)
+    : path_(name), window_(window), file_(bytes) {
+  begin();
+}
+
+void McapReader::begin() {
   if (!read_magic()) return;
   summary_ = read_mcap_summary(file_);
-  const bool whole = window.start_ns == 0 && window.end_ns == McapWindow{}.end_ns;
+  const bool whole = window_.start_ns == 0 && window_.end_ns == McapWindow{}.end_ns;
   if (whole || !summary_ || summary_->chunks.empty()) return;
   indexed_ = true;
   channels_ = summary_->channels;
@@ -179,6 +193,12 @@ void McapReader::pass_over(const Record& record) {
 }
 
 void McapReader::take(const Record& record, McapMessage& message, bool& found) {
+  // Behind the data stands the summary, which repeats definitions.
+  if (data_ended_ && record.kind != McapKind::kFooter) return pass_over(record);
+  // No writer does that; a flipped bit in an index does, and no checksum would tell in time.
+  if (has_chunks_ && record.kind == McapKind::kMessage) {
+    return damage(record.offset, "a message outside the chunks of a file that has chunks");
+  }
   switch (record.kind) {
     case McapKind::kChunk:
       return open_chunk(record);
@@ -206,6 +226,7 @@ void McapReader::take(const Record& record, McapMessage& message, bool& found) {
 void McapReader::open_chunk(const Record& record) {
   // A chunk that the end of the file cuts through still gives its first messages.
   const std::uint64_t there = file_.size() - offset_;
+  has_chunks_ = true;
   chunk_cut_off_ = record.length > there;
   const Record present{record.kind, record.offset, std::min(record.length, there)};
   if (!read_body(present)) {

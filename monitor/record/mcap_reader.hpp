@@ -36,11 +36,12 @@ struct McapSummary {
   std::map<std::string, McapMap> metadata;
 };
 
-// A file opened for reading at any place, with its size at that time.
+// A file opened for reading at any place, with its size at that time; or the same bytes in memory.
 class McapFile {
  public:
   explicit McapFile(const std::filesystem::path& path);
-  [[nodiscard]] bool open() const noexcept { return file_ != nullptr; }
+  explicit McapFile(std::span<const std::byte> bytes) : memory_(bytes), size_(bytes.size()) {}
+  [[nodiscard]] bool open() const noexcept { return file_ != nullptr || memory_.data() != nullptr; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   // False: not all of it is there.
   [[nodiscard]] bool read(std::uint64_t offset, std::span<std::byte> out);
@@ -50,6 +51,7 @@ class McapFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
+  std::span<const std::byte> memory_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
 };
@@ -67,6 +69,9 @@ class McapReader {
   // Only messages inside the window are returned; when the file is indexed, only their chunks are
   // read.
   explicit McapReader(const std::filesystem::path& file, const McapWindow& window = {});
+  // The same from memory, which must outlive the reader; `name` is used in messages.
+  McapReader(std::span<const std::byte> bytes, const std::string& name,
+             const McapWindow& window = {});
 
   // The next message in file order. False at the end, or where the file stops making sense: then
   // error() is not empty.
@@ -94,6 +99,7 @@ class McapReader {
     std::uint64_t length;  // of its body
   };
 
+  void begin();
   void damage(std::uint64_t offset, const std::string& what);
   void cut_off(std::uint64_t offset);
   [[nodiscard]] bool read_magic();
@@ -121,6 +127,7 @@ class McapReader {
 
   std::uint64_t offset_ = 0;  // of the next record
   std::uint32_t crc_ = 0;     // of everything before it, when streaming
+  bool has_chunks_ = false;
   bool data_ended_ = false;
   bool done_ = false;
   bool readable_ = true;
