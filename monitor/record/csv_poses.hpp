@@ -1,0 +1,76 @@
+// Pose logs kept as CSV, and recordings made of them.
+//
+// The first line names the columns; t_ns, object, px, py, pz, qw, qx, qy, qz are found by name in
+// any order, others are ignored. Poses are world_from_object in metres; times in whole nanoseconds,
+// not going back; rows of equal time are one sample. Plain or gzip.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+struct CsvPose {
+  std::int64_t t_ns = 0;
+  std::string object;
+  Pose world_from_object;
+};
+
+class CsvPoseLog {
+ public:
+  explicit CsvPoseLog(const std::filesystem::path& file);
+
+  // False at the end, and at the first thing wrong: then error() reads "FILE:LINE: ...".
+  [[nodiscard]] bool next(CsvPose& pose);
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  [[nodiscard]] std::size_t line() const noexcept { return line_; }
+  // "FILE:LINE: what", for what a caller finds wrong with the row just read.
+  [[nodiscard]] std::string located(const std::string& what) const;
+
+ private:
+  static constexpr std::size_t kColumns = 9;
+  struct CloseGzip {
+    void operator()(void* file) const;
+  };
+
+  bool read_line(std::string& line);
+  bool read_header();
+  bool split(const std::string& line);
+  bool read_number(std::size_t column, double& value);
+  bool fail(const std::string& what);
+
+  std::filesystem::path path_;
+  std::unique_ptr<void, CloseGzip> file_;  // a gzFile
+  std::string error_;
+  std::size_t line_ = 0;
+  std::int64_t last_t_ns_ = 0;
+  std::vector<std::string_view> fields_;
+  std::string text_;  // of the line
+  std::array<std::size_t, kColumns> place_{};
+  std::size_t width_ = 0;  // columns of the header
+};
+
+struct CsvRecordingResult {
+  std::string error;  // empty: the recording is complete
+  std::size_t rows = 0, samples = 0;
+  std::vector<std::string> objects;        // in the order of their first row
+  std::vector<std::string> fixed_objects;  // fixed in the cell: their rows were left out
+  std::int64_t first_ns = 0, last_ns = 0;
+};
+
+// `scene`: its ids are used, and every object of the log must be in it. Without one, ids are given
+// in the order of appearance and the recording names them. The log is checked whole before `out` is
+// written.
+[[nodiscard]] CsvRecordingResult record_csv(const std::filesystem::path& csv,
+                                            const std::filesystem::path& out, const Scene* scene);
+
+}  // namespace clearance

@@ -1,0 +1,51 @@
+// What a user's test expects of every tick: the first tick that breaks an expectation is told.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance {
+
+class Expectations {
+ public:
+  // `min_distance`, m. Zone names that the scene does not have are told in error().
+  Expectations(const Scene& scene, std::optional<double> min_distance,
+               const std::vector<std::string>& no_zone);
+
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+  // To be called for every tick; judges only if told, and not before all moving objects have been
+  // seen. What is broken for the first time, a sentence each.
+  [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
+                                               bool judge);
+
+  // After the last tick: what could not be judged at all, because objects were never seen.
+  [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
+
+ private:
+  struct NoZone {
+    std::uint32_t zone;
+    bool broken = false;
+  };
+
+  [[nodiscard]] bool all_seen(const Monitor& monitor);
+  [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
+                                                          const Monitor& monitor);
+
+  const Scene& scene_;
+  std::optional<double> min_distance_;
+  bool distance_broken_ = false;
+  std::vector<NoZone> no_zone_;
+  bool all_seen_ = false;
+  std::string error_;
+};
+
+// "hand - box", by id of the pair.
+[[nodiscard]] std::string pair_name(const Scene& scene, std::uint32_t pair);
+
+}  // namespace clearance

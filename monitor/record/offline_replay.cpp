@@ -1,0 +1,221 @@
+#include "monitor/record/offline_replay.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "monitor/record/expectations.hpp"
+#include "monitor/record/tick_feed.hpp"
+#include "monitor/record/zone_difference.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+std::string counted(std::uint64_t count, const std::string& what) {
+  return std::to_string(count) + " " + what;
+}
+
+class Replay {
+ public:
+  Replay(const Scene& scene, const std::filesystem::path& recording,
+         const OfflineReplayOptions& options, const RecordingOutline& outline)
+      : scene_(scene),
+        options_(options),
+        has_reports_(outline.has_reports),
+        feed_(recording, scene, outline),
+        expectations_(scene, options.expect_min_distance, options.expect_no_zone),
+        zones_(scene),
+        replayed_(make_distances(scene)),
+        monitor_(std::make_unique<Monitor>(scene)) {}
+
+  OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
+
+ private:
+  [[nodiscard]] std::string refusal() const;
+  void begin_tick(const TickInput& input);
+  void end_tick(const TickInput& input, const Report& report,
+                const std::function<void(const ReplayedTick&)>& on_tick);
+  void compare(const TickInput& input, const Report& report);
+  void compare_zones();
+  void note_counts();
+  void show_progress();
+  void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
+  [[nodiscard]] double seconds(std::int64_t now_ns) const {
+    return static_cast<double>(now_ns - result_.first_ns) * 1e-9;
+  }
+
+  const Scene& scene_;
+  const OfflineReplayOptions& options_;
+  bool has_reports_;
+  TickFeed feed_;
+  Expectations expectations_;
+  ZoneDifference zones_;
+  Sample<clearance_msg_Distances> replayed_;
+  std::unique_ptr<Monitor> monitor_;
+
+  OfflineReplay result_;
+  bool differs_ = false;
+  bool gap_noted_ = false;
+  std::uint64_t cycle_offset_ = 0;  // recorded less replayed
+  std::uint64_t last_recorded_cycle_ = 0;
+  double shown_ = -1.0;
+};
+
+std::string Replay::refusal() const {
+  if (!expectations_.error().empty()) return expectations_.error();
+  if (!options_.compare) return {};
+  if (!has_reports_) return "nothing to compare with: the recording holds no reports";
+  if (*options_.compare == Comparison::kBits && !feed_.objects().same_scene()) {
+    return "nothing to compare with: the recording was made with another cell, or another state of "
+           "this one (its scene revision differs)";
+  }
+  return {};
+}
+
+OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tick) {
+  result_.error = refusal();
+  if (!result_.error.empty()) return std::move(result_);
+  result_.notes = feed_.objects().notes();
+  TickInput input;
+  while (feed_.next(input)) {
+    begin_tick(input);
+    const Report& report = monitor_->tick(input.samples, input.now_ns);
+    end_tick(input, report, on_tick);
+    show_progress();
+  }
+  if (options_.progress) options_.progress(1.0);
+  result_.damage = feed_.damage();
+  result_.batches = feed_.batches();
+  compare_zones();
+  if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
+  note_counts();
+  return std::move(result_);
+}
+
+void Replay::begin_tick(const TickInput& input) {
+  if (result_.ticks++ == 0) result_.first_ns = input.now_ns;
+  result_.last_ns = input.now_ns;
+  if (input.restart) {
+    monitor_ = std::make_unique<Monitor>(scene_);
+    result_.notes.push_back("the daemon was started anew " + std::to_string(seconds(input.now_ns)) +
+                            " s after the first tick");
+  }
+  if (input.recorded == nullptr) return;
+  const std::uint64_t cycle = input.recorded->cycle;
+  const bool first = result_.ticks == 1 || input.restart;
+  if (first) {
+    cycle_offset_ = cycle - 1;
+    if (cycle > 1) {
+      result_.notes.push_back("the recording begins at tick " + std::to_string(cycle) +
+                              " of the daemon: what the monitor knew by then is not in it");
+    }
+  } else if (cycle != last_recorded_cycle_ + 1) {
+    if (!std::exchange(gap_noted_, true)) {
+      result_.notes.push_back("reports are missing in the recording, the first between ticks " +
+                              std::to_string(last_recorded_cycle_) + " and " +
+                              std::to_string(cycle));
+    }
+    cycle_offset_ += cycle - last_recorded_cycle_ - 1;
+  }
+  last_recorded_cycle_ = cycle;
+}
+
+void Replay::end_tick(const TickInput& input, const Report& report,
+                      const std::function<void(const ReplayedTick&)>& on_tick) {
+  const double time_s = seconds(input.now_ns);
+  const bool in_window = time_s >= options_.start_s && time_s <= options_.end_s;
+  for (const std::string& what : expectations_.check(report, *monitor_, in_window)) {
+    fail(report.cycle, report.now_ns, what);
+  }
+  if (options_.compare) {
+    if (in_window && !differs_) compare(input, report);
+    zones_.replayed(report, cycle_offset_);
+  }
+  if (!in_window) return;
+  const bool closer = report.minimum_known &&
+                      (!result_.closest || report.minimum.distance < result_.closest->distance);
+  if (closer) {
+    result_.closest = report.minimum;
+    result_.closest_cycle = report.cycle;
+  }
+  result_.rejected = report.rejected;
+  if (on_tick) on_tick({report, input.sources, *monitor_});
+}
+
+void Replay::compare(const TickInput& input, const Report& report) {
+  to_wire(report, input.sources, 0, *replayed_);
+  const auto difference =
+      report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
+  ++result_.compared;
+  if (!difference) return;
+  differs_ = true;
+  fail(input.recorded->cycle, report.now_ns, "the replay differs in " + *difference);
+}
+
+// Zone changes come on a topic of their own and are compared when all are known.
+void Replay::compare_zones() {
+  if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
+  if (!result_.damage.empty()) return;
+  if (const auto found = zones_.first(feed_.zones())) {
+    fail(found->cycle, found->now_ns, "the replay differs in " + found->what);
+  }
+}
+
+void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what) {
+  result_.failures.push_back({cycle, now_ns, seconds(now_ns), what});
+}
+
+void Replay::note_counts() {
+  const auto note = [this](std::uint64_t count, const std::string& what) {
+    if (count > 0) result_.notes.push_back(counted(count, what));
+  };
+  note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
+  note(feed_.of_other_scenes(), "batches were made for another scene and left out");
+  note(feed_.undecodable(), "messages do not decode as what their channel says and were left out");
+  for (std::size_t cause = 0; cause < kRejects; ++cause) {
+    note(result_.rejected[cause],
+         std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
+  }
+  if (result_.ticks == 0)
+    result_.notes.emplace_back("the recording holds neither reports nor poses");
+}
+
+void Replay::show_progress() {
+  const double share = feed_.progress();
+  if (!options_.progress || share < shown_ + 0.01) return;
+  shown_ = share;
+  options_.progress(share);
+}
+
+}  // namespace
+
+std::string OfflineReplay::text() const {
+  std::string out;
+  const auto line = [&out](const std::string& what) { out.append(what).append("\n"); };
+  if (!error.empty()) line(error);
+  for (const ReplayFailure& failure : failures) {
+    std::array<char, 64> when;
+    std::snprintf(when.data(), when.size(),
+                  "tick %llu (%.6f s): ", static_cast<unsigned long long>(failure.cycle),
+                  failure.time_s);
+    line(when.data() + failure.what);
+  }
+  if (!damage.empty()) line(damage);
+  for (const std::string& note : notes) line(note);
+  return out;
+}
+
+OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
+                             const OfflineReplayOptions& options,
+                             const std::function<void(const ReplayedTick&)>& on_tick) {
+  const RecordingOutline outlined = outline(recording);
+  if (!outlined.error.empty()) {
+    OfflineReplay failed;
+    failed.error = outlined.error;
+    return failed;
+  }
+  return Replay(scene, recording, options, outlined).run(on_tick);
+}
+
+}  // namespace clearance

@@ -1,0 +1,81 @@
+// A recording through Monitor::tick, without a clock and without DDS: the same reports again, as
+// fast as they can be computed. For a user's own tests:
+//
+//   const CellResult cell = read_cell("cell.yaml");
+//   const OfflineReplay replay = replay_offline(std::get<Scene>(cell), "run.mcap",
+//                                               {.expect_min_distance = 0.05, .expect_no_zone =
+//                                               {"stop"}});
+//   EXPECT_TRUE(replay.ok()) << replay.text();
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/batch.hpp"
+#include "monitor/monitor.hpp"
+#include "monitor/record/report_difference.hpp"
+
+namespace clearance {
+
+struct OfflineReplayOptions {
+  // Ticks in this window are compared, judged and handed out; s after the first tick. Those before
+  // it are run all the same, since bounds and zones have a history.
+  double start_s = 0.0;
+  double end_s = std::numeric_limits<double>::infinity();
+
+  std::optional<Comparison> compare;  // with the recorded reports and zones
+
+  // Expectations begin when every moving object of the cell has been seen once.
+  std::optional<double>
+      expect_min_distance;                  // m: every pair is proved to be at least that far apart
+  std::vector<std::string> expect_no_zone;  // names of zones that are never active
+
+  std::function<void(double share)> progress;  // 0 to 1, about a hundred times
+};
+
+// The tick that was just run.
+struct ReplayedTick {
+  const Report& report;
+  std::span<const SourceUse> sources;
+  const Monitor& monitor;
+};
+
+struct ReplayFailure {
+  std::uint64_t cycle = 0;
+  std::int64_t now_ns = 0;
+  double time_s = 0.0;  // after the first tick
+  std::string what;     // which pair, zone or field, and the figures
+};
+
+struct OfflineReplay {
+  std::string error;                    // not empty: it could not be run at all
+  std::string damage;                   // not empty: the recording was read up to a damage
+  std::vector<std::string> notes;       // what a person should know, in sentences
+  std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
+
+  std::uint64_t ticks = 0, compared = 0, batches = 0;
+  std::int64_t first_ns = 0, last_ns = 0;
+  std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
+  std::uint64_t closest_cycle = 0;
+  std::array<std::uint64_t, kRejects> rejected{};
+
+  [[nodiscard]] bool ok() const noexcept { return error.empty() && failures.empty(); }
+  // Everything that went wrong or is worth knowing, a line each.
+  [[nodiscard]] std::string text() const;
+};
+
+// The same recording and cell give the same ticks, bit for bit.
+[[nodiscard]] OfflineReplay replay_offline(
+    const Scene& scene, const std::filesystem::path& recording,
+    const OfflineReplayOptions& options = {},
+    const std::function<void(const ReplayedTick&)>& on_tick = {});
+
+}  // namespace clearance
