@@ -7,6 +7,9 @@
 namespace clearance {
 namespace {
 
+// Batches that no report names (made for another scene) are written all the same when so many wait.
+constexpr std::size_t kMostWaiting = 4096;
+
 // The source's stamp of a batch: its newest pose.
 std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
   const auto newest = std::ranges::max_element(batch.samples, {}, &PoseSample::stamp_ns);
@@ -15,9 +18,10 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
 
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns)
+Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+                   bool overwrite)
     : scene_(scene),
-      writer_(file, scene.topics, {.overwrite = false}),
+      writer_(file, scene.topics, {.overwrite = overwrite}),
       batch_(make_batch(clearance_msg_kMaxPoses)),
       distances_(make_distances(scene)),
       zone_written_(scene.zones.size(), false),
@@ -50,6 +54,7 @@ void Recorder::write_used(std::span<const SourceUse> sources, std::int64_t log_n
   };
   const auto last = std::find_if(waiting_.rbegin(), waiting_.rend(), named);
   write_waiting(static_cast<std::size_t>(waiting_.rend() - last), log_ns);
+  if (waiting_.size() > kMostWaiting) write_waiting(waiting_.size(), log_ns);
 }
 
 void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {

@@ -19,8 +19,9 @@ namespace clearance {
 // full disk) nothing more is written and error() says why.
 class Recorder {
  public:
-  // Writes the catalogue. An existing file is never overwritten.
-  Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns);
+  // Writes the catalogue. `overwrite` false: an existing file is an error.
+  Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+           bool overwrite = false);
 
   // A batch that a tick used, in the order of use; written in front of that tick's report.
   void poses(const PoseBatch& batch);

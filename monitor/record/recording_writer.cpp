@@ -11,11 +11,15 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics
   }
 }
 
-void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns) {
+void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue) {
   mcap_.metadata(kRecordingMetadata, {{"version", CLEARANCE_VERSION},
                                       {"scene", catalogue.scene},
                                       {"scene_revision", std::to_string(catalogue.scene_revision)},
                                       {"cell", catalogue.cell_yaml}});
+}
+
+void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns) {
+  describe(catalogue);
   write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
 }
 

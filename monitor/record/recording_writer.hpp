@@ -25,6 +25,8 @@ class RecordingWriter {
 
   // Ids to names; also kept as metadata. Belongs in front of what uses the ids.
   void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns);
+  // Only the metadata.
+  void describe(const clearance_msg_Catalogue& catalogue);
 
   // `publish_ns`: the source's stamp where there is one.
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
@@ -34,6 +36,8 @@ class RecordingWriter {
     write(kind, log_ns, publish_ns, encoder_.encode(sample));
   }
 
+  // What was written so far survives a crash.
+  void flush() { mcap_.flush(); }
   bool close() { return mcap_.close(); }
   [[nodiscard]] bool ok() const noexcept { return mcap_.ok(); }
   [[nodiscard]] const std::string& error() const noexcept { return mcap_.error(); }

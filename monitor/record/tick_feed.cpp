@@ -54,11 +54,12 @@ void TickFeed::read_batch(const RecordedMessage& message) {
   }
   Waiting waiting{.batch = {}, .log_ns = message.log_ns};
   from_wire(*wire_batch_, waiting.batch);
-  if (objects_.translate(waiting.batch)) {
-    batches_waiting_.push_back(std::move(waiting));
-  } else {
+  // The daemon took such a batch in, but not its poses.
+  if (!objects_.translate(waiting.batch)) {
+    waiting.batch.samples.clear();
     ++of_other_scenes_;
   }
+  batches_waiting_.push_back(std::move(waiting));
 }
 
 bool TickFeed::next_by_report(TickInput& tick) {

@@ -1,0 +1,27 @@
+// What clearance-record was asked to do.
+#pragma once
+
+#include <string>
+
+#include "config/scene.hpp"
+#include "monitor/daemon/dds_arguments.hpp"
+
+namespace clearance {
+
+enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3, kDdsFailed = 4 };
+
+struct RecordArguments {
+  std::string out;
+  std::string cell;      // empty: none
+  std::string from_csv;  // empty: record from DDS
+  double seconds = 0.0;  // 0: until stopped
+  bool overwrite = false;
+  DdsArguments dds;
+};
+
+// tools/record/from_csv.cpp, tools/record/subscribe.cpp. The exit code. `scene`: the cell; null:
+// none given.
+[[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene);
+[[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene);
+
+}  // namespace clearance

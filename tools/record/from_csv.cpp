@@ -1,0 +1,25 @@
+#include <cstdio>
+
+#include "monitor/record/csv_poses.hpp"
+#include "tools/record/arguments.hpp"
+
+namespace clearance {
+
+int record_from_csv(const RecordArguments& arguments, const Scene* scene) {
+  const CsvRecordingResult result = record_csv(arguments.from_csv, arguments.out, scene);
+  if (!result.error.empty()) {
+    std::fprintf(stderr, "clearance-record: %s\n", result.error.c_str());
+    return kFailed;
+  }
+  for (const std::string& object : result.fixed_objects) {
+    std::fprintf(stderr,
+                 "clearance-record: object '%s' is fixed in the cell: its rows were left out\n",
+                 object.c_str());
+  }
+  std::printf("%s: %zu rows, %zu objects, %zu samples, %.3f s\n", arguments.out.c_str(),
+              result.rows, result.objects.size(), result.samples,
+              static_cast<double>(result.last_ns - result.first_ns) * 1e-9);
+  return kOk;
+}
+
+}  // namespace clearance

@@ -1,0 +1,161 @@
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/record/recording_writer.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tools/record/arguments.hpp"
+
+namespace clearance {
+namespace {
+
+// Two seconds at 1 kHz, should the disk stall.
+constexpr std::int32_t kDepth = 2048;
+constexpr std::size_t kTaken = 64;  // samples at once
+
+// Readers of all five topics; what they take goes into the recording byte for byte.
+class Subscription {
+ public:
+  Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer)
+      : writer_(writer) {
+    for (const TopicKind kind : kTopicKinds) {
+      const bool stream = kind == TopicKind::kPoses || kind == TopicKind::kDistances;
+      readers_[index(kind)] =
+          participant.reader(descriptor(kind), topic_name(topics, kind),
+                             stream ? Delivery::kStream : Delivery::kLatched, kDepth);
+    }
+  }
+
+  [[nodiscard]] std::vector<dds_entity_t> readers() const {
+    return {readers_.begin(), readers_.end()};
+  }
+  [[nodiscard]] std::uint64_t count(TopicKind kind) const { return counts_[index(kind)]; }
+  [[nodiscard]] std::uint64_t total() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t count : counts_) sum += count;
+    return sum;
+  }
+  // Samples that came too fast for this program, or got lost on the way.
+  [[nodiscard]] std::uint64_t lost() const {
+    std::uint64_t sum = 0;
+    for (const dds_entity_t reader : readers_) {
+      dds_sample_lost_status_t status{};
+      if (dds_get_sample_lost_status(reader, &status) == DDS_RETCODE_OK) sum += status.total_count;
+    }
+    return sum;
+  }
+
+  // In the order of kTopicKinds, so that poses stand before the reports that used them.
+  void take_all() {
+    for (const TopicKind kind : kTopicKinds) {
+      while (take(kind)) {
+      }
+    }
+  }
+
+ private:
+  static std::size_t index(TopicKind kind) { return static_cast<std::size_t>(kind); }
+
+  bool take(TopicKind kind) {
+    std::array<ddsi_serdata*, kTaken> samples{};
+    std::array<dds_sample_info_t, kTaken> infos;
+    const dds_return_t count = check_dds(
+        dds_takecdr(readers_[index(kind)], samples.data(), kTaken, infos.data(), DDS_ANY_STATE),
+        "taking samples");
+    const std::int64_t now_ns = dds_time();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (infos[i].valid_data) record(kind, now_ns, infos[i].source_timestamp, samples[i]);
+      ddsi_serdata_unref(samples[i]);
+    }
+    return count > 0;
+  }
+
+  void record(TopicKind kind, std::int64_t now_ns, std::int64_t source_ns, ddsi_serdata* sample) {
+    bytes_.resize(ddsi_serdata_size(sample));
+    ddsi_serdata_to_ser(sample, 0, bytes_.size(), bytes_.data());
+    ++counts_[index(kind)];
+    Sample<clearance_msg_Catalogue> catalogue;
+    if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue)) {
+      writer_.describe(*catalogue);
+    }
+    writer_.write(kind, now_ns, source_ns, std::span<const std::byte>(bytes_));
+  }
+
+  RecordingWriter& writer_;
+  std::array<dds_entity_t, kTopicKinds.size()> readers_{};
+  std::array<std::uint64_t, kTopicKinds.size()> counts_{};
+  std::vector<std::byte> bytes_;
+  CdrDecoder decoder_;
+};
+
+void show(const Subscription& subscription, const RecordingWriter& writer, const char* end) {
+  std::fprintf(stderr, "%llu poses, %llu distances, %llu zones, %llu health; %.1f MB%s",
+               static_cast<unsigned long long>(subscription.count(TopicKind::kPoses)),
+               static_cast<unsigned long long>(subscription.count(TopicKind::kDistances)),
+               static_cast<unsigned long long>(subscription.count(TopicKind::kZones)),
+               static_cast<unsigned long long>(subscription.count(TopicKind::kHealth)),
+               static_cast<double>(writer.bytes()) * 1e-6, end);
+}
+
+// Until stopped, the time is up or the file cannot be written.
+void record_until(std::int64_t end_ns, Subscription& subscription, Participant& participant,
+                  RecordingWriter& writer, StopSignal& stop) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  DataWait wait(participant, subscription.readers());
+  std::int64_t shown_ns = dds_time();
+  while (writer.ok() && !stop.wait(0) && dds_time() < end_ns) {
+    wait.wait(20'000'000);  // a signal is heard within 20 ms
+    subscription.take_all();
+    if (dds_time() - shown_ns < kSecond) continue;
+    shown_ns = dds_time();
+    writer.flush();
+    if (!terminal) continue;
+    std::fputc('\r', stderr);
+    show(subscription, writer, " ");
+  }
+  if (terminal) std::fputc('\n', stderr);
+}
+
+}  // namespace
+
+int record_from_dds(const RecordArguments& arguments, const Scene* scene) {
+  StopSignal stop;
+  Participant participant(scene == nullptr
+                              ? arguments.dds.resolve(0, "")
+                              : arguments.dds.resolve(scene->domain, scene->partition));
+  const Topics topics = scene == nullptr ? Topics{} : scene->topics;
+  RecordingWriter writer(arguments.out, topics);
+  // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
+  if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
+  Subscription subscription(participant, topics, writer);
+  const std::int64_t end_ns = arguments.seconds > 0.0
+                                  ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
+                                  : std::numeric_limits<std::int64_t>::max();
+  record_until(end_ns, subscription, participant, writer, stop);
+  if (!writer.close()) {
+    std::fprintf(stderr, "clearance-record: %s\n", writer.error().c_str());
+    return kFailed;
+  }
+  std::fprintf(stderr, "%s: ", arguments.out.c_str());
+  show(subscription, writer, "\n");
+  if (subscription.lost() > 0) {
+    std::fprintf(stderr, "clearance-record: %llu samples were lost on the way here\n",
+                 static_cast<unsigned long long>(subscription.lost()));
+  }
+  if (subscription.total() > 0) return kOk;
+  std::fprintf(stderr,
+               "clearance-record: nothing was heard on %s; does the daemon run there, with these "
+               "topic names?\n",
+               participant.where().c_str());
+  return kFailed;
+}
+
+}  // namespace clearance

@@ -1,0 +1,125 @@
+// clearance-replay: a recording published again over DDS, or run through the monitor offline.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "monitor/daemon/dds.hpp"
+#include "tools/replay/arguments.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr const char* kFooter = R"(Exit status:
+  0  done; with --offline: every expectation held, nothing differed
+  1  an expectation did not hold, the replay differs, or a file cannot be read or written
+  2  wrong usage
+  3  the cell file is wrong
+  4  DDS could not be joined
+  5  the recording is damaged; what was read before the damage gave no reason for 1
+
+Examples:
+  clearance-replay run.mcap --rate 2 --start 10 --end 20
+  clearance-replay run.mcap --only clearance/poses --restamp --partition lab
+  clearance-replay --offline --cell cell.yaml run.mcap --compare
+  clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
+  clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv --all-pairs)";
+
+void add_options(CLI::App& app, ReplayArguments& arguments) {
+  app.add_option("FILE", arguments.recording, "The recording (MCAP)")->required();
+  app.add_option("--start", arguments.start_s, "Begin this many seconds after its first message")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--end", arguments.end_s, "End this many seconds after its first message")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--progress", arguments.progress,
+               "Show progress on stderr even when that is no terminal");
+
+  CLI::Option* const offline = app.add_flag(
+      "--offline", arguments.offline,
+      "Run the recorded poses through the monitor instead: no DDS, no clock, as fast as it goes");
+  const char* const kOffline = "Offline";
+  app.add_option(
+         "--cell", arguments.cell,
+         "The cell file; otherwise the cell that is kept in the recording. Without --offline: "
+         "only its domain and partition are used")
+      ->group(kOffline);
+  app.add_option("-o,--output", arguments.out, "Write the reports to this recording")
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option("--csv", arguments.csv, "Write a table with one row a tick and published pair")
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_flag("--all-pairs", arguments.all_pairs,
+               "Evaluate every pair in every tick, and put all of them into the table")
+      ->needs(offline)
+      ->group(kOffline);
+  CLI::Option* const compare =
+      app.add_flag(
+             "--compare", arguments.compare,
+             "Compare with the recorded reports and zones, to the bit; name the first tick and "
+             "field that differs")
+          ->needs(offline)
+          ->group(kOffline);
+  app.add_flag("--compare-bounds", arguments.compare_bounds,
+               "Compare only what is certain: recorded and replayed bounds of a pair overlap")
+      ->needs(offline)
+      ->excludes(compare)
+      ->group(kOffline);
+  app.add_option("--expect-min-distance", arguments.expect_min_distance,
+                 "Every pair is proved to be at least this far apart (m) in every tick")
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option("--expect-no-zone", arguments.expect_no_zone,
+                 "This zone is never active; repeatable")
+      ->needs(offline)
+      ->group(kOffline);
+
+  const char* const kDds = "Over DDS";
+  app.add_option("--rate", arguments.rate, "Times as fast as recorded")
+      ->check(CLI::PositiveNumber)
+      ->excludes(offline)
+      ->capture_default_str()
+      ->group(kDds);
+  app.add_option("--wait", arguments.wait_s, "Seconds to wait for a first reader before beginning")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(offline)
+      ->capture_default_str()
+      ->group(kDds);
+  app.add_option("--only", arguments.only, "Publish this topic only; repeatable")
+      ->excludes(offline)
+      ->group(kDds);
+  app.add_flag("--restamp", arguments.restamp,
+               "Move the stamps of poses to now, so that a running daemon takes them as fresh")
+      ->excludes(offline)
+      ->group(kDds);
+  arguments.dds.add_to(app);
+  app.footer(kFooter);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Publishes a recording over DDS with its original spacing; with --offline runs it through "
+      "the "
+      "monitor and checks what comes out.");
+  ReplayArguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  return arguments.offline ? replay_without_dds(arguments) : replay_over_dds(arguments);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  try {
+    return clearance::run(argc, argv);
+  } catch (const clearance::DdsError& error) {
+    std::fprintf(stderr, "clearance-replay: %s\n", error.what());
+    return clearance::kDdsFailed;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "clearance-replay: %s\n", error.what());
+    return clearance::kFailed;
+  }
+}

@@ -1,0 +1,50 @@
+// What clearance-replay was asked to do.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "monitor/daemon/dds_arguments.hpp"
+
+namespace clearance {
+
+enum ExitCode : int {
+  kOk = 0,
+  kFailed = 1,
+  kUsage = 2,
+  kBadCell = 3,
+  kDdsFailed = 4,
+  kDamaged = 5
+};
+
+struct ReplayArguments {
+  std::string recording;
+  double start_s = 0.0;
+  double end_s = 1e18;
+  bool progress = false;
+
+  // Over DDS.
+  DdsArguments dds;
+  double rate = 1.0;
+  double wait_s = 1.0;
+  bool restamp = false;
+  std::vector<std::string> only;  // topics; empty: all
+
+  // Offline.
+  bool offline = false;
+  std::string cell;  // empty: the one in the recording
+  std::string out;
+  std::string csv;
+  bool all_pairs = false;
+  bool compare = false;
+  bool compare_bounds = false;
+  std::optional<double> expect_min_distance;
+  std::vector<std::string> expect_no_zone;
+};
+
+// tools/replay/offline.cpp, tools/replay/publish.cpp. The exit code.
+[[nodiscard]] int replay_without_dds(const ReplayArguments& arguments);
+[[nodiscard]] int replay_over_dds(const ReplayArguments& arguments);
+
+}  // namespace clearance

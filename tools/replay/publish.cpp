@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <map>
+#include <variant>
+
+#include "config/cell_file.hpp"
+#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/realtime.hpp"
+#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/record/recording_reader.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "tools/replay/arguments.hpp"
+#include "tools/replay/progress_bar.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::int32_t kDepth = 64;
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+std::int64_t monotonic_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
+}
+
+// The writers of a recording's channels, made when a channel is first met.
+class Writers {
+ public:
+  explicit Writers(Participant& participant) : participant_(participant) {}
+
+  dds_entity_t of(const RecordedMessage& message) {
+    const auto [writer, added] = writers_.try_emplace(message.channel->topic, 0);
+    if (added) {
+      const bool stream =
+          message.kind == TopicKind::kPoses || message.kind == TopicKind::kDistances;
+      writer->second = participant_.writer(descriptor(message.kind), message.channel->topic,
+                                           stream ? Delivery::kStream : Delivery::kLatched, kDepth);
+    }
+    return writer->second;
+  }
+  [[nodiscard]] bool anyone_listens() const {
+    return std::ranges::any_of(writers_, [](const auto& writer) {
+      dds_publication_matched_status_t status{};
+      return dds_get_publication_matched_status(writer.second, &status) == DDS_RETCODE_OK &&
+             status.current_count > 0;
+    });
+  }
+  void wait_until_delivered() const {
+    for (const auto& [topic, writer] : writers_) dds_wait_for_acks(writer, DDS_SECS(1));
+  }
+
+ private:
+  Participant& participant_;
+  std::map<std::string, dds_entity_t> writers_;
+};
+
+// Decodes and writes one message, under its original source stamp.
+class Sender {
+ public:
+  explicit Sender(bool restamp) : restamp_(restamp) {}
+
+  // False: the bytes are not what the channel says.
+  bool send(const RecordedMessage& message, dds_entity_t writer) {
+    switch (message.kind) {
+      case TopicKind::kCatalogue:
+        return send(message, writer, catalogue_);
+      case TopicKind::kPoses:
+        return send(message, writer, poses_);
+      case TopicKind::kDistances:
+        return send(message, writer, distances_);
+      case TopicKind::kZones:
+        return send(message, writer, zone_);
+      case TopicKind::kHealth:
+        return send(message, writer, health_);
+    }
+    return false;
+  }
+
+ private:
+  template <class T>
+  bool send(const RecordedMessage& message, dds_entity_t writer, Sample<T>& sample) {
+    if (!decoder_.decode(message.cdr, sample)) return false;
+    std::int64_t stamp_ns = message.publish_ns;
+    if constexpr (std::is_same_v<T, clearance_msg_PoseBatch>) {
+      if (restamp_) stamp_ns = moved_to_now(message, *sample);
+    }
+    check_dds(dds_write_ts(writer, &*sample, std::max<std::int64_t>(stamp_ns, 0)),
+              "writing to " + message.channel->topic);
+    return true;
+  }
+
+  // As old as it was when it was recorded.
+  static std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) {
+    const std::int64_t shift = dds_time() - message.log_ns;
+    for (std::uint32_t i = 0; i < batch.poses._length; ++i)
+      batch.poses._buffer[i].stamp_ns += shift;
+    return message.publish_ns + shift;
+  }
+
+  bool restamp_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_Catalogue> catalogue_;
+  Sample<clearance_msg_PoseBatch> poses_;
+  Sample<clearance_msg_Distances> distances_;
+  Sample<clearance_msg_ZoneState> zone_;
+  Sample<clearance_msg_Health> health_;
+};
+
+// Sleeps until a time, but hears a signal within 20 ms. True: it is time; false: asked to stop.
+bool wait_until(std::int64_t due_ns, StopSignal& stop) {
+  constexpr std::int64_t kPatienceNs = 20 * kMillisecond;
+  for (;;) {
+    const std::int64_t left = due_ns - monotonic_ns();
+    if (left <= kPatienceNs) break;
+    if (stop.wait((left - kPatienceNs / 2) / kMillisecond)) return false;
+  }
+  const timespec due{.tv_sec = due_ns / 1'000'000'000, .tv_nsec = due_ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
+  }
+  return true;
+}
+
+class Publishing {
+ public:
+  Publishing(const ReplayArguments& arguments, const DdsOptions& dds, std::int64_t first_ns,
+             StopSignal& stop)
+      : arguments_(arguments),
+        first_ns_(first_ns),
+        stop_(stop),
+        participant_(dds),
+        writers_(participant_),
+        sender_(arguments.restamp),
+        bar_(arguments.progress) {}
+
+  int run();
+
+ private:
+  [[nodiscard]] McapWindow window() const;
+  [[nodiscard]] bool wanted(const RecordedMessage& message) const {
+    return arguments_.only.empty() ||
+           std::ranges::find(arguments_.only, message.channel->topic) != arguments_.only.end();
+  }
+  bool prepare();
+  bool publish(const RecordedMessage& message);
+  int finish(const RecordingReader& reader);
+
+  const ReplayArguments& arguments_;
+  std::int64_t first_ns_;
+  StopSignal& stop_;
+  Participant participant_;
+  Writers writers_;
+  Sender sender_;
+  ProgressBar bar_;
+  std::int64_t began_ns_ = 0;       // monotonic
+  std::int64_t began_log_ns_ = -1;  // log time of the first message published
+  std::int64_t shown_ns_ = 0;
+  std::uint64_t published_ = 0, undecodable_ = 0;
+};
+
+McapWindow Publishing::window() const {
+  const auto at = [this](double seconds) {
+    return static_cast<std::uint64_t>(first_ns_ + std::llround(seconds * 1e9));
+  };
+  McapWindow window;
+  if (arguments_.start_s > 0.0) window.start_ns = at(arguments_.start_s);
+  if (arguments_.end_s < 1e9) window.end_ns = at(arguments_.end_s);
+  return window;
+}
+
+// Makes the writers of what the recording begins with, and gives readers a moment to find them.
+bool Publishing::prepare() {
+  RecordingReader reader(arguments_.recording, window());
+  RecordedMessage message;
+  for (int i = 0; i < 1000 && reader.next(message); ++i) {
+    if (wanted(message)) writers_.of(message);
+  }
+  const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(arguments_.wait_s * 1e9);
+  while (!writers_.anyone_listens() && monotonic_ns() < until) {
+    if (stop_.wait(5)) return false;
+  }
+  if (!writers_.anyone_listens()) {
+    std::fprintf(stderr, "clearance-replay: nobody listens on %s; publishing all the same\n",
+                 participant_.where().c_str());
+    return true;
+  }
+  constexpr std::int64_t kSettleMs = 50;  // the other topics' readers: discovery takes 2 to 12 ms
+  return !stop_.wait(kSettleMs);
+}
+
+bool Publishing::publish(const RecordedMessage& message) {
+  if (began_log_ns_ < 0) {
+    began_log_ns_ = message.log_ns;
+    began_ns_ = monotonic_ns();
+  }
+  const auto after = static_cast<double>(message.log_ns - began_log_ns_) / arguments_.rate;
+  if (!wait_until(began_ns_ + static_cast<std::int64_t>(after), stop_)) return false;
+  if (sender_.send(message, writers_.of(message))) {
+    ++published_;
+  } else {
+    ++undecodable_;
+  }
+  return published_ % 64 != 0 || !stop_.wait(0);
+}
+
+int Publishing::run() {
+  if (!prepare()) return kOk;
+  RecordingReader reader(arguments_.recording, window());
+  RecordedMessage message;
+  while (reader.next(message)) {
+    if (!wanted(message)) continue;
+    if (!publish(message)) break;
+    if (monotonic_ns() - shown_ns_ < 100 * kMillisecond) continue;
+    shown_ns_ = monotonic_ns();
+    char text[64];
+    std::snprintf(text, sizeof text, "%.1f s, %llu messages",
+                  static_cast<double>(message.log_ns - first_ns_) * 1e-9,
+                  static_cast<unsigned long long>(published_));
+    bar_.show(reader.progress(), text);
+  }
+  return finish(reader);
+}
+
+int Publishing::finish(const RecordingReader& reader) {
+  writers_.wait_until_delivered();
+  bar_.finish();
+  const double took_s =
+      began_log_ns_ < 0 ? 0.0 : static_cast<double>(monotonic_ns() - began_ns_) * 1e-9;
+  std::printf("%llu messages published in %.3f s on %s\n",
+              static_cast<unsigned long long>(published_), took_s, participant_.where().c_str());
+  if (undecodable_ > 0) {
+    std::fprintf(stderr,
+                 "clearance-replay: %llu messages do not decode as what their channel says\n",
+                 static_cast<unsigned long long>(undecodable_));
+  }
+  if (!reader.error().empty()) {
+    std::fprintf(stderr, "clearance-replay: %s\n", reader.error().c_str());
+    return reader.readable() ? kDamaged : kFailed;
+  }
+  return kOk;
+}
+
+}  // namespace
+
+int replay_over_dds(const ReplayArguments& arguments) {
+  const RecordingOutline found = outline(arguments.recording);
+  if (!found.error.empty()) {
+    std::fprintf(stderr, "clearance-replay: %s\n", found.error.c_str());
+    return kFailed;
+  }
+  DdsOptions dds = arguments.dds.resolve(0, "");
+  if (!arguments.cell.empty()) {
+    const CellResult cell = read_cell(arguments.cell);
+    if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
+      for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
+      return kBadCell;
+    }
+    const Scene& scene = std::get<Scene>(cell);
+    dds = arguments.dds.resolve(scene.domain, scene.partition);
+  }
+  StopSignal stop;
+  use_precise_timers();
+  return Publishing(arguments, dds, found.first_ns, stop).run();
+}
+
+}  // namespace clearance
