@@ -22,7 +22,7 @@ enum Column : std::size_t { kTime, kObject, kX, kY, kZ, kW, kQx, kQy, kQz };
 constexpr std::string_view kSource = "csv";
 
 std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\"";
+  constexpr std::string_view kBlank = " \t\r\n\"";
   const std::size_t begin = text.find_first_not_of(kBlank);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
