@@ -2,10 +2,20 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "config/scalar.hpp"
 
 namespace clearance {
+namespace {
+
+constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
+
+std::string shortened(const std::string& text) {
+  return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
+}
+
+}  // namespace
 
 std::string describe(const YamlNode& node) {
   switch (node.kind) {
@@ -21,17 +31,22 @@ std::string describe(const YamlNode& node) {
   }
   switch (scalar_type(node)) {
     case ScalarType::kNumber:
-      return "the number " + node.text;
+      return "the number " + shortened(node.text);
     case ScalarType::kFlag:
       return node.text;
     case ScalarType::kText:
       break;
   }
-  return node.text.empty() ? "an empty text" : "the text '" + node.text + "'";
+  return node.text.empty() ? "an empty text" : "the text '" + shortened(node.text) + "'";
 }
 
 void Complaints::add(int line, int column, const std::string& text) {
-  complaints_.push_back({line, column, text});
+  // What was found may hold line breaks; a message is one line.
+  std::string one_line = text;
+  std::replace_if(
+      one_line.begin(), one_line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
+      ' ');
+  complaints_.push_back({line, column, std::move(one_line)});
 }
 
 std::vector<CellError> Complaints::sorted() const {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -163,6 +164,14 @@ TEST(CellFile, ErrorsComeInTheOrderOfTheFile) {
     EXPECT_LE(last, line) << error.text;
     last = line;
   }
+}
+
+TEST(CellFile, AnErrorIsOneLineWhateverWasFound) {
+  const std::string errors =
+      errors_of("name: test\nunits: {length: m, angle: deg}\nrate_hz: |\n  one\n  two " +
+                std::string(500, 'x') + "\n" + kBoxes);
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+  EXPECT_LT(errors.size(), 200u);
 }
 
 TEST(CellFile, AMissingFileIsAnError) {
