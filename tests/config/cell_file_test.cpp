@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "tests/config/cells.hpp"
 
@@ -183,6 +185,16 @@ TEST(CellFile, AMissingFileIsAnError) {
 
 TEST(CellFile, ADirectoryIsNoCell) {
   EXPECT_TRUE(std::holds_alternative<std::vector<CellError>>(read_cell("/")));
+}
+
+TEST(CellFile, TheExampleOfTheReferenceIsAGoodCell) {
+  std::ifstream stream(std::string(CLEARANCE_SOURCE) + "/config/README.md");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::string fence = "```yaml\n";
+  const std::size_t start = text.find(fence) + fence.size();
+  const Scene scene = scene_of(text.substr(start, text.find("```", start) - start));
+  EXPECT_EQ(scene.name, "drill");
+  EXPECT_EQ(scene.zones.size(), 1u);
 }
 
 TEST(CellFile, ASummaryCountsEverything) {
