@@ -42,18 +42,13 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       participant_(prepare_threads(options)),
       poses_(scene, participant_),
       publish_queue_(scene, {.reports = kQueuedReports}),
-      reports_(std::make_unique<DdsReports>(scene, participant_, publish_queue_, poses_)),
+      reports_(scene, participant_, publish_queue_, poses_),
       recording_(open_recording(scene, options, poses_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
   loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
-}
-
-Daemon::~Daemon() {
-  publish_queue_.close();
-  reports_.reset();
 }
 
 void Daemon::run(StopSignal& signal) {
@@ -72,9 +67,7 @@ void Daemon::run(StopSignal& signal) {
   ticking.join();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
-  publish_queue_.close();
-  dropped_reports_ = publish_queue_.dropped_reports() + reports_->failed_writes();
-  reports_.reset();
+  reports_.finish();
   if (recording_) recording_->finish();
   spdlog::info("stopped after {} ticks", loop_->vitals().cycle);
 }
@@ -88,7 +81,8 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
 }
 
 std::string Daemon::summary() const {
-  return run_summary(scene_, loop_->vitals(), seconds_, dropped_reports_) +
+  const std::uint64_t dropped = publish_queue_.dropped_reports() + reports_.failed_writes();
+  return run_summary(scene_, loop_->vitals(), seconds_, dropped) +
          (recording_ ? recording_->summary() : "");
 }
 

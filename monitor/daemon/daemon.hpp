@@ -33,7 +33,6 @@ class Daemon {
   // Joins DDS and announces the catalogue. Throws DdsError, and RecordError when the
   // recording cannot be made.
   Daemon(const Scene& scene, const DaemonOptions& options);
-  ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
@@ -53,12 +52,11 @@ class Daemon {
   Participant participant_;
   DdsPoses poses_;
   ReportQueue publish_queue_;
-  std::unique_ptr<DdsReports> reports_;
+  DdsReports reports_;
   std::unique_ptr<Recording> recording_;
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
   std::atomic<bool> stop_{false};
-  std::uint64_t dropped_reports_ = 0;
   double seconds_ = 0.0;
 };
 

@@ -22,11 +22,10 @@ class DdsError : public std::runtime_error {
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 
 struct DdsOptions {
-  std::uint32_t domain = 0;      // 0 to 232
-  std::string partition;         // empty: the default one
-  std::string interface = "lo";  // network interface; lo: this machine only
-  std::vector<std::string>
-      peers;  // addresses to look for others at, besides multicast; for lo: none needed
+  std::uint32_t domain = 0;             // 0 to 232
+  std::string partition = "";           // empty: the default one
+  std::string interface = "lo";         // network interface; lo: this machine only
+  std::vector<std::string> peers = {};  // addresses to look for others at; for lo none are needed
 };
 
 // How a topic is delivered. idl/README.md says why.

@@ -12,6 +12,7 @@ namespace clearance {
 namespace {
 
 void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void*) {
+  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
   spdlog::warn(
       "a writer of the poses topic offers QoS that does not fit (policy {}): it is not heard. "
       "Policy 11: it "

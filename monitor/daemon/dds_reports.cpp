@@ -13,6 +13,7 @@ constexpr std::int32_t kDistancesDepth = 16;
 
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
                       void*) {
+  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
   char topic[128] = "?";
   dds_get_name(dds_get_topic(writer), topic, sizeof topic);
   spdlog::warn(
@@ -57,7 +58,20 @@ DdsReports::DdsReports(const Scene& scene, Participant& participant, ReportQueue
   thread_ = std::thread([this] { run(); });
 }
 
-DdsReports::~DdsReports() { thread_.join(); }
+DdsReports::~DdsReports() { finish(); }
+
+void DdsReports::finish() {
+  if (!thread_.joinable()) return;
+  queue_.close();
+  thread_.join();
+}
+
+std::uint32_t DdsReports::distance_readers() const {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(distances_, &status) == DDS_RETCODE_OK
+             ? status.current_count
+             : 0;
+}
 
 void DdsReports::run() {
   name_thread("reports");

@@ -20,9 +20,13 @@ class DdsReports {
   // Publishes the catalogue at once. Everything given must outlive this.
   DdsReports(const Scene& scene, Participant& participant, ReportQueue& queue,
              const DdsPoses& poses);
-  // Waits until all that is queued is written: the queue must have been closed.
-  ~DdsReports();
+  ~DdsReports();  // finishes
 
+  // After the last tick: writes what is queued.
+  void finish();
+
+  // Clients that are listening for distances right now.
+  [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
 
  private:

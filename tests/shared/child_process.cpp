@@ -1,0 +1,76 @@
+#include "tests/shared/child_process.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace clearance::test {
+
+ChildProcess::ChildProcess(const std::string& program, std::vector<std::string> arguments) {
+  char name[] = "/tmp/clearance-test-XXXXXX";
+  const int output = mkstemp(name);
+  output_file_ = name;
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ == 0) {
+    unsetenv("CYCLONEDDS_URI");
+    const int nothing = open("/dev/null", O_RDONLY);
+    dup2(nothing, STDIN_FILENO);
+    dup2(output, STDOUT_FILENO);
+    dup2(output, STDERR_FILENO);
+    execv(program.c_str(), argv.data());
+    std::perror(program.c_str());
+    _exit(127);
+  }
+  close(output);
+}
+
+ChildProcess::~ChildProcess() {
+  if (running()) {
+    kill(pid_, SIGKILL);
+    wait();
+  }
+  std::remove(output_file_.c_str());
+}
+
+void ChildProcess::signal(int number) const {
+  if (!status_) kill(pid_, number);
+}
+
+int ChildProcess::wait(std::chrono::seconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (running()) {
+    if (std::chrono::steady_clock::now() > end) return -1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return *status_;
+}
+
+bool ChildProcess::running() {
+  if (status_) return false;
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
+  status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return false;
+}
+
+std::string ChildProcess::output() const {
+  std::ostringstream text;
+  text << std::ifstream(output_file_).rdbuf();
+  return text.str();
+}
+
+bool ChildProcess::wrote(const std::string& text) const {
+  return output().find(text) != std::string::npos;
+}
+
+}  // namespace clearance::test

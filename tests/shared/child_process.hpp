@@ -1,0 +1,35 @@
+// A program of ours as a user starts it: a process of its own, its output kept.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace clearance::test {
+
+class ChildProcess {
+ public:
+  // Starts at once. `program` is a path; both output streams go to one file.
+  ChildProcess(const std::string& program, std::vector<std::string> arguments);
+  ~ChildProcess();  // kills it if it still runs
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  void signal(int number) const;
+  // The exit status; 128 + the signal that ended it; -1 when it still runs after the limit.
+  int wait(std::chrono::seconds limit = std::chrono::seconds(60));
+  [[nodiscard]] bool running();
+  // What it has written so far.
+  [[nodiscard]] std::string output() const;
+  [[nodiscard]] bool wrote(const std::string& text) const;
+
+ private:
+  std::string output_file_;
+  pid_t pid_ = -1;
+  std::optional<int> status_;
+};
+
+}  // namespace clearance::test

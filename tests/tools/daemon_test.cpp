@@ -1,0 +1,224 @@
+// clearanced itself, started as a user starts it, with real DDS on loopback in between.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "monitor/monitor.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using test::ChildProcess;
+using test::eventually;
+
+using Reports = std::vector<std::unique_ptr<Sample<clearance_msg_Distances>>>;
+
+std::uint64_t last_used(const clearance_msg_Distances& report) {
+  return report.sources._length == 0 ? 0 : report.sources._buffer[0].sequence_number;
+}
+
+// Sends `count` batches, one for every report that comes, until a report was made with the last
+// one.
+Reports run_in_step(test::Poses& poses, test::Distances& distances, std::size_t count) {
+  Reports reports;
+  std::uint64_t used = 0;
+  while (used < count) {
+    reports.push_back(distances.next());
+    if (reports.back() == nullptr) {
+      ADD_FAILURE() << "no report came after " << reports.size() - 1;
+      return {};
+    }
+    used = std::max(used, last_used(**reports.back()));
+    if (poses.sent().size() < count) poses.send(0.01 * static_cast<double>(poses.sent().size()));
+  }
+  return reports;
+}
+
+void expect_same_pair(const PairReport& offline, const clearance_msg_PairDistance& online,
+                      std::uint64_t cycle) {
+  EXPECT_EQ(online.pair, offline.pair) << "cycle " << cycle;
+  EXPECT_EQ(online.status, static_cast<std::uint8_t>(offline.status)) << "cycle " << cycle;
+  // Bounds that overlap are what any two correct runs have; the same build gives the same bits.
+  EXPECT_LE(online.lower, offline.upper) << "cycle " << cycle;
+  EXPECT_GE(online.upper, offline.lower) << "cycle " << cycle;
+  if (offline.status == PairStatus::kUnknown) return;
+  EXPECT_EQ(online.distance, offline.distance) << "cycle " << cycle;
+  EXPECT_EQ(online.lower, offline.lower) << "cycle " << cycle;
+  EXPECT_EQ(online.upper, offline.upper) << "cycle " << cycle;
+  EXPECT_EQ(online.witness_a.x, offline.witness_a.x()) << "cycle " << cycle;
+  EXPECT_EQ(online.closing_speed, offline.closing_speed) << "cycle " << cycle;
+}
+
+// Drives Monitor::tick with what each report says that it used.
+void expect_offline_run_agrees(const Scene& scene, const std::vector<PoseBatch>& sent,
+                               const Reports& reports) {
+  Monitor monitor(scene);
+  const clearance_msg_Distances& first = **reports.front();
+  // Before the first report that we heard there were no poses: only the count of cycles matters.
+  for (std::uint64_t cycle = 1; cycle < first.cycle; ++cycle) monitor.tick({}, first.now_ns);
+  std::uint64_t used = 0;
+  for (const auto& report : reports) {
+    const clearance_msg_Distances& online = **report;
+    std::vector<PoseSample> samples;
+    for (; used < last_used(online); ++used) {
+      samples.insert(samples.end(), sent[used].samples.begin(), sent[used].samples.end());
+    }
+    const Report& offline = monitor.tick(samples, online.now_ns);
+    ASSERT_EQ(online.cycle, offline.cycle) << "a tick is missing";
+    EXPECT_EQ(online.minimum_known, offline.minimum_known);
+    EXPECT_EQ(online.minimum_proved, offline.minimum_proved);
+    EXPECT_EQ(online.newest_pose_ns, offline.newest_pose_ns);
+    if (offline.minimum_known) expect_same_pair(offline.minimum, online.minimum, online.cycle);
+    ASSERT_EQ(online.pairs._length, offline.pairs.size());
+    for (std::uint32_t i = 0; i < online.pairs._length; ++i) {
+      expect_same_pair(offline.pairs[i], online.pairs._buffer[i], online.cycle);
+    }
+  }
+  EXPECT_EQ(used, sent.size());
+}
+
+void expect_daemon_agrees_with_offline_run(const std::string& cell, std::size_t batches) {
+  const Scene scene = std::get<Scene>(read_cell(cell));
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Poses poses(client, scene);
+  test::Distances distances(client, scene);
+  ChildProcess daemon(test::kDaemon, test::with({cell}, test::dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] {
+    return test::matched_readers(poses.writer()) == 1 &&
+           test::matched_writers(distances.reader()) == 1;
+  })) << daemon.output();
+  const Reports reports = run_in_step(poses, distances, batches);
+  ASSERT_FALSE(reports.empty()) << daemon.output();
+  EXPECT_TRUE((*reports.back())->minimum_known);
+  expect_offline_run_agrees(scene, poses.sent(), reports);
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+}
+
+TEST(Daemon, EveryReportIsWhatAnOfflineRunOfTheSameStreamGives) {
+  const test::CellFile cell(test::small_cell("small"));
+  expect_daemon_agrees_with_offline_run(cell.path(), 100);
+}
+
+TEST(Daemon, AgreesWithTheOfflineRunOnAShippedCell) {
+  expect_daemon_agrees_with_offline_run(
+      std::string(CLEARANCE_SOURCE) + "/config/cells/mcintyre.yaml", 200);
+}
+
+TEST(Daemon, EndsWithStatusZeroAndASummaryOnEitherSignal) {
+  const test::CellFile cell(test::small_cell("small"));
+  for (const int signal : {SIGTERM, SIGINT}) {
+    ChildProcess daemon(test::kDaemon,
+                        test::with({cell.path()}, test::dds_arguments(test::own_dds())));
+    ASSERT_TRUE(eventually([&] { return daemon.wrote("cell 'small'"); })) << daemon.output();
+    daemon.signal(signal);
+    EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+    EXPECT_TRUE(daemon.wrote(" ticks in ")) << daemon.output();
+    EXPECT_TRUE(daemon.wrote("minimum  none")) << daemon.output();
+  }
+}
+
+TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {
+  const test::CellFile cell(test::small_cell("small"));
+  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--ticks", "7"},
+                                                test::dds_arguments(test::own_dds())));
+  EXPECT_EQ(daemon.wait(), 0);
+  EXPECT_TRUE(daemon.wrote("7 ticks in ")) << daemon.output();
+}
+
+TEST(Daemon, DoesNotHearAnotherDaemonsCell) {
+  const test::CellFile cell_a(test::small_cell("one")), cell_b(test::small_cell("two"));
+  const Scene scene_a = cell_a.scene(), scene_b = cell_b.scene();
+  const DdsOptions dds_a = test::own_dds(), dds_b = test::own_dds();  // one domain, two partitions
+  ASSERT_EQ(dds_a.domain, dds_b.domain);
+  Participant client_a(dds_a), client_b(dds_b);
+  test::Poses poses_a(client_a, scene_a);
+  test::Distances distances_a(client_a, scene_a), distances_b(client_b, scene_b);
+  ChildProcess daemon_a(test::kDaemon, test::with({cell_a.path()}, test::dds_arguments(dds_a)));
+  ChildProcess daemon_b(test::kDaemon, test::with({cell_b.path()}, test::dds_arguments(dds_b)));
+  ASSERT_TRUE(eventually([&] {
+    return test::matched_readers(poses_a.writer()) == 1 &&
+           test::matched_writers(distances_a.reader()) == 1 &&
+           test::matched_writers(distances_b.reader()) == 1;
+  }));
+  const Reports reports_a = run_in_step(poses_a, distances_a, 20);
+  ASSERT_FALSE(reports_a.empty());
+  for (const auto& report : reports_a) EXPECT_EQ((*report)->scene_revision, scene_a.revision);
+  for (int i = 0; i < 20; ++i) {
+    const auto report = distances_b.next();
+    ASSERT_NE(report, nullptr);
+    EXPECT_EQ((*report)->scene_revision, scene_b.revision);
+    EXPECT_FALSE((*report)->minimum_known) << "poses for one cell reached the other";
+  }
+}
+
+TEST(Daemon, IsNotHeldUpByAClientThatStopped) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Poses poses(client, scene);
+  test::Distances distances(client, scene);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
+  ChildProcess stopped(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] { return stopped.wrote("cycle "); })) << stopped.output();
+  stopped.signal(SIGSTOP);
+  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  // More than any buffer between the daemon and the stopped client holds back.
+  const Reports reports = run_in_step(poses, distances, 300);
+  ASSERT_FALSE(reports.empty());
+  for (std::size_t i = 1; i < reports.size(); ++i) {
+    ASSERT_EQ((*reports[i])->cycle, (*reports[i - 1])->cycle + 1);
+  }
+  stopped.signal(SIGCONT);
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0);
+  EXPECT_TRUE(daemon.wrote(" 0 reports dropped")) << daemon.output();
+}
+
+TEST(DaemonCommand, ChecksACellWithoutRunningIt) {
+  const test::CellFile cell(test::small_cell("small"));
+  ChildProcess good(test::kDaemon, {cell.path(), "--check"});
+  EXPECT_EQ(good.wait(), 0);
+  EXPECT_TRUE(good.wrote("small: 3 objects")) << good.output();
+}
+
+TEST(DaemonCommand, NamesEveryErrorOfABadCell) {
+  const test::CellFile cell("name: bad\nunits: {length: m, angle: deg}\nrate_hz: -1\nobjets: []\n");
+  for (const auto& arguments : {std::vector<std::string>{cell.path(), "--check"}, {cell.path()}}) {
+    ChildProcess bad(test::kDaemon, arguments);
+    EXPECT_EQ(bad.wait(), 3);
+    EXPECT_TRUE(bad.wrote(cell.path() + ":3:")) << bad.output();
+    EXPECT_TRUE(bad.wrote(cell.path() + ":4:")) << bad.output();
+  }
+  ChildProcess missing(test::kDaemon, {"/nonexistent/cell.yaml", "--check"});
+  EXPECT_EQ(missing.wait(), 3);
+  EXPECT_TRUE(missing.wrote("/nonexistent/cell.yaml")) << missing.output();
+}
+
+TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
+  ChildProcess help(test::kDaemon, {"--help"});
+  EXPECT_EQ(help.wait(), 0);
+  EXPECT_TRUE(help.wrote("Example:")) << help.output();
+  ChildProcess nothing(test::kDaemon, {});
+  EXPECT_EQ(nothing.wait(), 2);
+  ChildProcess unknown(test::kDaemon, {"cell.yaml", "--nosuchoption"});
+  EXPECT_EQ(unknown.wait(), 2);
+  const test::CellFile cell(test::small_cell("small"));
+  ChildProcess interface(test::kDaemon, {cell.path(), "--interface", "nosuch0"});
+  EXPECT_EQ(interface.wait(), 4);
+  EXPECT_TRUE(interface.wrote("domain")) << interface.output();
+}
+
+TEST(DaemonCommand, NeverOverwritesARecording) {
+  const test::CellFile cell(test::small_cell("small"));
+  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path()},
+                                                test::dds_arguments(test::own_dds())));
+  EXPECT_EQ(daemon.wait(), 5);
+  EXPECT_EQ(cell.scene().name, "small") << "the file is as it was";
+}
+
+}  // namespace
+}  // namespace clearance

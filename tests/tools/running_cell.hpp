@@ -1,0 +1,140 @@
+// The daemon as a client meets it: cell files, a source of poses, and a reader of distances.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/cell_file.hpp"
+#include "monitor/daemon/seams.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tests/shared/child_process.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance::test {
+
+inline const std::string kDaemon = std::string(CLEARANCE_BIN) + "/clearanced";
+inline const std::string kRobot = std::string(CLEARANCE_BIN) + "/clearance-robot";
+inline const std::string kWatch = std::string(CLEARANCE_BIN) + "/clearance-watch";
+
+// A cell in a file of its own, removed in the end.
+class CellFile {
+ public:
+  explicit CellFile(const std::string& text) {
+    static int count = 0;
+    path_ =
+        "/tmp/clearance-cell-" + std::to_string(getpid()) + "-" + std::to_string(++count) + ".yaml";
+    std::ofstream(path_) << text;
+  }
+  ~CellFile() { std::remove(path_.c_str()); }
+  CellFile(const CellFile&) = delete;
+  CellFile& operator=(const CellFile&) = delete;
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] Scene scene() const { return std::get<Scene>(read_cell(path_)); }
+
+ private:
+  std::string path_;
+};
+
+// Two boxes that swing over a floor; slow enough for any machine and sanitizer.
+inline std::string small_cell(const std::string& name) {
+  return "name: " + name +
+         R"(
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 10000, max_speed: 5}
+objects:
+  - {name: left, groups: [arm], box: {size: [0.2, 0.2, 0.2]}}
+  - {name: right, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}
+  - {name: floor, groups: [still], fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}
+pairs:
+  - {between: [arm, still], publish: true}
+  - {between: [left, right], publish: true}
+zones:
+  - {name: near, between: [arm, arm], enter_below: 0.3, leave_above: 0.35}
+simulation:
+  movers:
+    - {object: left, centre: {xyz: [-0.5, 0, 3]}, amplitude: [0.3, 0, 0.2], frequency_hz: 2}
+    - {object: right, centre: {xyz: [0.5, 0, 3]}, amplitude: [0.1, 0.2, 0], frequency_hz: 3}
+)";
+}
+
+inline std::vector<std::string> dds_arguments(const DdsOptions& dds) {
+  return {"--domain", std::to_string(dds.domain), "--partition", dds.partition};
+}
+
+inline std::vector<std::string> with(std::vector<std::string> first,
+                                     const std::vector<std::string>& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+// Sends the cell's simulated motion, a batch a call.
+class Poses {
+ public:
+  Poses(Participant& participant, const Scene& scene)
+      : scene_(scene),
+        writer_(participant.writer(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
+                                   Delivery::kStream, 64)) {
+    poses_at(scene, 0.0, poses_);
+    sample_ = make_batch(poses_.size());
+  }
+  [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
+
+  // Everything that was sent, in order; numbers count from 1.
+  [[nodiscard]] const std::vector<PoseBatch>& sent() const noexcept { return sent_; }
+
+  void send(double t_s) {
+    poses_at(scene_, t_s, poses_);
+    PoseBatch& batch = sent_.emplace_back();
+    batch.source = SourceName("test");
+    batch.sequence_number = sent_.size();
+    batch.scene_revision = scene_.revision;
+    const std::int64_t now = SystemClock().realtime_ns();
+    for (const PoseAt& pose : poses_) {
+      batch.samples.push_back({.object = pose.object,
+                               .stamp_ns = now,
+                               .world_from_object = pose.world_from_object,
+                               .twist = pose.twist,
+                               .has_twist = true});
+    }
+    to_wire(batch, *sample_);
+    ASSERT_EQ(dds_write(writer_, &*sample_), DDS_RETCODE_OK);
+  }
+
+ private:
+  const Scene& scene_;
+  dds_entity_t writer_;
+  std::vector<PoseAt> poses_;
+  std::vector<PoseBatch> sent_;
+  Sample<clearance_msg_PoseBatch> sample_;
+};
+
+// Reads distances as any client would.
+class Distances {
+ public:
+  Distances(Participant& participant, const Scene& scene)
+      : reader_(participant.reader(topic_descriptor<clearance_msg_Distances>(),
+                                   scene.topics.distances, Delivery::kStream, 8192)) {}
+  [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
+
+  // The next report; null when none comes.
+  std::unique_ptr<Sample<clearance_msg_Distances>> next() {
+    auto sample = std::make_unique<Sample<clearance_msg_Distances>>();
+    void* pointer = &**sample;
+    dds_sample_info_t info{};
+    const bool came = eventually(
+        [&] { return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+    return came ? std::move(sample) : nullptr;
+  }
+
+ private:
+  dds_entity_t reader_;
+};
+
+}  // namespace clearance::test

@@ -1,0 +1,108 @@
+// clearance-watch and clearance-robot as a user starts them.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using test::ChildProcess;
+using test::eventually;
+
+TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
+  const test::CellFile cell(test::small_cell("small"));
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("waiting for clearanced"); })) << watch.output();
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right") && watch.wrote("tick p50"); }))
+      << watch.output();
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+  EXPECT_TRUE(watch.wrote(" reports in ")) << watch.output();
+  EXPECT_TRUE(watch.wrote(" 0 restarts")) << watch.output();
+  robot.signal(SIGTERM);
+  EXPECT_EQ(robot.wait(), 0);
+  EXPECT_TRUE(robot.wrote("batches of 2 poses sent, 0 failed")) << robot.output();
+}
+
+TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
+  const test::CellFile first(test::small_cell("first"));
+  std::string text = test::small_cell("second");
+  for (std::size_t at = 0; (at = text.find("left", at)) != std::string::npos; at += 4) {
+    text.replace(at, 4, "port");  // the same ids under other names
+  }
+  const test::CellFile second(text);
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  for (const auto& [cell, pair] : {std::pair{&first, "left - right"}, {&second, "port - right"}}) {
+    ChildProcess daemon(test::kDaemon, test::with({cell->path()}, dds));
+    ChildProcess robot(test::kRobot, test::with({cell->path(), "--rate", "200"}, dds));
+    ASSERT_TRUE(eventually([&] { return watch.wrote(pair); })) << watch.output();
+  }
+  ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced is silent"); })) << watch.output();
+  watch.signal(SIGTERM);
+  EXPECT_EQ(watch.wait(), 0);
+  EXPECT_TRUE(watch.wrote(" 1 restarts")) << watch.output();
+}
+
+TEST(Watch, EndsAfterItsSecondsAndSaysSoWhenNothingCame) {
+  ChildProcess watch(test::kWatch,
+                     test::with({"--seconds", "0.3"}, test::dds_arguments(test::own_dds())));
+  EXPECT_EQ(watch.wait(), 5);
+  EXPECT_TRUE(watch.wrote("no report came")) << watch.output();
+}
+
+TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant participant(dds);
+  const dds_entity_t reader = participant.reader(topic_descriptor<clearance_msg_PoseBatch>(),
+                                                 scene.topics.poses, Delivery::kStream, 4096);
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "100", "--source", "tester"},
+                                              test::dds_arguments(dds)));
+  Sample<clearance_msg_PoseBatch> sample;
+  std::uint64_t expected = 0;
+  for (int i = 0; i < 30; ++i) {
+    void* pointer = &*sample;
+    dds_sample_info_t info{};
+    ASSERT_TRUE(eventually([&] {
+      return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data;
+    })) << robot.output();
+    if (expected != 0) {
+      EXPECT_EQ(sample->sequence_number, expected);
+    }
+    expected = sample->sequence_number + 1;
+    EXPECT_STREQ(sample->source, "tester");
+    EXPECT_EQ(sample->scene_revision, scene.revision);
+    ASSERT_EQ(sample->poses._length, 2u);
+    EXPECT_EQ(sample->poses._buffer[1].object, 1u);
+    EXPECT_TRUE(sample->poses._buffer[1].has_twist);
+  }
+  robot.signal(SIGTERM);
+  EXPECT_EQ(robot.wait(), 0);
+}
+
+TEST(Robot, MeasuresHowSoonTheAnswerIsBack) {
+  const test::CellFile cell(test::small_cell("small"));
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--latency", "--seconds", "0.5"}, dds));
+  EXPECT_EQ(robot.wait(), 0);
+  EXPECT_TRUE(robot.wrote("pose sent to report received")) << robot.output();
+}
+
+TEST(Robot, SaysThatACellHasNoMotion) {
+  const std::string text = test::small_cell("still");
+  const test::CellFile cell(text.substr(0, text.find("simulation:")));
+  ChildProcess robot(test::kRobot, {cell.path()});
+  EXPECT_EQ(robot.wait(), 3);
+  EXPECT_TRUE(robot.wrote("simulation")) << robot.output();
+}
+
+}  // namespace
+}  // namespace clearance
