@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "tools/bench/balls.hpp"
 #include "tools/bench/cells.hpp"
 
 namespace {
@@ -11,6 +12,8 @@ namespace {
 constexpr const char* kHelp =
     "clearance-bench: times the core and the tick. All times are thread CPU time.\n"
     "\n"
+    "  tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order\n"
+    "  cold/f2 ... v40    the same without what the last query left\n"
     "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
     "tracked\n"
     "  cell/cold/NAME     the same without what the last query left\n"
@@ -30,6 +33,7 @@ int main(int argc, char** argv) {
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  clearance::bench::register_balls();
   clearance::bench::register_cells(CLEARANCE_CELLS);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
