@@ -29,14 +29,10 @@ bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& 
 
 }  // namespace
 
-void ActiveSide::place_cold() noexcept {
-  if (!body_.facets.empty()) {
-    place_inside(body_.interior);
-  } else if (!body_.edges.empty()) {
-    place(Feature::kEdge, 0, body_.interior);
-  } else {
-    place_at_vertex(0);
-  }
+void ActiveSide::place_cold(const Vec3& other) noexcept {
+  if (body_.vertices.empty()) return place_inside(body_.interior);
+  const Vec3 towards = direction_to_own(other - point_to_common(body_.interior));
+  place_at_vertex(body_.start.at(towards));
 }
 
 bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {

@@ -71,9 +71,9 @@ class ActiveSide {
   }
   void place_inside(const Vec3& own) noexcept { place(Feature::kInside, kNone, own); }
 
-  // Where a query starts that knows nothing: inside, or on the only feature of a point or a
-  // segment.
-  void place_cold() noexcept;
+  // Where a query starts that knows nothing: a vertex that is far out towards `other` (common
+  // frame); inside, where the body has none.
+  void place_cold(const Vec3& other) noexcept;
   // Where the last query ended, re-anchored on the feature. False, and nothing done, if the hint is
   // unusable.
   [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;

@@ -17,6 +17,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/start_table.hpp"
 #include "core/vec.hpp"
 
 namespace clearance {
@@ -61,6 +62,12 @@ struct Vertex {
   std::int32_t edges;
 };
 
+// One side of a facet's polygon: inward.x >= offset in its plane.
+struct FacetSide {
+  Vec3 inward;
+  double offset;
+};
+
 // A direction in which the body is unbounded.
 struct Ray {
   Vec3 direction;  // unit, unless exact
@@ -79,8 +86,13 @@ struct ConvexPolyhedron {
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
 
-  Vec3 interior =
-      Vec3::Zero();  // a point well inside (in the relative interior of a point or segment)
+  // The same once more in the order in which the queries walk it; made by add_walking_tables().
+  std::vector<Vec3> outgoing;          // [i]: unit, along vertex_edges[i], away from the vertex
+  std::vector<FacetSide> facet_sides;  // [i]: of facet_edges[i]
+  StartTable start;
+
+  // A point well inside (in the relative interior of a point or segment).
+  Vec3 interior = Vec3::Zero();
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;

@@ -87,8 +87,20 @@ DistanceResult overlapping(const Vec3& common_point) noexcept {
   return r;
 }
 
-void place(ActiveSide& side, const TrackingState::Side& hint) noexcept {
-  if (!side.place_tracked(hint)) side.place_cold();
+void place(ActiveSide& side, const TrackingState::Side& hint, const ActiveSide& other) noexcept {
+  if (!side.place_tracked(hint)) {
+    side.place_cold(other.point_to_common(other.body().interior));
+  }
+}
+
+// The distance that the optimal active set proves by itself: what lies behind both features along `n`. Along an
+// active edge the body may reach its whole length farther, as far as rounding tilts n.
+double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const ActiveSide& b,
+                       const Precision& p) noexcept {
+  const auto along_edge = [&](const ActiveSide& s) {
+    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction)) : 0.0;
+  };
+  return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }
 
 DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
@@ -104,7 +116,12 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   if (outcome.end == Dqp3End::kContact && share_a_point(a, b, p, shared)) {
     result = overlapping(shared);
   } else {
-    prove_from_below(bounds, a, b, p);
+    if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
+      const double apart = outcome.towards.norm();
+      const Vec3 n = outcome.towards / apart;
+      bounds.raise(proved_distance(n, apart, a, b, p), n);
+    }
+    if (!(bounds.upper - bounds.lower <= p.tight)) prove_from_below(bounds, a, b, p);
     result = conclude(a, b, bounds, p);
     if (bounds.upper - bounds.lower > p.tight) refine(a, b, a_from_b, p, result);
   }
@@ -154,8 +171,8 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   DistanceResult result;
   if (far_by_spheres(a, b, a_from_b, options.far_away, result)) return result;
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-  place(side_a, state.a);
-  place(side_b, state.b);
+  place(side_a, state.a, side_b);
+  place(side_b, state.b, side_a);
   result = core_distance(side_a, side_b, a_from_b);
   state = {side_a.tracked(), side_b.tracked()};
   add_radii(result, a, b);

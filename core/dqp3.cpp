@@ -3,6 +3,7 @@
 #include "core/alpha.hpp"
 #include "core/delta.hpp"
 #include "core/lambda.hpp"
+#include "core/towards.hpp"
 
 namespace clearance {
 namespace {
@@ -10,8 +11,9 @@ namespace {
 // Far above the longest walk of the corpus.
 constexpr std::uint16_t kIterations = 1000;
 
-// A rate this small, relative to the distance, is the rounding of unit vectors.
-constexpr double kNoRate = 0x1p-50;
+// Unit vectors are off by 2^-52 and their products by three roundings more: a rate beyond this, per unit of
+// distance, has the sign that exact arithmetic would give.
+constexpr double kCertain = 0x1p-50;
 
 // One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
 // that would take them apart, both go the same fraction of the way, which cannot. True if nothing
@@ -43,20 +45,24 @@ void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.in
 
 Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
   Dqp3Outcome outcome;
+  const auto ended = [&](Dqp3End end) {
+    outcome.end = end;
+    return outcome;
+  };
   double closest2 = kInfinity;
   while (outcome.iterations < kIterations) {
     ++outcome.iterations;
     if (!step(a, b, delta(a, b))) continue;
-    const Vec3 between = b.common() - a.common();
-    const double distance2 = between.squaredNorm();
-    if (distance2 <= contact * contact) return outcome.end = Dqp3End::kContact, outcome;
-    if (!(distance2 < closest2)) return outcome.end = Dqp3End::kStalled, outcome;
+    const Towards direction = towards(a, b);
+    outcome.towards = direction.vector;
+    const double distance2 = (b.common() - a.common()).squaredNorm();
+    if (distance2 <= contact * contact) return ended(Dqp3End::kContact);
+    if (!(distance2 < closest2)) return ended(Dqp3End::kStalled);
     closest2 = distance2;
-    const Lambda of_a = lambda(a, between), of_b = lambda(b, -between);
+    const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
     const double best = std::max(of_a.rate, of_b.rate);
-    if (!(best * best > kNoRate * kNoRate * distance2)) {
-      return outcome.end = Dqp3End::kOptimal, outcome;
-    }
+    if (best * best < kCertain * kCertain * distance2) return ended(Dqp3End::kOptimal);
+    if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
     if (of_a.rate >= of_b.rate) {
       release(a, of_a);
     } else {

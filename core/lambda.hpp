@@ -6,17 +6,57 @@
 namespace clearance {
 
 struct Lambda {
-  double rate =
-      0.0;  // how fast the point may approach the other, per unit of path: > 0 asks for release
+  // How fast the point may approach the other, per unit of path, at best: > 0 asks for release. Negative beyond
+  // rounding, it proves that the feature is the farthest of its body along `towards`.
+  double rate = -kInfinity;
   Feature to = Feature::kInside;  // the feature that remains
   std::int32_t index = kNone;
 };
 
-// The release that gains most. `towards` points from this body's x to the other's, common frame.
-// The rate is minus the multiplier of the thesis: its three cases (3.4.23) to (3.4.25), the last
-// one over all edges that leave the vertex rather than the three of one choice of facets. All rates
-// are in the unit of `towards`, so that they can be compared between the bodies, as the scaling of
-// (3.4.25) is there for.
-[[nodiscard]] Lambda lambda(const ActiveSide& side, const Vec3& towards) noexcept;
+namespace lambda_case {
+
+inline Lambda of_facet(const ActiveSide& side, const Vec3& towards) noexcept {
+  return {-side.facet().normal.dot(towards), Feature::kInside, kNone};
+}
+
+inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
+  const Edge& edge = side.edge();
+  if (edge.facet[0] == kNone) return {};
+  const double left = edge.inward[0].dot(towards), right = edge.inward[1].dot(towards);
+  return left >= right ? Lambda{left, Feature::kFacet, edge.facet[0]}
+                       : Lambda{right, Feature::kFacet, edge.facet[1]};
+}
+
+inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
+  const Vertex& vertex = side.vertex();
+  const Vec3* outgoing = side.body().outgoing.data() + vertex.first_edge;
+  Lambda best;
+  std::int32_t steepest = 0;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const double rate = outgoing[i].dot(towards);
+    if (rate > best.rate) {
+      best.rate = rate;
+      steepest = i;
+    }
+  }
+  if (vertex.edges == 0) return best;
+  best.to = Feature::kEdge;
+  best.index = side.body().vertex_edges[vertex.first_edge + steepest].edge;
+  return best;
+}
+
+}  // namespace lambda_case
+
+// The release that gains most. `towards` points from this body's x to the other's, common frame. The rate
+// is minus the multiplier of the thesis: its three cases (3.4.23) to (3.4.25), the last one over all edges
+// that leave the vertex rather than the three of one choice of facets. All rates are in the unit of
+// `towards`, so that they can be compared between the bodies, as the scaling of (3.4.25) is there for.
+[[nodiscard]] inline Lambda lambda(const ActiveSide& side, const Vec3& towards_in_common) noexcept {
+  if (side.feature() == Feature::kInside) return {};
+  const Vec3 towards = side.direction_to_own(towards_in_common);
+  if (side.feature() == Feature::kFacet) return lambda_case::of_facet(side, towards);
+  return side.feature() == Feature::kEdge ? lambda_case::of_edge(side, towards)
+                                          : lambda_case::of_vertex(side, towards);
+}
 
 }  // namespace clearance

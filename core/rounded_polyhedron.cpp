@@ -4,6 +4,7 @@
 
 #include "core/exact_rounding.hpp"
 #include "core/exact_solid.hpp"
+#include "core/walking_tables.hpp"
 
 namespace clearance::exact {
 namespace {
@@ -300,6 +301,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
         nearest_quotient(solid.interior[i], solid.interior[3]).value;
   }
   body.interior = well_inside(body, inside);
+  add_walking_tables(body);
   return body;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/exact_rounding.hpp"
 #include "core/exact_solid.hpp"
+#include "core/walking_tables.hpp"
 
 namespace clearance {
 namespace {
@@ -119,6 +120,7 @@ ShapeResult point(const Vec3& position, double radius) {
   body.interior = position;
   body.bounding_radius = position.norm() * (1.0 + 0x1p-50);
   body.radius = radius;
+  add_walking_tables(body);
   return body;
 }
 
@@ -144,6 +146,7 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   body.bounding_radius = std::max(start.norm(), end.norm()) * (1.0 + 0x1p-50);
   body.position_error = line.length.exact ? 0.0 : 0x1p-53 * line.length.value;
   body.radius = radius;
+  add_walking_tables(body);
   return body;
 }
 

@@ -1,0 +1,11 @@
+// The part of a ConvexPolyhedron that repeats it in the order in which queries walk it.
+#pragma once
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+// Fills `outgoing`, `facet_sides` and `start` from the rest. The factories' last step.
+void add_walking_tables(ConvexPolyhedron& body);
+
+}  // namespace clearance
