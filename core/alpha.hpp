@@ -1,7 +1,8 @@
-// The 'alpha' step: how far a body's point may go before a new facet becomes active (§3.3.1.3, §3.6.1).
+// The 'alpha' step: how far a body's point may go before a new facet becomes active (§3.3.1.3,
+// §3.6.1).
 //
-// Over the feature's own boundary only: a facet's edges, an edge's ends, and all facets from the inside.
-// x lies in the feature, so nothing else can block.
+// Over the feature's own boundary only: a facet's edges, an edge's ends, and all facets from the
+// inside. x lies in the feature, so nothing else can block.
 #pragma once
 
 #include "core/active_side.hpp"
@@ -16,7 +17,8 @@ struct Alpha {
 
 namespace alpha_case {
 
-// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross blocks at once.
+// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross
+// blocks at once.
 inline double fraction(double gap, double speed) noexcept { return gap > 0.0 ? gap / speed : 0.0; }
 
 inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {

@@ -40,23 +40,10 @@ void add_crossing_edges(Separators& list, const ActiveSide& a, const ActiveSide&
   }
 }
 
-// The anchor from which to look for the farthest one.
-std::int32_t start(const ActiveSide& s) noexcept {
-  if (s.feature() == Feature::kVertex) return s.index();
-  std::int32_t edge = kNone;
-  if (s.feature() == Feature::kEdge) edge = s.index();
-  if (s.feature() == Feature::kFacet && s.facet().sides > 0) {
-    edge = s.body().facet_edges[s.facet().first_side].edge;
-  }
-  if (edge == kNone) return 0;
-  const Edge& e = s.body().edges[edge];
-  return std::max(0, e.vertex[0] != kNone ? e.vertex[0] : e.vertex[1]);
-}
-
 double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
-  return support(s.body(), m, start(s)).reach + reach_along_rays(s.body(), m, within);
+  return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
 }
 
 // Two unbounded bodies are apart only if some direction has both bodies' rays falling away or
@@ -82,8 +69,8 @@ double tilt_to_proof(const Vec3& n, const ActiveSide& a, const ActiveSide& b) no
 double separation_of_unbounded(const Vec3& n, const ActiveSide& a, const ActiveSide& b) noexcept {
   const double tilt = tilt_to_proof(n, a, b);
   if (!(tilt < kInfinity)) return -kInfinity;
-  const double of_a = support(a.body(), n, start(a)).reach;
-  const double of_b = support(b.body(), -b.direction_to_own(n), start(b)).reach;
+  const double of_a = support(a.body(), n).reach;
+  const double of_b = support(b.body(), -b.direction_to_own(n)).reach;
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
   const double moved = a.body().bounding_radius + b.body().bounding_radius + origin_of_b.norm();
   return (n.dot(origin_of_b) - of_b) - of_a - tilt * moved;

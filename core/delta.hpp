@@ -1,6 +1,8 @@
-// The 'delta' step: the closest points of two features' affine hulls, the ten cases of Table 3.1 (§3.4.2).
+// The 'delta' step: the closest points of two features' affine hulls, the ten cases of Table 3.1
+// (§3.4.2).
 //
-// Where many pairs are closest (parallel features) the smallest move is chosen: halfway each (§3.4.2.1).
+// Where many pairs are closest (parallel features) the smallest move is chosen: halfway each
+// (§3.4.2.1).
 #pragma once
 
 #include <cmath>
@@ -20,7 +22,9 @@ namespace delta_case {
 constexpr double kParallel = 0x1p-50;
 
 inline Vec3 normal(const ActiveSide& s) noexcept { return s.direction_to_common(s.facet().normal); }
-inline Vec3 along(const ActiveSide& s) noexcept { return s.direction_to_common(s.edge().direction); }
+inline Vec3 along(const ActiveSide& s) noexcept {
+  return s.direction_to_common(s.edge().direction);
+}
 
 inline Vec3 onto_plane(const Vec3& p, const Vec3& on, const Vec3& n) noexcept {
   return p - (p - on).dot(n) * n;
@@ -31,7 +35,8 @@ inline Vec3 onto_line(const Vec3& p, const Vec3& on, const Vec3& e) noexcept {
 
 // In each case p has at most as many dimensions as q.
 
-inline void vertex_vertex(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void vertex_vertex(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+                          Vec3& to_q) noexcept {
   to_p = p.common();
   to_q = q.common();
 }
@@ -41,7 +46,8 @@ inline void vertex_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Ve
   to_q = onto_line(p.common(), q.common(), along(q));
 }
 
-inline void vertex_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void vertex_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+                         Vec3& to_q) noexcept {
   to_p = p.common();
   to_q = onto_plane(p.common(), q.common(), normal(q));
 }
@@ -98,30 +104,43 @@ inline void facet_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Ve
   to_p = to_q = 0.5 * (on_line_p + on_line_q);
 }
 
-inline void facet_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void facet_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+                         Vec3& to_q) noexcept {
   to_p = to_q = onto_plane(q.common(), p.common(), normal(p));
 }
 
-inline void inside_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void inside_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+                          Vec3& to_q) noexcept {
   to_p = to_q = 0.5 * (p.common() + q.common());
 }
 
 }  // namespace delta_case
 
 // p has at most as many dimensions as q: the half of Table 3.1 that is not its mirror image.
-inline void closest_points(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void closest_points(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+                           Vec3& to_q) noexcept {
   using namespace delta_case;
   switch (static_cast<int>(p.feature()) * 4 + static_cast<int>(q.feature())) {
-    case 0: return vertex_vertex(p, q, to_p, to_q);
-    case 1: return vertex_edge(p, q, to_p, to_q);
-    case 2: return vertex_facet(p, q, to_p, to_q);
-    case 3: return vertex_inside(p, q, to_p, to_q);
-    case 5: return edge_edge(p, q, to_p, to_q);
-    case 6: return edge_facet(p, q, to_p, to_q);
-    case 7: return edge_inside(p, q, to_p, to_q);
-    case 10: return facet_facet(p, q, to_p, to_q);
-    case 11: return facet_inside(p, q, to_p, to_q);
-    default: return inside_inside(p, q, to_p, to_q);
+    case 0:
+      return vertex_vertex(p, q, to_p, to_q);
+    case 1:
+      return vertex_edge(p, q, to_p, to_q);
+    case 2:
+      return vertex_facet(p, q, to_p, to_q);
+    case 3:
+      return vertex_inside(p, q, to_p, to_q);
+    case 5:
+      return edge_edge(p, q, to_p, to_q);
+    case 6:
+      return edge_facet(p, q, to_p, to_q);
+    case 7:
+      return edge_inside(p, q, to_p, to_q);
+    case 10:
+      return facet_facet(p, q, to_p, to_q);
+    case 11:
+      return facet_inside(p, q, to_p, to_q);
+    default:
+      return inside_inside(p, q, to_p, to_q);
   }
 }
 

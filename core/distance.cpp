@@ -93,12 +93,14 @@ void place(ActiveSide& side, const TrackingState::Side& hint, const ActiveSide& 
   }
 }
 
-// The distance that the optimal active set proves by itself: what lies behind both features along `n`. Along an
-// active edge the body may reach its whole length farther, as far as rounding tilts n.
+// The distance that the optimal active set proves by itself: what lies behind both features along
+// `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
+// n.
 double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const ActiveSide& b,
                        const Precision& p) noexcept {
   const auto along_edge = [&](const ActiveSide& s) {
-    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction)) : 0.0;
+    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
+                                         : 0.0;
   };
   return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }

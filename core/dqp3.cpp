@@ -11,8 +11,13 @@ namespace {
 // Far above the longest walk of the corpus.
 constexpr std::uint16_t kIterations = 1000;
 
-// Unit vectors are off by 2^-52 and their products by three roundings more: a rate beyond this, per unit of
-// distance, has the sign that exact arithmetic would give.
+// Steps that bring no gain in doubles and yet are steps in exact arithmetic: along edges shorter
+// than the rounding of their ends, as where four planes all but meet. More of them mean that
+// rounding goes in circles.
+constexpr int kLevelSteps = 12;
+
+// Unit vectors are off by 2^-52 and their products by three roundings more: a rate beyond this, per
+// unit of distance, has the sign that exact arithmetic would give.
 constexpr double kCertain = 0x1p-50;
 
 // One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
@@ -50,6 +55,7 @@ Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
     return outcome;
   };
   double closest2 = kInfinity;
+  int level = 0;
   while (outcome.iterations < kIterations) {
     ++outcome.iterations;
     if (!step(a, b, delta(a, b))) continue;
@@ -57,8 +63,11 @@ Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
     outcome.towards = direction.vector;
     const double distance2 = (b.common() - a.common()).squaredNorm();
     if (distance2 <= contact * contact) return ended(Dqp3End::kContact);
-    if (!(distance2 < closest2)) return ended(Dqp3End::kStalled);
-    closest2 = distance2;
+    if (distance2 < closest2) {
+      closest2 = distance2;
+    } else if (++level > kLevelSteps) {
+      return ended(Dqp3End::kStalled);
+    }
     const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
     const double best = std::max(of_a.rate, of_b.rate);
     if (best * best < kCertain * kCertain * distance2) return ended(Dqp3End::kOptimal);

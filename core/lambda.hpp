@@ -6,8 +6,9 @@
 namespace clearance {
 
 struct Lambda {
-  // How fast the point may approach the other, per unit of path, at best: > 0 asks for release. Negative beyond
-  // rounding, it proves that the feature is the farthest of its body along `towards`.
+  // How fast the point may approach the other, per unit of path, at best: > 0 asks for release.
+  // Negative beyond rounding, it proves that the feature is the farthest of its body along
+  // `towards`.
   double rate = -kInfinity;
   Feature to = Feature::kInside;  // the feature that remains
   std::int32_t index = kNone;
@@ -47,10 +48,11 @@ inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
 
 }  // namespace lambda_case
 
-// The release that gains most. `towards` points from this body's x to the other's, common frame. The rate
-// is minus the multiplier of the thesis: its three cases (3.4.23) to (3.4.25), the last one over all edges
-// that leave the vertex rather than the three of one choice of facets. All rates are in the unit of
-// `towards`, so that they can be compared between the bodies, as the scaling of (3.4.25) is there for.
+// The release that gains most. `towards` points from this body's x to the other's, common frame.
+// The rate is minus the multiplier of the thesis: its three cases (3.4.23) to (3.4.25), the last
+// one over all edges that leave the vertex rather than the three of one choice of facets. All rates
+// are in the unit of `towards`, so that they can be compared between the bodies, as the scaling of
+// (3.4.25) is there for.
 [[nodiscard]] inline Lambda lambda(const ActiveSide& side, const Vec3& towards_in_common) noexcept {
   if (side.feature() == Feature::kInside) return {};
   const Vec3 towards = side.direction_to_own(towards_in_common);

@@ -39,7 +39,7 @@ class DifferenceBody {
  private:
   // Unbounded bodies are cut off far beyond the closest points.
   static Vec3 farthest(const ConvexPolyhedron& body, const Vec3& m, double reach) noexcept {
-    Vec3 point = body.anchors[support_by_scan(body, m).anchor];
+    Vec3 point = body.anchors[support(body, m).anchor];
     const Ray* steepest = nullptr;
     double slope = 0.0;
     for (const Ray& ray : body.rays) {

@@ -1,4 +1,5 @@
-// Where to begin when nothing is known: for every direction, a vertex that is nearly the farthest along it.
+// Where to begin when nothing is known: for every direction, a vertex that is nearly the farthest
+// along it.
 #pragma once
 
 #include <array>
@@ -9,9 +10,9 @@
 
 namespace clearance {
 
-// A cube around the origin, each face a grid; a direction's cell names the vertex that is farthest along the
-// cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the walk from there is 3 edges long on
-// average, and the table is smaller than the vertices of a body of 40 facets.
+// A cube around the origin, each face a grid; a direction's cell names the vertex that is farthest
+// along the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the walk from there is
+// 3 edges long on average, and the table is smaller than the vertices of a body of 40 facets.
 class StartTable {
  public:
   static constexpr int kGrid = 8;

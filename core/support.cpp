@@ -78,10 +78,10 @@ Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   return best;
 }
 
-Support support(const ConvexPolyhedron& body, const Vec3& m, std::int32_t start) noexcept {
+Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   if (!body.bounded() || body.anchors.size() <= kScan) return support_by_scan(body, m);
   LevelSet level;
-  level.add(climb(body, m, start));
+  level.add(climb(body, m, body.start.at(m)));
   Support best{-kInfinity, 0};
   for (std::size_t k = 0; k < level.size(); ++k) {
     const Vertex& vertex = body.vertices[level[k]];

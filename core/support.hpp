@@ -15,10 +15,9 @@ struct Support {
 };
 
 // Exact up to the rounding of the products: bodies of many vertices are climbed along their edges
-// from `start` and no vertex is left out that could be higher (see support.cpp); others are
-// scanned. m: unit up to rounding, the body's frame. start: any anchor index.
-[[nodiscard]] Support support(const ConvexPolyhedron& body, const Vec3& m,
-                              std::int32_t start) noexcept;
+// from where the start table says, and no vertex is left out that could be higher (see
+// support.cpp); others are scanned. m: unit up to rounding, the body's frame.
+[[nodiscard]] Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept;
 
 // Over all anchors, without the edge graph.
 [[nodiscard]] Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept;

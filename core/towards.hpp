@@ -1,5 +1,5 @@
-// The direction from A's point to B's as the features define it, free of what cancellation leaves in the
-// difference of two rounded points.
+// The direction from A's point to B's as the features define it, free of what cancellation leaves
+// in the difference of two rounded points.
 #pragma once
 
 #include "core/active_side.hpp"
@@ -7,8 +7,9 @@
 namespace clearance {
 
 struct Towards {
-  Vec3 vector;         // from A towards B, as long as the features are apart, common frame
-  bool exact = false;  // unit vector good to rounding: at right angles to every active edge, along the facet
+  Vec3 vector;  // from A towards B, as long as the features are apart, common frame
+  bool exact =
+      false;  // unit vector good to rounding: at right angles to every active edge, along the facet
 };
 
 namespace towards_case {

@@ -36,8 +36,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
     const Vec3& inward = edge.inward[use.side];
     body.facet_sides.push_back({inward, inward.dot(edge.point)});
   }
-  if (body.vertices.empty() ||
-      body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
+  if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
     return;
   }
   std::int32_t at = 0;
