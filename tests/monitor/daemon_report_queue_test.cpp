@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/monitor/allocation_count.hpp"
+#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {

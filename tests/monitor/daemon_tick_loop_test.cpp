@@ -6,7 +6,7 @@
 
 #include <deque>
 
-#include "tests/monitor/allocation_count.hpp"
+#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
