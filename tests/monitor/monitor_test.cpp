@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {
