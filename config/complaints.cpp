@@ -51,9 +51,15 @@ void Complaints::add(int line, int column, const std::string& text) {
 
 std::vector<CellError> Complaints::sorted() const {
   std::vector<Complaint> ordered = complaints_;
-  std::stable_sort(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  std::sort(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+    return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
   });
+  // A mistake behind an anchor (&x) is met once for every alias of it.
+  const auto end =
+      std::unique(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+        return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);
+      });
+  ordered.erase(end, ordered.end());
   std::vector<CellError> errors;
   for (const Complaint& complaint : ordered) {
     errors.push_back({file_ + ":" + std::to_string(complaint.line) + ":" +

@@ -176,6 +176,15 @@ TEST(CellFile, AnErrorIsOneLineWhateverWasFound) {
   EXPECT_LT(errors.size(), 200u);
 }
 
+TEST(CellFile, AMistakeBehindAnAnchorIsReportedOnce) {
+  const std::string errors =
+      errors_of(cell_text("objects:\n"
+                          "  - {name: a, box: &box {size: [1, 1, none]}}\n"
+                          "  - {name: b, box: *box}\n"
+                          "pairs: [{between: [a, b]}]\n"));
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+}
+
 TEST(CellFile, AMissingFileIsAnError) {
   const CellResult result = read_cell("/nowhere/at/all.yaml");
   const auto* errors = std::get_if<std::vector<CellError>>(&result);
