@@ -1,0 +1,150 @@
+// Long seeded campaign: distance() on every hard family, cold, tracked, swapped and with nonsense
+// states.
+//
+// Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
+// tests/shared/distance_judge.hpp. Prints what is wrong and writes each failing case as a line that
+// clearance-distance reads.
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance {
+namespace {
+
+struct Tally {
+  long asked = 0, failed = 0, cases = 0;
+  long iterations = 0, most_iterations = 0;
+};
+
+class Campaign {
+ public:
+  explicit Campaign(const std::string& findings) : findings_(findings, std::ios::app) {}
+
+  void run_case(const hard::CaseFamily& family, std::uint64_t seed) {
+    Random random(seed);
+    const hard::HardCase c = family.make(random);
+    tally_ = &tallies_[family.name];
+    id_ = std::string(family.name) + "-" + std::to_string(seed);
+    line_ = [&] { return hard::json_line(id_, family.name, c); };
+    ++tally_->cases;
+    DistanceJudge judge(c.a, c.b), swapped(c.b, c.a);
+    if (!judge.refusal().empty()) return report("refused: " + judge.refusal());
+    const oracle::ExactDistance truth = judge.truth(c.pose_a, c.pose_b);
+
+    TrackingState state;
+    check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "cold");
+    check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "again");
+    for (int k = 0; k < 2; ++k) {
+      state = nonsense(judge, random);
+      check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "nonsense");
+    }
+    TrackingState other;
+    check(swapped, swapped.ask(c.pose_b, c.pose_a, other), truth, c.pose_b, c.pose_a, "swapped");
+  }
+
+  void run_motion(const hard::MotionFamily& family, std::uint64_t seed, int steps) {
+    Random random(seed);
+    const hard::HardMotion m = family.make(random, steps);
+    tally_ = &tallies_[family.name];
+    id_ = std::string(family.name) + "-" + std::to_string(seed);
+    line_ = [&] { return hard::json_line(id_, family.name, m); };
+    ++tally_->cases;
+    DistanceJudge judge(m.a, m.b);
+    if (!judge.refusal().empty()) return report("refused: " + judge.refusal());
+    TrackingState state;
+    int step = 0;
+    for (const auto& [pose_a, pose_b] : m.poses) {
+      const DistanceResult result = judge.ask(pose_a, pose_b, state);
+      check(judge, result, judge.truth(pose_a, pose_b), pose_a, pose_b,
+            ("step " + std::to_string(step++)).c_str());
+    }
+  }
+
+  // True when nothing has been found.
+  bool summary() const {
+    long failed = 0;
+    for (const auto& [name, t] : tallies_) {
+      std::printf("%-18s %7ld cases %8ld queries %6ld wrong, iterations mean %.2f most %ld\n",
+                  name.c_str(), t.cases, t.asked, t.failed,
+                  static_cast<double>(t.iterations) / static_cast<double>(std::max(1L, t.asked)),
+                  t.most_iterations);
+      failed += t.failed;
+    }
+    return failed == 0;
+  }
+
+ private:
+  static TrackingState::Side nonsense_side(const ConvexPolyhedron& body, Random& random) {
+    TrackingState::Side out;
+    out.dimension = static_cast<std::uint8_t>(random.integer(0, 5));
+    const std::size_t most =
+        std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
+    out.feature = random.integer(-2, static_cast<int>(most) + 1);
+    out.point = random.in_box(random.log_uniform(1e-3, 1e6));
+    if (random.chance(0.1)) out.point.x() = std::nan("");
+    if (random.chance(0.1)) out.point.y() = kInfinity;
+    return out;
+  }
+
+  static TrackingState nonsense(const DistanceJudge& judge, Random& random) {
+    TrackingState out;
+    out.a = nonsense_side(judge.a(), random);
+    out.b = nonsense_side(judge.b(), random);
+    return out;
+  }
+
+  void check(DistanceJudge& judge, const DistanceResult& result, const oracle::ExactDistance& truth,
+             const Pose& pose_a, const Pose& pose_b, const char* how) {
+    ++tally_->asked;
+    tally_->iterations += result.iterations;
+    tally_->most_iterations = std::max<long>(tally_->most_iterations, result.iterations);
+    for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
+      report(std::string(how) + ": " + fault);
+    }
+  }
+
+  void report(const std::string& what) {
+    ++tally_->failed;
+    std::printf("%s %s\n", id_.c_str(), what.c_str());
+    if (id_ != last_written_) findings_ << line_() << std::endl;
+    last_written_ = id_;
+  }
+
+  std::ofstream findings_;
+  std::map<std::string, Tally> tallies_;
+  Tally* tally_ = nullptr;
+  std::string id_, last_written_;
+  std::function<std::string()> line_;
+};
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  if (argc < 4) {
+    std::cerr << "usage: campaign_distance FIRST_SEED CASES MOTIONS [FINDINGS.jsonl] [FAMILY]\n"
+                 "CASES single poses and MOTIONS motions of 100 poses of each family.\n"
+                 "example: campaign_distance 0 1000 10 findings.jsonl\n";
+    return 2;
+  }
+  const std::uint64_t first = std::strtoull(argv[1], nullptr, 10);
+  const int cases = std::atoi(argv[2]), motions = std::atoi(argv[3]);
+  const std::string only = argc > 5 ? argv[5] : "";
+  clearance::Campaign campaign(argc > 4 ? argv[4] : "findings.jsonl");
+  for (const auto& family : clearance::hard::case_families()) {
+    if (!only.empty() && only != family.name) continue;
+    for (int k = 0; k < cases; ++k) campaign.run_case(family, first + k);
+  }
+  for (const auto& family : clearance::hard::motion_families()) {
+    if (!only.empty() && only != family.name) continue;
+    for (int k = 0; k < motions; ++k) campaign.run_motion(family, first + k, 100);
+  }
+  return campaign.summary() ? 0 : 1;
+}

@@ -1,0 +1,209 @@
+// clearance-distance as its users run it: files and pipes in, lines out, exit status.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+  std::vector<Json> lines;
+};
+
+class DistanceTool : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = testing::TempDir() + "clearance-distance-XXXXXX";
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const char* file) const { return folder_ + "/" + file; }
+
+  [[nodiscard]] std::string read(const char* file) const {
+    std::ifstream in(path(file));
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  // Arguments as a shell reads them; `in` is the standard input.
+  Outcome run(const std::string& arguments, const std::string& in = "") {
+    std::ofstream(path("in")) << in;
+    const std::string command = std::string(CLEARANCE_BIN) + "/clearance-distance " + arguments +
+                                " < " + path("in") + " > " + path("out") + " 2> " + path("err");
+    const int code = std::system(command.c_str());
+    Outcome result;
+    result.status = WIFEXITED(code) ? WEXITSTATUS(code) : -1;
+    result.out = read("out");
+    result.err = read("err");
+    std::istringstream lines(result.out);
+    for (std::string line; std::getline(lines, line);) {
+      result.lines.push_back(Json::parse(line, nullptr, false));
+    }
+    return result;
+  }
+
+  std::string folder_;
+};
+
+constexpr const char* kCube =
+    R"({"halfspaces":[[2,0,0,1],[-1,0,0,0.5],[0,1,0,0.5],[0,-1,0,0.5],[0,0,1,0.5],[0,0,-1,0.5]]})";
+
+std::string cubes(const std::string& id, double x) {
+  std::ostringstream out;
+  out << R"({"id":")" << id << R"(","a":)" << kCube << R"(,"b":)" << kCube
+      << R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[)" << x << R"(,0,0,1,0,0,0]})" << '\n';
+  return out.str();
+}
+
+TEST_F(DistanceTool, AnswersCasesFromAPipe) {
+  const Outcome r = run("--cases - --out -", cubes("first", 1.5) + "\n" + cubes("second", 0.25));
+  EXPECT_EQ(r.status, 0) << r.err;
+  ASSERT_EQ(r.lines.size(), 2u);
+  EXPECT_EQ(r.lines[0]["id"], "first");
+  EXPECT_NEAR(r.lines[0]["distance"].get<double>(), 0.5, 1e-15);
+  EXPECT_LE(r.lines[0]["lower"].get<double>(), 0.5);
+  EXPECT_GE(r.lines[0]["upper"].get<double>(), 0.5);
+  EXPECT_EQ(r.lines[0]["status"], "converged");
+  EXPECT_NEAR(r.lines[0]["witness_a"][0].get<double>(), 0.5, 1e-15);
+  EXPECT_NEAR(r.lines[0]["witness_b"][0].get<double>(), 1.0, 1e-15);
+  EXPECT_GE(r.lines[0]["iterations"].get<int>(), 1);
+  EXPECT_EQ(r.lines[1]["status"], "overlapping");
+  EXPECT_EQ(r.lines[1]["distance"], 0.0);
+  EXPECT_NE(r.err.find("2 lines, 0 with errors"), std::string::npos) << r.err;
+}
+
+TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
+  for (const hard::CaseFamily& family : hard::case_families()) {
+    Random random(7);
+    const hard::HardCase c = family.make(random);
+    const Outcome r = run("--cases - --out -", hard::json_line("x", family.name, c) + "\n");
+    ASSERT_EQ(r.lines.size(), 1u);
+    ASSERT_TRUE(r.lines[0].contains("distance")) << r.out;
+    DistanceJudge judge(c.a, c.b);
+    TrackingState state;
+    const DistanceResult expected = judge.ask(c.pose_a, c.pose_b, state);
+    EXPECT_EQ(r.lines[0]["distance"].get<double>(), expected.distance) << family.name;
+    EXPECT_EQ(r.lines[0]["lower"].get<double>(), expected.lower) << family.name;
+    EXPECT_EQ(r.lines[0]["upper"].get<double>(), expected.upper) << family.name;
+    EXPECT_EQ(r.lines[0]["status"], name(expected.status)) << family.name;
+    const Vec3 on_b = transform(c.pose_a, expected.point_on_b);
+    EXPECT_EQ(r.lines[0]["witness_b"][2].get<double>(), on_b.z()) << family.name;
+  }
+}
+
+TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {
+  Random random(5);
+  const hard::HardMotion m = hard::motion_families()[0].make(random, 30);
+  const std::string line = hard::json_line("motion", "flyby", m) + "\n";
+  const Outcome tracked = run("--cases - --out -", line);
+  const Outcome cold = run("--cases - --out - --cold", line);
+  ASSERT_EQ(tracked.lines.size(), 1u);
+  for (const char* key :
+       {"distance", "lower", "upper", "witness_a", "witness_b", "status", "iterations"}) {
+    EXPECT_EQ(tracked.lines[0][key].size(), 30u) << key;
+  }
+  DistanceJudge judge(m.a, m.b);
+  TrackingState state;
+  int tracked_iterations = 0, cold_iterations = 0;
+  for (std::size_t k = 0; k < m.poses.size(); ++k) {
+    const DistanceResult expected = judge.ask(m.poses[k].first, m.poses[k].second, state);
+    EXPECT_EQ(tracked.lines[0]["distance"][k].get<double>(), expected.distance);
+    EXPECT_LE(tracked.lines[0]["lower"][k], cold.lines[0]["upper"][k]);
+    EXPECT_LE(cold.lines[0]["lower"][k], tracked.lines[0]["upper"][k]);
+    tracked_iterations += tracked.lines[0]["iterations"][k].get<int>();
+    cold_iterations += cold.lines[0]["iterations"][k].get<int>();
+  }
+  EXPECT_LT(tracked_iterations, cold_iterations);
+}
+
+TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
+  const std::string bad[] = {
+      "{\"id\": 3",
+      R"([1, 2])",
+      R"({"id":"x","b":{},"pose_a":[],"pose_b":[]})",
+      R"({"id":"x","a":{"halfspaces":[[1,0,0]]},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"halfspaces":[[1,0,0,1],[-1,0,0,-2]]},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":-1},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,0,0,0,0]})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"poses":[[[0,0,0,1,0,0,0]]]})",
+      R"({"id":"x","a":{"vertices":[[0,0,1e999]]},"b":{"vertices":[[0,0,0]]}})",
+  };
+  const char* expected[] = {"not JSON",
+                            "not a JSON object",
+                            "has no \"a\"",
+                            "a.halfspaces[0]: expected [nx, ny, nz, d], found [1,0,0]",
+                            "a: the half-spaces",
+                            "a.radius: expected a length",
+                            "pose_b: the quaternion has length zero",
+                            "poses[0]: expected [pose_a, pose_b]",
+                            "not JSON"};
+  std::string in = cubes("good", 2.0);
+  for (const std::string& line : bad) in += line + "\n";
+  in += cubes("also good", 3.0);
+  const Outcome r = run("--cases - --out -", in);
+  EXPECT_EQ(r.status, 1);
+  ASSERT_EQ(r.lines.size(), std::size(bad) + 2);
+  EXPECT_EQ(r.lines.front()["id"], "good");
+  EXPECT_EQ(r.lines.back()["id"], "also good");
+  for (std::size_t k = 0; k < std::size(bad); ++k) {
+    EXPECT_EQ(r.lines[k + 1]["line"], k + 2);
+    const std::string error = r.lines[k + 1]["error"];
+    EXPECT_NE(error.find(expected[k]), std::string::npos) << error;
+  }
+}
+
+TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
+  std::ofstream(path("cases.jsonl")) << cubes("one", 1.5);
+  const Outcome r =
+      run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl") + " --repeat 50");
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_EQ(r.out, "");
+  EXPECT_EQ(Json::parse(read("results.jsonl"))["id"], "one");
+  EXPECT_NE(r.err.find("50 queries"), std::string::npos) << r.err;
+}
+
+TEST_F(DistanceTool, SaysWhatIsWrongWithItsArguments) {
+  EXPECT_EQ(run("").status, 2);
+  EXPECT_EQ(run("--cases -").status, 2);
+  EXPECT_EQ(run("--cases - --out - --repeat 0").status, 2);
+  const Outcome missing = run("--cases " + path("nowhere.jsonl") + " --out -");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("cannot read"), std::string::npos) << missing.err;
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("Example"), std::string::npos) << help.out;
+}
+
+// The example of --help is run as it stands.
+TEST_F(DistanceTool, HelpShowsAnExampleThatWorks) {
+  const std::string help = run("--help").out;
+  const std::size_t start = help.find("  echo '");
+  ASSERT_NE(start, std::string::npos);
+  std::ofstream(path("example.sh")) << "PATH=" << CLEARANCE_BIN << ":$PATH\n" << help.substr(start);
+  const std::string command = "sh " + path("example.sh") + " > " + path("out") + " 2> /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_NEAR(Json::parse(read("out"))["distance"].get<double>(), 0.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace clearance
