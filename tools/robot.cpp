@@ -171,10 +171,6 @@ class Robot {
 // Sends on absolute deadlines until told to stop; returns how late it woke.
 Histogram send_all(Robot& robot, const Arguments& arguments, const std::atomic<bool>& stop) {
   name_thread("send");
-  if (arguments.priority > 0) {
-    if (const Refusal refusal = use_fifo_scheduling(arguments.priority))
-      spdlog::warn("{}", *refusal);
-  }
   SystemClock clock;
   Histogram lateness;
   const std::int64_t period_ns = std::llround(1e9 / arguments.rate_hz);
@@ -194,6 +190,12 @@ Histogram send_all(Robot& robot, const Arguments& arguments, const std::atomic<b
 int run_robot(const Scene& scene, const Arguments& arguments) {
   StopSignal signal;
   use_precise_timers();
+  // Inherited by every thread made from here on, Cyclone's as well.
+  if (arguments.priority > 0) {
+    if (const Refusal refusal = use_fifo_scheduling(arguments.priority)) {
+      spdlog::warn("{}", *refusal);
+    }
+  }
   route_dds_log();
   Participant participant(arguments.dds.resolve(scene.domain, scene.partition));
   Robot robot(scene, participant, arguments.source);

@@ -212,6 +212,21 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   EXPECT_TRUE(interface.wrote("domain")) << interface.output();
 }
 
+TEST(Daemon, RecordsWhatAnOfflineReplayGivesAgain) {
+  const test::CellFile cell(test::small_cell("small"));
+  const std::string file = cell.path() + ".mcap";
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "300"}, dds));
+  ChildProcess daemon(test::kDaemon,
+                      test::with({cell.path(), "--record", file, "--ticks", "150"}, dds));
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  EXPECT_TRUE(daemon.wrote("recorded ")) << daemon.output();
+  ChildProcess replay(test::kReplay, {"--offline", file, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  EXPECT_TRUE(replay.wrote("150 reports compared")) << replay.output();
+  std::remove(file.c_str());
+}
+
 TEST(DaemonCommand, NeverOverwritesARecording) {
   const test::CellFile cell(test::small_cell("small"));
   ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path()},
