@@ -81,12 +81,13 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add("          ")
       .add(fmt::format("in [{:.6f}, {:.6f}] m  ", pair.lower, pair.upper))
       .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
-           report.minimum_proved ? Style::kGood : Style::kWarning)
-      .add(fmt::format("  closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
-                       contact_time(pair.time_to_contact)));
-  lines.emplace_back(width).add(fmt::format("          from {} to {}  normal {}",
-                                            point(pair.witness_a), point(pair.witness_b),
-                                            point(pair.normal)));
+           report.minimum_proved ? Style::kGood : Style::kWarning);
+  lines.emplace_back(width).add(
+      fmt::format("          closing {:+.3f} m/s  contact in {} s  normal ({:.2f} {:.2f} {:.2f})",
+                  pair.closing_speed, contact_time(pair.time_to_contact), pair.normal.x,
+                  pair.normal.y, pair.normal.z));
+  lines.emplace_back(width).add(
+      fmt::format("          from {} to {}", point(pair.witness_a), point(pair.witness_b)));
 }
 
 void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
@@ -120,7 +121,7 @@ void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& c
   if (health == nullptr) return;
   lines.emplace_back(width)
       .add("tick      ", Style::kDim)
-      .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us  (last second {:.1f} us)",
+      .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us  (1 s: {:.1f} us)",
                        health->tick_p50_us, health->tick_p999_us, health->tick_max_us,
                        health->tick_second_max_us));
   const bool trouble = health->overruns + health->skipped_cycles + health->dropped_reports > 0;
@@ -128,9 +129,11 @@ void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& c
       .add("          ")
       .add(fmt::format("{} overruns  {} skipped cycles  {} reports dropped", health->overruns,
                        health->skipped_cycles, health->dropped_reports),
-           trouble ? Style::kWarning : Style::kPlain)
-      .add(fmt::format("  wake-up p99.9 {:.1f} us  max {:.1f} us", health->wakeup_p999_us,
-                       health->wakeup_max_us));
+           trouble ? Style::kWarning : Style::kPlain);
+  lines.emplace_back(width)
+      .add("wake-up   ", Style::kDim)
+      .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us", health->wakeup_p50_us,
+                       health->wakeup_p999_us, health->wakeup_max_us));
   lines.emplace_back(width)
       .add("reports   ", Style::kDim)
       .add(fmt::format("{:.0f} a second  {} missed here", context.reports_a_second, feed.missed()));
