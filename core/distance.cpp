@@ -6,6 +6,7 @@
 #include "core/active_side.hpp"
 #include "core/certificate.hpp"
 #include "core/dqp3.hpp"
+#include "core/feature_walk.hpp"
 #include "core/overlap.hpp"
 #include "core/precision.hpp"
 #include "core/robust.hpp"
@@ -131,6 +132,26 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   return result;
 }
 
+// From the last features to their neighbours, where that settles it.
+bool by_walking(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const RelativePose& a_from_b,
+                TrackingState& state, DistanceResult& r) noexcept {
+  ClosestFeatures closest;
+  if (!walk_features(a, b, a_from_b, state, closest)) return false;
+  const Precision p = precision(a, b, a_from_b, closest.apart);
+  if (!(closest.proved > p.slack) || closest.apart - closest.proved > p.tight) return false;
+  r.distance = closest.apart;
+  r.lower = closest.proved - p.slack;
+  r.upper = closest.apart + p.slack;
+  r.normal = closest.normal;
+  r.point_on_a = closest.point_a;
+  r.point_on_b = closest.point_b;
+  r.status = DistanceStatus::kConverged;
+  r.iterations = static_cast<std::uint16_t>(closest.steps);
+  state.a.point = closest.point_a;
+  state.b.point = closest.own_b;
+  return true;
+}
+
 // The spheres around the frames' origins already say that they are far apart.
 bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                     const RelativePose& a_from_b, double far_away, DistanceResult& r) noexcept {
@@ -172,11 +193,13 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const DistanceOptions& options) noexcept {
   DistanceResult result;
   if (far_by_spheres(a, b, a_from_b, options.far_away, result)) return result;
-  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-  place(side_a, state.a, side_b);
-  place(side_b, state.b, side_a);
-  result = core_distance(side_a, side_b, a_from_b);
-  state = {side_a.tracked(), side_b.tracked()};
+  if (!by_walking(a, b, a_from_b, state, result)) {
+    ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+    place(side_a, state.a, side_b);
+    place(side_b, state.b, side_a);
+    result = core_distance(side_a, side_b, a_from_b);
+    state = {side_a.tracked(), side_b.tracked()};
+  }
   add_radii(result, a, b);
   return result;
 }
