@@ -44,7 +44,8 @@ double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
 void add_radii(DistanceResult& r, const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
   const double sum = radii(a, b);
   if (sum == 0.0) return;
-  const double rounding = 0x1p-52 * (sum + std::abs(r.upper));
+  const double rounding =
+      0x1.1p-53 * (sum + std::abs(r.upper - sum));  // of the sum, and of what is left
   r.distance -= sum;
   r.lower -= sum + rounding;
   r.upper -= sum - rounding;

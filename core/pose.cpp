@@ -60,6 +60,8 @@ bool equal_up_to_sign(const Quat& a, const Quat& b) noexcept {
 // One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes.
 // Products of two of them, and their matrices, come out exact in doubles.
 bool permutes_axes(const Quat& q) noexcept {
+  const double w = std::abs(q.w());
+  if (w != 0.0 && w != 0.5 && w != 1.0) return false;
   int halves = 0, ones = 0, zeros = 0;
   for (int i = 0; i < 4; ++i) {
     const double c = std::abs(q.coeffs()[i]);
@@ -108,6 +110,7 @@ RelativePose relative_pose(const Pose& world_from_a, const Pose& world_from_b) n
   result.translation = turn_back(a, between);
   result.translation_error = (kTurnError + kUlp) * between.norm();
   if (may_be_exact(q)) settle_exactness(a, b, result);
+  if (permutes_axes(a)) result.translation_error = 4 * kUlp * between.norm();
   return result;
 }
 
