@@ -1,5 +1,7 @@
 #include "monitor/record/offline_replay.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <utility>
@@ -14,6 +16,11 @@ namespace {
 
 std::string counted(std::uint64_t count, const std::string& what) {
   return std::to_string(count) + " " + what;
+}
+
+std::int64_t whole_ns(double seconds) {
+  constexpr double kCentury = 3.2e9;  // s: fits
+  return std::llround(std::min(seconds, kCentury) * 1e9);
 }
 
 class Replay {
@@ -125,8 +132,9 @@ void Replay::begin_tick(const TickInput& input) {
 
 void Replay::end_tick(const TickInput& input, const Report& report,
                       const std::function<void(const ReplayedTick&)>& on_tick) {
-  const double time_s = seconds(input.now_ns);
-  const bool in_window = time_s >= options_.start_s && time_s <= options_.end_s;
+  const std::int64_t after_ns = input.now_ns - result_.first_ns;
+  const bool in_window =
+      after_ns >= whole_ns(options_.start_s) && after_ns <= whole_ns(options_.end_s);
   for (const std::string& what : expectations_.check(report, *monitor_, in_window)) {
     fail(report.cycle, report.now_ns, what);
   }

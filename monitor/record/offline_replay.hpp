@@ -31,14 +31,14 @@ struct OfflineReplayOptions {
   double start_s = 0.0;
   double end_s = std::numeric_limits<double>::infinity();
 
-  std::optional<Comparison> compare;  // with the recorded reports and zones
+  std::optional<Comparison> compare = {};  // with the recorded reports and zones
 
   // Expectations begin when every moving object of the cell has been seen once.
   std::optional<double>
-      expect_min_distance;                  // m: every pair is proved to be at least that far apart
-  std::vector<std::string> expect_no_zone;  // names of zones that are never active
+      expect_min_distance;  // m: every pair is proved to be at least that far apart
+  std::vector<std::string> expect_no_zone = {};  // names of zones that are never active
 
-  std::function<void(double share)> progress;  // 0 to 1, about a hundred times
+  std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
 };
 
 // The tick that was just run.

@@ -1,0 +1,327 @@
+#include "monitor/record/offline_replay.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "monitor/record/csv_poses.hpp"
+#include "monitor/record/report_csv.hpp"
+#include "monitor/record/report_recorder.hpp"
+#include "tests/monitor/recorded_runs.hpp"
+#include "tests/monitor/scratch_folder.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class OfflineReplayTest : public testing::Test {
+ protected:
+  ScratchFolder folder;
+  Scene scene = bench_cell();
+  std::filesystem::path run = folder / "run.mcap";
+
+  OfflineReplay replay(const OfflineReplayOptions& options = {}) {
+    return replay_offline(scene, run, options);
+  }
+  // Writes the run again with its messages changed as a whole.
+  void rewrite(const std::function<void(std::vector<Kept>&)>& change) {
+    std::vector<Kept> messages = messages_of(run);
+    change(messages);
+    write_messages(run, messages);
+  }
+  // The place of the report of a tick, from 1.
+  static std::size_t report_of(const std::vector<Kept>& messages, int tick) {
+    std::size_t place = 0;
+    for (; place < messages.size(); ++place) {
+      if (messages[place].kind == TopicKind::kDistances && --tick == 0) break;
+    }
+    return place;
+  }
+};
+
+TEST_F(OfflineReplayTest, GivesTheRecordedReportsBitForBit) {
+  record_run(scene, run);
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_EQ("", result.text());
+  EXPECT_EQ(200u, result.ticks);
+  EXPECT_EQ(200u, result.compared);
+  EXPECT_GT(result.batches, 200u);
+}
+
+TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
+  record_run(scene, run);
+  for (const char* name : {"a.mcap", "b.mcap"}) {
+    ReportRecorder out(folder / name, scene);
+    ASSERT_TRUE(
+        replay_offline(scene, run, {}, [&out](const ReplayedTick& tick) { out.add(tick); }).ok());
+    ASSERT_TRUE(out.close());
+  }
+  EXPECT_EQ(read_text(folder / "a.mcap"), read_text(folder / "b.mcap"));
+  EXPECT_EQ(200,
+            std::ranges::count(messages_of(folder / "a.mcap"), TopicKind::kDistances, &Kept::kind));
+}
+
+TEST_F(OfflineReplayTest, NamesTheFirstTickAndFieldThatDiffers) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    for (const int tick : {58, 60}) {
+      Kept& message = messages[report_of(messages, tick)];
+      message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& report) {
+        report.pairs._buffer[1].witness_a.y =
+            std::nextafter(report.pairs._buffer[1].witness_a.y, 9.0);
+      });
+    }
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_EQ(58u, result.failures[0].cycle);
+  EXPECT_EQ(kStart + 57 * kTick, result.failures[0].now_ns);
+  EXPECT_THAT(result.failures[0].what, HasSubstr("pairs[1] (hand - box).witness_a.y: recorded "));
+}
+
+TEST_F(OfflineReplayTest, BoundsThatOverlapAreTheSameWhereOnlyTheCertainIsCompared) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    Kept& message = messages[report_of(messages, 58)];
+    message = altered<clearance_msg_Distances>(
+        message, [](clearance_msg_Distances& report) { report.minimum.lower -= 1e-9; });
+  });
+  EXPECT_FALSE(replay({.compare = Comparison::kBits}).ok());
+  EXPECT_TRUE(replay({.compare = Comparison::kBounds}).ok());
+  rewrite([](std::vector<Kept>& messages) {
+    Kept& message = messages[report_of(messages, 58)];
+    message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& report) {
+      report.minimum.lower += 1e-3;
+      report.minimum.upper += 1e-3;
+    });
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBounds});
+  ASSERT_EQ(1u, result.failures.size());
+  EXPECT_THAT(result.failures[0].what, HasSubstr("minimum"));
+}
+
+TEST_F(OfflineReplayTest, FindsTheBatchesThatStandFarBehindTheirReport) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    for (Kept& message : messages) {
+      if (message.kind == TopicKind::kPoses) message.log_ns += 100 * kTick;
+    }
+    std::ranges::stable_sort(messages, {}, &Kept::log_ns);
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(result.ok()) << result.text();
+}
+
+TEST_F(OfflineReplayTest, UsesNoBatchThatNoReportNames) {
+  record_run(scene, run);
+  rewrite([this](std::vector<Kept>& messages) {
+    const auto first = std::ranges::find(messages, TopicKind::kPoses, &Kept::kind);
+    messages.insert(first + 1,
+                    altered<clearance_msg_PoseBatch>(*first, [](clearance_msg_PoseBatch& batch) {
+                      std::strcpy(batch.source, "ghost");
+                      batch.poses._buffer[0].position = {0.0, 0.0, 0.0};
+                      ++batch.poses._buffer[0].stamp_ns;
+                    }));
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(result.ok()) << result.text();
+}
+
+TEST_F(OfflineReplayTest, BatchThatWasLostIsToldAndChangesTheReplay) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    std::size_t at = report_of(messages, 40);
+    while (messages[at].kind != TopicKind::kPoses ||
+           std::string_view(decoded<clearance_msg_PoseBatch>(messages[at])->source) != "arm") {
+      ++at;
+    }
+    messages.erase(messages.begin() + static_cast<std::ptrdiff_t>(at));
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_FALSE(result.ok());
+  EXPECT_THAT(result.text(), HasSubstr("the replay differs in"));
+}
+
+TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
+  record_run(scene, run, {.nearest = 0.05});
+  std::uint64_t cycle = 0;
+  rewrite([&cycle](std::vector<Kept>& messages) {
+    auto zone = std::ranges::find_if(messages, [](const Kept& message) {
+      return message.kind == TopicKind::kZones && decoded<clearance_msg_ZoneState>(message)->active;
+    });
+    ASSERT_NE(messages.end(), zone);
+    cycle = decoded<clearance_msg_ZoneState>(*zone)->cycle;
+    messages.erase(zone);
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_EQ(cycle, result.failures[0].cycle);
+  EXPECT_THAT(result.failures[0].what,
+              HasSubstr("zone 'stop': recorded no change, replayed active"));
+}
+
+TEST_F(OfflineReplayTest, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBroken) {
+  record_run(scene, run, {.nearest = 0.08});
+  EXPECT_TRUE(replay({.expect_min_distance = 0.0799}).ok());
+  const OfflineReplay result = replay({.expect_min_distance = 0.09});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_THAT(result.text(), HasSubstr("hand - box is 0.08"));
+  EXPECT_THAT(result.text(), HasSubstr("at least 0.09 m expected"));
+  EXPECT_GT(result.failures[0].cycle, 90u);
+  EXPECT_LT(result.failures[0].cycle, 101u);
+  EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
+}
+
+TEST_F(OfflineReplayTest, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
+  record_run(scene, run, {.nearest = 0.11});
+  EXPECT_TRUE(replay({.expect_no_zone = {"stop"}}).ok());
+  record_run(scene, folder / "near.mcap", {.nearest = 0.05});
+  run = folder / "near.mcap";
+  const OfflineReplay result = replay({.expect_no_zone = {"stop"}});
+  ASSERT_EQ(1u, result.failures.size());
+  EXPECT_THAT(result.failures[0].what,
+              HasSubstr("zone 'stop' is active: hand - box has a clearance of 0.09"));
+}
+
+TEST_F(OfflineReplayTest, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
+  record_run(scene, run);
+  EXPECT_THAT(replay({.expect_no_zone = {"halt"}}).error,
+              HasSubstr("the cell has no zone 'halt'; its zones are 'stop'"));
+}
+
+TEST_F(OfflineReplayTest, ExpectationsFailWhenAnObjectIsNeverSeen) {
+  scene.objects.push_back(moving("ghost", {ball(0.1)}));
+  scene.pairs.push_back({0, 3, false});
+  record_run(scene, run);
+  const OfflineReplay result = replay({.expect_min_distance = 0.01});
+  ASSERT_EQ(1u, result.failures.size());
+  EXPECT_THAT(result.failures[0].what, HasSubstr("never gives a usable pose of 'ghost'"));
+}
+
+TEST_F(OfflineReplayTest, WindowIsWhatIsHandedOutButAllIsRun) {
+  record_run(scene, run);
+  std::vector<std::uint64_t> cycles;
+  const OfflineReplay result =
+      replay_offline(scene, run, {.start_s = 0.05, .end_s = 0.06, .compare = Comparison::kBits},
+                     [&cycles](const ReplayedTick& tick) { cycles.push_back(tick.report.cycle); });
+  EXPECT_TRUE(result.ok()) << result.text();
+  ASSERT_EQ(11u, cycles.size());
+  EXPECT_EQ(51u, cycles.front());
+  EXPECT_EQ(200u, result.ticks);
+  EXPECT_EQ(11u, result.compared);
+}
+
+TEST_F(OfflineReplayTest, RecordingCutOffIsReplayedUpToThere) {
+  record_run(scene, run, {.ticks = 1000});
+  const std::string whole = read_text(run);
+  write_text(run, whole.substr(0, whole.size() / 2));
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_THAT(result.damage, HasSubstr("cut off"));
+  EXPECT_GT(result.compared, 400u);
+  EXPECT_LT(result.compared, 600u);
+}
+
+TEST_F(OfflineReplayTest, AnotherCellIsServedByName) {
+  record_run(scene, run);
+  Scene other = cell_of({fixed("table", {floor()}, at(0, 0, -1)),
+                         moving("Tool", {capsule(0.2, 0.02)}), moving("hand", {ball(0.05)})});
+  other.revision = 99;
+  for (Object& object : other.objects) object.max_speed = 2.0;
+  std::vector<double> seen;
+  const OfflineReplay result = replay_offline(other, run, {}, [&seen](const ReplayedTick& tick) {
+    seen.push_back(tick.monitor.pair(1).distance);  // table - hand
+  });
+  EXPECT_TRUE(result.ok());
+  EXPECT_THAT(result.notes,
+              Contains(HasSubstr("object 'tool' of the recording is not in the cell")));
+  EXPECT_THAT(result.notes, Contains(HasSubstr("did you mean 'Tool'")));
+  EXPECT_THAT(result.notes,
+              Contains(HasSubstr("object 'Tool' of the cell is not in the recording")));
+  EXPECT_NEAR(1.0 + 0.1 + 0.08, *std::ranges::min_element(seen), 1e-9);
+  EXPECT_THAT(replay_offline(other, run, {.compare = Comparison::kBits}).error,
+              HasSubstr("another cell"));
+}
+
+TEST_F(OfflineReplayTest, DaemonThatWasStartedAnewBeginsWithAMonitorThatKnowsNothing) {
+  record_run(scene, run, {.ticks = 60});
+  rewrite([](std::vector<Kept>& messages) {
+    std::vector<Kept> again = messages;
+    for (Kept& message : again) message.log_ns += 1000 * kTick;
+    messages.insert(messages.end(), again.begin(), again.end());
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_EQ(120u, result.compared);
+  EXPECT_THAT(result.notes, Contains(HasSubstr("started anew")));
+}
+
+TEST_F(OfflineReplayTest, RecordingThatBeginsLateIsComparedInWhatIsCertain) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    messages.erase(messages.begin() + 1,
+                   messages.begin() + static_cast<std::ptrdiff_t>(report_of(messages, 50)) + 1);
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBounds});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_EQ(150u, result.compared);
+  EXPECT_THAT(result.notes, Contains(HasSubstr("begins at tick 51 of the daemon")));
+}
+
+TEST_F(OfflineReplayTest, PoseLogWithoutReportsTicksOnceADistinctTime) {
+  write_text(folder / "log.csv",
+             "t_ns,object,px,py,pz,qw,qx,qy,qz\n"
+             "1000000,hand,0,0,0.5,1,0,0,0\n1000000,tool,1,1,1,1,0,0,0\n"
+             "2000000,hand,0,0,0.4,1,0,0,0\n"
+             "5000000,hand,0,0,0.3,1,0,0,0\n5000000,tool,1,1,1,1,0,0,0\n");
+  ASSERT_EQ("", record_csv(folder / "log.csv", run, nullptr).error);
+  std::vector<std::int64_t> times;
+  std::vector<double> distances;
+  const OfflineReplay result = replay_offline(scene, run, {}, [&](const ReplayedTick& tick) {
+    times.push_back(tick.report.now_ns);
+    distances.push_back(tick.report.minimum.distance);
+  });
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_THAT(times, testing::ElementsAre(1'000'000, 2'000'000, 5'000'000));
+  ASSERT_EQ(3u, distances.size());
+  EXPECT_NEAR(0.35, distances[0], 1e-12);
+  EXPECT_NEAR(0.25, distances[1], 1e-12);
+  EXPECT_NEAR(0.15, distances[2], 1e-12);
+  EXPECT_THAT(replay({.compare = Comparison::kBits}).error, HasSubstr("holds no reports"));
+}
+
+TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
+  record_run(scene, run, {.ticks = 5});
+  for (const bool all : {false, true}) {
+    ReportCsv csv(folder / "t.csv", scene, all);
+    replay_offline(scene, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); });
+    ASSERT_TRUE(csv.close());
+    const std::string text = read_text(folder / "t.csv");
+    EXPECT_EQ(1 + 5 * (all ? 3 : 2), std::ranges::count(text, '\n'));
+    EXPECT_THAT(text, HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,ax"));
+    EXPECT_THAT(text, HasSubstr("\n1,1700000000000000000,hand,tool,converged,"));
+  }
+}
+
+TEST_F(OfflineReplayTest, UnreadableRecordingIsAnError) {
+  write_text(run, "not a recording");
+  EXPECT_THAT(replay().error, HasSubstr("is not an MCAP file"));
+  EXPECT_FALSE(replay().ok());
+}
+
+TEST_F(OfflineReplayTest, ProgressRunsFromNothingToAll) {
+  record_run(scene, run, {.ticks = 1000});
+  std::vector<double> shares;
+  replay({.progress = [&shares](double share) { shares.push_back(share); }});
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GT(shares.size(), 3u);
+  EXPECT_LE(shares.size(), 103u);
+  EXPECT_EQ(1.0, shares.back());
+}
+
+}  // namespace
+}  // namespace clearance::test
