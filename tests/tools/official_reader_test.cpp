@@ -1,4 +1,5 @@
-// The official JavaScript reader reads our recordings. CTest installs its packages first (tests/CMakeLists.txt).
+// The official JavaScript reader reads our recordings. CTest installs its packages first
+// (tests/CMakeLists.txt).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +16,7 @@ namespace {
 using nlohmann::json;
 
 json read_officially(const std::filesystem::path& file) {
-  const std::string command =
-      "node " CLEARANCE_MCAP_JS "/read.mjs '" + file.string() + "' 2>&1";
+  const std::string command = "node " CLEARANCE_MCAP_JS "/read.mjs '" + file.string() + "' 2>&1";
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string output;
   std::array<char, 65536> piece;
@@ -68,7 +68,8 @@ TEST_F(OfficialReader, SeeksThroughTheIndex) {
 }
 
 TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
-  const Kept& last = *std::ranges::find(messages.rbegin(), messages.rend(), TopicKind::kDistances, &Kept::kind);
+  const Kept& last =
+      *std::ranges::find(messages.rbegin(), messages.rend(), TopicKind::kDistances, &Kept::kind);
   const auto report = decoded<clearance_msg_Distances>(last);
   const json& theirs = read["indexed"]["topics"]["clearance/distances"]["last"];
   EXPECT_EQ(500, theirs["cycle"]);

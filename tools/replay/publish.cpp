@@ -41,13 +41,15 @@ class Writers {
     }
     return writer->second;
   }
-  [[nodiscard]] bool anyone_listens() const {
-    return std::ranges::any_of(writers_, [](const auto& writer) {
+  // How many of the writers have a reader.
+  [[nodiscard]] std::size_t heard() const {
+    return static_cast<std::size_t>(std::ranges::count_if(writers_, [](const auto& writer) {
       dds_publication_matched_status_t status{};
       return dds_get_publication_matched_status(writer.second, &status) == DDS_RETCODE_OK &&
              status.current_count > 0;
-    });
+    }));
   }
+  [[nodiscard]] std::size_t count() const { return writers_.size(); }
   void wait_until_delivered() const {
     for (const auto& [topic, writer] : writers_) dds_wait_for_acks(writer, DDS_SECS(1));
   }
@@ -177,17 +179,23 @@ bool Publishing::prepare() {
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
   }
-  const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(arguments_.wait_s * 1e9);
-  while (!writers_.anyone_listens() && monotonic_ns() < until) {
+  // Once one topic is heard, the others get a moment more: discovery of all takes 2 to 12 ms, or
+  // longer on a busy machine.
+  constexpr std::int64_t kSettleNs = 300 * kMillisecond;
+  std::int64_t until = monotonic_ns() + std::llround(arguments_.wait_s * 1e9);
+  bool heard = false;
+  while (writers_.heard() < writers_.count() && monotonic_ns() < until) {
+    if (!heard && writers_.heard() > 0) {
+      heard = true;
+      until = monotonic_ns() + kSettleNs;
+    }
     if (stop_.wait(5)) return false;
   }
-  if (!writers_.anyone_listens()) {
+  if (writers_.heard() == 0) {
     std::fprintf(stderr, "clearance-replay: nobody listens on %s; publishing all the same\n",
                  participant_.where().c_str());
-    return true;
   }
-  constexpr std::int64_t kSettleMs = 50;  // the other topics' readers: discovery takes 2 to 12 ms
-  return !stop_.wait(kSettleMs);
+  return true;
 }
 
 bool Publishing::publish(const RecordedMessage& message) {

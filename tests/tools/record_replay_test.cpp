@@ -1,0 +1,165 @@
+// clearance-record and clearance-replay as a person runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "monitor/record/csv_poses.hpp"
+#include "tests/monitor/recorded_runs.hpp"
+#include "tests/monitor/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kRecord = std::string(CLEARANCE_BIN) + "/clearance-record";
+const std::string kReplay = std::string(CLEARANCE_BIN) + "/clearance-replay";
+
+constexpr const char* kCell = R"(name: bench
+units: {length: m, angle: deg}
+defaults: {age_limit_ms: 50, max_speed: 2}
+objects:
+  - {name: hand, groups: [robot], sphere: {radius: 0.05}}
+  - {name: tool, groups: [robot], box: {size: [0.1, 0.1, 0.1]}}
+  - {name: box, groups: [still], fixed: true, box: {size: [0.2, 0.2, 0.2]}}
+pairs:
+  - {between: [robot, still], publish: true}
+zones:
+  - {name: stop, between: [robot, still], enter_below: 0.1, leave_above: 0.15}
+)";
+
+// The hand comes down to 80 mm above the box.
+std::string pose_log() {
+  std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
+  for (int tick = 0; tick < 200; ++tick) {
+    const std::string time = std::to_string(tick * kTick);
+    const double z = hand_at(tick, 200, 0.08).position.z();
+    log += time + ",hand,0,0," + std::to_string(z) + ",1,0,0,0\n";
+    log += time + ",tool,0,2,0,1,0,0,0\n";
+  }
+  return log;
+}
+
+class RecordReplay : public testing::Test {
+ protected:
+  RecordReplay() {
+    write_text(folder / "cell.yaml", kCell);
+    write_text(folder / "log.csv", pose_log());
+  }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  // Exit code; what it wrote goes to `output`.
+  int run(const std::string& program, const std::vector<std::string>& arguments) {
+    ChildProcess child(program, arguments);
+    const int status = child.wait();
+    output = child.output();
+    return status;
+  }
+  int record_log() {
+    return run(kRecord, {"--from-csv", path("log.csv"), "-o", path("run.mcap"), "--cell",
+                         path("cell.yaml")});
+  }
+  int replay(const std::vector<std::string>& more) {
+    return run(kReplay, with({"--offline", "--cell", path("cell.yaml"), path("run.mcap")}, more));
+  }
+
+  ScratchFolder folder;
+  std::string output;
+};
+
+TEST_F(RecordReplay, PoseLogBecomesARecordingThatReplaysIntoATable) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_THAT(output, HasSubstr("400 rows, 2 objects, 200 samples"));
+  ASSERT_EQ(0, replay({"--csv", path("t.csv")})) << output;
+  EXPECT_THAT(output, HasSubstr("200 ticks"));
+  EXPECT_THAT(output, HasSubstr("closest: hand - box, 0.08 m"));
+  EXPECT_EQ(1 + 2 * 200, std::ranges::count(read_text(folder / "t.csv"), '\n'));
+}
+
+TEST_F(RecordReplay, BrokenExpectationGivesStatusOneAndNamesTickPairAndFigure) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_EQ(0, replay({"--expect-min-distance", "0.0799"})) << output;
+  EXPECT_EQ(1, replay({"--expect-min-distance", "0.09"}));
+  EXPECT_THAT(output, testing::ContainsRegex("tick 9[0-9] .*: hand - box is 0\\.08[0-9]* m apart"));
+  EXPECT_EQ(1, replay({"--expect-no-zone", "stop"}));
+  EXPECT_THAT(output,
+              testing::ContainsRegex("tick [0-9]+ .*: zone 'stop' is active: hand - box has"));
+  EXPECT_EQ(1, replay({"--expect-no-zone", "halt"}));
+  EXPECT_THAT(output, HasSubstr("the cell has no zone 'halt'"));
+}
+
+TEST_F(RecordReplay, ReplayOfAReplayIsTheSameToTheByteAndComparesAsSuch) {
+  ASSERT_EQ(0, record_log()) << output;
+  ASSERT_EQ(0, replay({"-o", path("a.mcap")})) << output;
+  ASSERT_EQ(0, replay({"-o", path("b.mcap")})) << output;
+  EXPECT_EQ(read_text(folder / "a.mcap"), read_text(folder / "b.mcap"));
+}
+
+TEST_F(RecordReplay, RecordingOfAMonitorComparesEqualAndAnAlteredOneNamesTheField) {
+  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
+  record_run(scene, folder / "run.mcap", {.ticks = 100});
+  EXPECT_EQ(0, replay({"--compare"})) << output;
+  EXPECT_THAT(output, HasSubstr("100 reports compared"));
+  // The cell is in the recording, too.
+  EXPECT_EQ(0, run(kReplay, {"--offline", path("run.mcap"), "--compare"})) << output;
+  std::vector<Kept> messages = messages_of(folder / "run.mcap");
+  Kept& last =
+      *std::ranges::find(messages.rbegin(), messages.rend(), TopicKind::kDistances, &Kept::kind);
+  last = altered<clearance_msg_Distances>(
+      last, [](clearance_msg_Distances& report) { ++report.queries; });
+  write_messages(folder / "run.mcap", messages);
+  EXPECT_EQ(1, replay({"--compare"}));
+  EXPECT_THAT(
+      output,
+      HasSubstr("tick 100 (0.099000 s): the replay differs in queries: recorded 3, replayed 2"));
+}
+
+TEST_F(RecordReplay, DamagedRecordingGivesStatusFiveAndSaysHowMuchWasRead) {
+  ASSERT_EQ(0, record_log()) << output;
+  const std::string whole = read_text(folder / "run.mcap");
+  write_text(folder / "run.mcap", whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(5, replay({}));
+  EXPECT_THAT(output, HasSubstr("is damaged at byte"));
+  EXPECT_THAT(output, HasSubstr("messages were read"));
+  EXPECT_EQ(1, replay({"--expect-min-distance", "1"}));
+}
+
+TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
+  EXPECT_EQ(1, run(kReplay, {"--offline", path("none.mcap"), "--cell", path("cell.yaml")}));
+  EXPECT_THAT(output, HasSubstr("none.mcap"));
+  EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
+  ASSERT_EQ(0, record_log());
+  EXPECT_EQ(1, record_log());
+  EXPECT_THAT(output, HasSubstr("exists; --overwrite replaces it"));
+  write_text(folder / "cell.yaml", "nmae: x\n");
+  EXPECT_EQ(3, replay({}));
+  EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));
+}
+
+TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
+  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
+  record_run(scene, folder / "run.mcap", {.ticks = 300, .nearest = 0.05});
+  const auto where = dds_arguments(own_dds());
+  ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
+  ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
+      << output;
+  recorder.signal(SIGINT);
+  ASSERT_EQ(0, recorder.wait()) << recorder.output();
+  const std::vector<Kept> sent = messages_of(folder / "run.mcap");
+  const std::vector<Kept> received = messages_of(folder / "again.mcap");
+  for (const TopicKind kind : {TopicKind::kCatalogue, TopicKind::kPoses, TopicKind::kDistances}) {
+    std::vector<std::vector<std::byte>> a, b;
+    for (const Kept& message : sent) {
+      if (message.kind == kind) a.push_back(message.cdr);
+    }
+    for (const Kept& message : received) {
+      if (message.kind == kind) b.push_back(message.cdr);
+    }
+    EXPECT_EQ(a, b);
+  }
+  // And it still replays to the same reports, although topics overtook each other.
+  EXPECT_EQ(0, run(kReplay, {"--offline", path("again.mcap"), "--compare"})) << output;
+}
+
+}  // namespace
+}  // namespace clearance::test
