@@ -2,9 +2,9 @@
 // fast as they can be computed. For a user's own tests:
 //
 //   const CellResult cell = read_cell("cell.yaml");
-//   const OfflineReplay replay = replay_offline(std::get<Scene>(cell), "run.mcap",
-//                                               {.expect_min_distance = 0.05, .expect_no_zone =
-//                                               {"stop"}});
+//   const OfflineReplay replay =
+//       replay_offline(std::get<Scene>(cell), "run.mcap",
+//                      {.expect_min_distance = 0.05, .expect_no_zone = {"stop"}});
 //   EXPECT_TRUE(replay.ok()) << replay.text();
 #pragma once
 
@@ -34,9 +34,10 @@ struct OfflineReplayOptions {
   std::optional<Comparison> compare = {};  // with the recorded reports and zones
 
   // Expectations begin when every moving object of the cell has been seen once.
-  std::optional<double>
-      expect_min_distance;  // m: every pair is proved to be at least that far apart
-  std::vector<std::string> expect_no_zone = {};  // names of zones that are never active
+  // Every pair is proved to be at least this far apart, m.
+  std::optional<double> expect_min_distance = {};
+  // Names of zones that are never active.
+  std::vector<std::string> expect_no_zone = {};
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
 };

@@ -298,7 +298,8 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
   record_run(scene, run, {.ticks = 5});
   for (const bool all : {false, true}) {
     ReportCsv csv(folder / "t.csv", scene, all);
-    replay_offline(scene, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); });
+    ASSERT_TRUE(
+        replay_offline(scene, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); }).ok());
     ASSERT_TRUE(csv.close());
     const std::string text = read_text(folder / "t.csv");
     EXPECT_EQ(1 + 5 * (all ? 3 : 2), std::ranges::count(text, '\n'));
@@ -316,7 +317,7 @@ TEST_F(OfflineReplayTest, UnreadableRecordingIsAnError) {
 TEST_F(OfflineReplayTest, ProgressRunsFromNothingToAll) {
   record_run(scene, run, {.ticks = 1000});
   std::vector<double> shares;
-  replay({.progress = [&shares](double share) { shares.push_back(share); }});
+  ASSERT_TRUE(replay({.progress = [&shares](double share) { shares.push_back(share); }}).ok());
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_GT(shares.size(), 3u);
   EXPECT_LE(shares.size(), 103u);

@@ -30,7 +30,7 @@ TEST(Recorder, PutsWhatATickUsedInFrontOfItsReportAndNothingElse) {
       EXPECT_THAT(since_report, testing::Contains(std::pair<std::string, std::uint64_t>(
                                     use.source, use.sequence_number)));
     }
-    if (report->sources._length == 0) EXPECT_TRUE(since_report.empty());
+    EXPECT_EQ(report->sources._length == 0, since_report.empty());
     EXPECT_EQ(report->now_ns, message.log_ns);
     since_report.clear();
   }

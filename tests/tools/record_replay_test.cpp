@@ -40,6 +40,10 @@ std::string pose_log() {
   return log;
 }
 
+std::string text_of(const Kept& message) {
+  return {reinterpret_cast<const char*>(message.cdr.data()), message.cdr.size()};
+}
+
 class RecordReplay : public testing::Test {
  protected:
   RecordReplay() {
@@ -148,14 +152,18 @@ TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
   const std::vector<Kept> sent = messages_of(folder / "run.mcap");
   const std::vector<Kept> received = messages_of(folder / "again.mcap");
   for (const TopicKind kind : {TopicKind::kCatalogue, TopicKind::kPoses, TopicKind::kDistances}) {
-    std::vector<std::vector<std::byte>> a, b;
+    std::vector<std::string> a, b;
     for (const Kept& message : sent) {
-      if (message.kind == kind) a.push_back(message.cdr);
+      if (message.kind == kind) a.push_back(text_of(message));
     }
     for (const Kept& message : received) {
-      if (message.kind == kind) b.push_back(message.cdr);
+      if (message.kind == kind) b.push_back(text_of(message));
     }
-    EXPECT_EQ(a, b);
+    // Samples of two sources with the same stamp may change places.
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    EXPECT_EQ(a.size(), b.size());
+    EXPECT_TRUE(a == b);
   }
   // And it still replays to the same reports, although topics overtook each other.
   EXPECT_EQ(0, run(kReplay, {"--offline", path("again.mcap"), "--compare"})) << output;

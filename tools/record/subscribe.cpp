@@ -2,6 +2,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <limits>
@@ -18,7 +19,8 @@ namespace {
 
 // Two seconds at 1 kHz, should the disk stall.
 constexpr std::int32_t kDepth = 2048;
-constexpr std::size_t kTaken = 64;  // samples at once
+constexpr std::size_t kAtOnce = 64;         // samples a call
+constexpr std::size_t kMostWaiting = 8192;  // samples between two looks at the other topics
 
 // Readers of all five topics; what they take goes into the recording byte for byte.
 class Subscription {
@@ -57,40 +59,56 @@ class Subscription {
     for (const TopicKind kind : kTopicKinds) {
       while (take(kind)) {
       }
+      // Cyclone gives what waits source by source, zone by zone: back into the order of sending.
+      std::ranges::stable_sort(taken_, {}, &Taken::source_ns);
+      const std::int64_t now_ns = dds_time();
+      for (const Taken& taken : taken_) {
+        record(kind, now_ns, taken);
+        ddsi_serdata_unref(taken.sample);
+      }
+      taken_.clear();
     }
   }
 
  private:
+  struct Taken {
+    std::int64_t source_ns;
+    ddsi_serdata* sample;
+  };
+
   static std::size_t index(TopicKind kind) { return static_cast<std::size_t>(kind); }
 
   bool take(TopicKind kind) {
-    std::array<ddsi_serdata*, kTaken> samples{};
-    std::array<dds_sample_info_t, kTaken> infos;
+    std::array<ddsi_serdata*, kAtOnce> samples{};
+    std::array<dds_sample_info_t, kAtOnce> infos;
     const dds_return_t count = check_dds(
-        dds_takecdr(readers_[index(kind)], samples.data(), kTaken, infos.data(), DDS_ANY_STATE),
+        dds_takecdr(readers_[index(kind)], samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE),
         "taking samples");
-    const std::int64_t now_ns = dds_time();
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) record(kind, now_ns, infos[i].source_timestamp, samples[i]);
-      ddsi_serdata_unref(samples[i]);
+      if (infos[i].valid_data) {
+        taken_.push_back({infos[i].source_timestamp, samples[i]});
+      } else {
+        ddsi_serdata_unref(samples[i]);
+      }
     }
-    return count > 0;
+    return count > 0 && taken_.size() < kMostWaiting;
   }
 
-  void record(TopicKind kind, std::int64_t now_ns, std::int64_t source_ns, ddsi_serdata* sample) {
-    bytes_.resize(ddsi_serdata_size(sample));
-    ddsi_serdata_to_ser(sample, 0, bytes_.size(), bytes_.data());
+  void record(TopicKind kind, std::int64_t now_ns, const Taken& taken) {
+    bytes_.resize(ddsi_serdata_size(taken.sample));
+    ddsi_serdata_to_ser(taken.sample, 0, bytes_.size(), bytes_.data());
     ++counts_[index(kind)];
     Sample<clearance_msg_Catalogue> catalogue;
     if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue)) {
       writer_.describe(*catalogue);
     }
-    writer_.write(kind, now_ns, source_ns, std::span<const std::byte>(bytes_));
+    writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
   }
 
   RecordingWriter& writer_;
   std::array<dds_entity_t, kTopicKinds.size()> readers_{};
   std::array<std::uint64_t, kTopicKinds.size()> counts_{};
+  std::vector<Taken> taken_;
   std::vector<std::byte> bytes_;
   CdrDecoder decoder_;
 };

@@ -101,7 +101,8 @@ int replay_without_dds(const ReplayArguments& arguments) {
   if (!cell) return kFailed;
   if (const auto* errors = std::get_if<std::vector<CellError>>(&*cell)) {
     for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-    if (arguments.cell.empty()) say("this is the cell kept in the recording; --cell takes the file");
+    if (arguments.cell.empty())
+      say("this is the cell kept in the recording; --cell takes the file");
     return kBadCell;
   }
   return replay_in(std::get<Scene>(*cell), arguments);
