@@ -22,7 +22,7 @@ constexpr double kMatrixError = 20 * kUlp;
 constexpr double kProductError = 10 * kUlp;
 
 // R(q/|q|) of any non-zero q without a square root: N(q) / |q|^2.
-Mat3 rotation_matrix(const Quat& q) noexcept {
+inline Mat3 rotation_matrix(const Quat& q) noexcept {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double s = 2.0 / ((w * w + x * x) + (y * y + z * z));
   Mat3 r;
@@ -59,9 +59,7 @@ bool equal_up_to_sign(const Quat& a, const Quat& b) noexcept {
 
 // One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes.
 // Products of two of them, and their matrices, come out exact in doubles.
-bool permutes_axes(const Quat& q) noexcept {
-  const double w = std::abs(q.w());
-  if (w != 0.0 && w != 0.5 && w != 1.0) return false;
+bool is_axis_permutation(const Quat& q) noexcept {
   int halves = 0, ones = 0, zeros = 0;
   for (int i = 0; i < 4; ++i) {
     const double c = std::abs(q.coeffs()[i]);
@@ -70,6 +68,12 @@ bool permutes_axes(const Quat& q) noexcept {
     zeros += c == 0.0;
   }
   return halves == 4 || (ones == 1 && zeros == 3);
+}
+
+// The same, after a look at one component that nearly always decides.
+inline bool permutes_axes(const Quat& q) noexcept {
+  const double w = std::abs(q.w());
+  return (w == 0.0 || w == 0.5 || w == 1.0) && is_axis_permutation(q);
 }
 
 // A quick look that the orientations of a moving pair do not pass: the exact ones have zeros or
@@ -100,15 +104,12 @@ Pose compose(const Pose& outer, const Pose& inner) noexcept {
 }
 
 RelativePose relative_pose(const Pose& world_from_a, const Pose& world_from_b) noexcept {
-  RelativePose result;
   const Quat& a = world_from_a.orientation;
   const Quat& b = world_from_b.orientation;
   const Quat q = relative(a, b);
   const Vec3 between = world_from_b.position - world_from_a.position;
-  result.rotation = rotation_matrix(q);
-  result.rotation_error = kMatrixError + kProductError;
-  result.translation = turn_back(a, between);
-  result.translation_error = (kTurnError + kUlp) * between.norm();
+  RelativePose result{rotation_matrix(q), turn_back(a, between), kMatrixError + kProductError,
+                      (kTurnError + kUlp) * between.norm()};
   if (may_be_exact(q)) settle_exactness(a, b, result);
   if (permutes_axes(a)) result.translation_error = 4 * kUlp * between.norm();
   return result;
