@@ -1,51 +1,35 @@
 #include "tools/bench/workload.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <variant>
+#include <map>
+#include <stdexcept>
 
-#include "core/shapes.hpp"
+#include "tools/bench/bodies.hpp"
 
 namespace clearance::bench {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr int kTrajectories = 40;
+constexpr int kSteps = 100;
 
-// SplitMix64 (Steele, Lea, Flood 2014): the same numbers with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * unit(); }
-  Vec3 direction() {
-    const double z = uniform(-1.0, 1.0), angle = uniform(0.0, 2.0 * kPi);
-    const double r = std::sqrt(1.0 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-
- private:
-  double unit() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-  std::uint64_t state_;
+struct Drift {
+  double step, turn;  // m, rad, of each body at each step
 };
+constexpr Drift kBallDrift{0.02, 0.01};
+constexpr Drift kLinkDrift{0.002, 0.005};
 
 Eigen::Quaterniond turn(const Vec3& axis, double angle) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
 // Uniform steps along a line and about an axis.
-std::vector<Pose> drift(Random& random, const Vec3& middle, int steps) {
+std::vector<Pose> drift(Random& random, const Vec3& middle, const Drift& by) {
   const Vec3 along = random.direction(), axis = random.direction();
-  const Eigen::Quaterniond start = turn(random.direction(), random.uniform(0.0, 2.0 * kPi));
+  const Eigen::Quaterniond start = random.turn();
   std::vector<Pose> poses;
-  for (int k = 0; k < steps; ++k) {
-    const Vec3 position = middle + 0.02 * (k - steps / 2) * along;
-    poses.push_back({position, (turn(axis, 0.01 * k) * start).normalized()});
+  for (int k = 0; k < kSteps; ++k) {
+    const Vec3 position = middle + by.step * (k - kSteps / 2) * along;
+    poses.push_back({position, (turn(axis, by.turn * k) * start).normalized()});
   }
   return poses;
 }
@@ -58,43 +42,104 @@ double closest_centres(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   return least;
 }
 
-}  // namespace
-
-std::vector<Vec3> even_directions(int order) {
-  std::vector<Vec3> directions;
-  for (int ring = 0; ring <= order; ++ring) {
-    const double polar = kPi * ring / order;
-    const int around = std::max(1, static_cast<int>(std::lround(2 * order * std::sin(polar))));
-    const double radius = ring == 0 || ring == order ? 0.0 : std::sin(polar);
-    for (int k = 0; k < around; ++k) {
-      const double azimuth = 2.0 * kPi * k / around;
-      directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth),
-                              std::cos(polar));
-    }
+// Ways of two bodies whose centres come as close as `nearest` to `farthest`, no closer.
+std::vector<std::pair<Pose, Pose>> pass(Random& random, const Drift& by, double nearest,
+                                        double farthest) {
+  for (;;) {
+    const std::vector<Pose> a = drift(random, Vec3::Zero(), by);
+    const double apart = random.uniform(nearest, farthest);
+    const std::vector<Pose> b = drift(random, apart * random.direction(), by);
+    if (closest_centres(a, b) < nearest) continue;
+    std::vector<std::pair<Pose, Pose>> poses;
+    for (int k = 0; k < kSteps; ++k) poses.emplace_back(a[k], b[k]);
+    return poses;
   }
-  return directions;
 }
 
-ConvexPolyhedron ball(char kind, int order) {
-  const std::vector<Vec3> directions = even_directions(order);
-  if (kind == 'v') return std::get<ConvexPolyhedron>(polyhedron_from_vertices(directions));
-  std::vector<HalfSpace> rows;
-  for (const Vec3& d : directions) rows.push_back({d, 1.0});
-  return std::get<ConvexPolyhedron>(polyhedron_from_halfspaces(rows));
-}
-
-std::vector<Trajectory> trajectories(int count, int steps) {
+std::vector<Trajectory> balls(char kind, int order) {
+  const auto body = std::make_shared<const ConvexPolyhedron>(ball(kind, order));
   Random random(1);
   std::vector<Trajectory> all;
-  while (static_cast<int>(all.size()) < count) {
-    const std::vector<Pose> a = drift(random, Vec3::Zero(), steps);
-    const std::vector<Pose> b = drift(random, random.uniform(2.6, 7.0) * random.direction(), steps);
-    if (closest_centres(a, b) < 2.6) continue;
-    Trajectory t;
-    for (int k = 0; k < steps; ++k) t.poses.emplace_back(a[k], b[k]);
+  for (int i = 0; i < kTrajectories; ++i) {
+    all.push_back({body, body, pass(random, kBallDrift, 2.6, 7.0)});
+  }
+  return all;
+}
+
+std::vector<Trajectory> passing(ConvexPolyhedron (*make)(Random&), const Drift& by, double nearest,
+                                double farthest) {
+  Random random(2);
+  std::vector<Trajectory> all;
+  for (int i = 0; i < kTrajectories; ++i) {
+    const auto a = std::make_shared<const ConvexPolyhedron>(make(random));
+    const auto b = std::make_shared<const ConvexPolyhedron>(make(random));
+    all.push_back({a, b, pass(random, by, nearest, farthest)});
+  }
+  return all;
+}
+
+// B slides across the face of A at a constant distance, from beside it over it to beyond it.
+std::vector<Trajectory> sliding_boxes() {
+  Random random(3);
+  std::vector<Trajectory> all;
+  for (int i = 0; i < kTrajectories; ++i) {
+    const auto a = std::make_shared<const ConvexPolyhedron>(random_box(random));
+    const auto b = std::make_shared<const ConvexPolyhedron>(random_box(random));
+    const Eigen::Quaterniond both =
+        i % 2 == 0 ? Eigen::Quaterniond::Identity() : random.turn().normalized();
+    const int across = i % 3;
+    Vec3 way = random.direction();
+    way[across] = 0.0;
+    const double apart = a->bounding_radius + b->bounding_radius + random.uniform(0.0, 0.5);
+    Trajectory t{a, b, {}};
+    for (int k = 0; k < kSteps; ++k) {
+      Vec3 centre = 0.02 * (k - kSteps / 2) * way;
+      centre[across] = apart;
+      t.poses.push_back({{Vec3::Zero(), both}, {both * centre, both}});
+    }
     all.push_back(std::move(t));
   }
   return all;
+}
+
+std::vector<Trajectory> trajectories(const std::string& name) {
+  if (name == "boxes") return passing(random_box, kBallDrift, 0.8, 2.0);
+  if (name == "parallel-boxes") return sliding_boxes();
+  if (name == "links") return passing(random_link, kLinkDrift, 0.5, 1.5);
+  for (const int order : kOrders) {
+    if (name.substr(1) != std::to_string(order)) continue;
+    if (name[0] == 'f' || name[0] == 'v') return balls(name[0], order);
+  }
+  throw std::invalid_argument("there is no workload named '" + name + "'");
+}
+
+}  // namespace
+
+std::size_t Workload::queries() const {
+  std::size_t sum = 0;
+  for (const Trajectory& t : trajectories) sum += t.poses.size();
+  return sum;
+}
+
+const Workload& workload(const std::string& name) {
+  static std::map<std::string, Workload> made;
+  if (const auto found = made.find(name); found != made.end()) return found->second;
+  Workload w{name, trajectories(name), {}};
+  for (const Trajectory& t : w.trajectories) {
+    TrueDistance pair(*t.a, *t.b);
+    std::vector<Truth>& truth = w.truth.emplace_back();
+    for (const auto& [a, b] : t.poses) truth.push_back(pair.at(a, b));
+  }
+  return made.emplace(name, std::move(w)).first->second;
+}
+
+std::vector<std::string> workload_names() {
+  std::vector<std::string> names;
+  for (const char kind : {'f', 'v'}) {
+    for (const int order : kOrders) names.push_back(kind + std::to_string(order));
+  }
+  names.insert(names.end(), {"boxes", "parallel-boxes", "links"});
+  return names;
 }
 
 }  // namespace clearance::bench

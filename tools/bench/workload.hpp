@@ -1,29 +1,47 @@
-// The thesis's workload: pairs of facet-balls, or of their duals, on seeded trajectories (§3.5,
-// §4.1).
+// Pairs of bodies on seeded trajectories, with the true distance at every pose.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
+#include "tools/bench/truth.hpp"
 
 namespace clearance::bench {
 
-// Facet normals evenly over the sphere: `order` rings from pole to pole, 2 * order facets at the
-// equator. Orders 2, 4, 6, 8, 10, 15, 20, 30, 40 have 6, 22, 46, 82, 128, 288, 510, 1148, 2042.
-[[nodiscard]] std::vector<Vec3> even_directions(int order);
+using Body = std::shared_ptr<const ConvexPolyhedron>;
 
-// The polyhedron of unit radius with those directions as facets ('f') or as vertices ('v').
-[[nodiscard]] ConvexPolyhedron ball(char kind, int order);
-
+// One pair on its way.
 struct Trajectory {
+  Body a, b;
   std::vector<std::pair<Pose, Pose>> poses;  // world_from_a, world_from_b
 };
 
-// `count` trajectories of `steps` steps of 0.02 m and 0.01 rad for each of two bodies of unit
-// radius, whose centres come as close as 2.6 to 7 m. The same on every machine.
-[[nodiscard]] std::vector<Trajectory> trajectories(int count, int steps);
+struct Workload {
+  std::string name;
+  std::vector<Trajectory> trajectories;
+  std::vector<std::vector<Truth>> truth;  // [trajectory][pose]
+
+  [[nodiscard]] std::size_t queries() const;
+};
+
+// All have 40 trajectories of 100 steps and are the same on every machine:
+//   fN, vN          §3.5, §4.1: two facet-balls of order N, or their duals; each moves 0.02 radius
+//                   and turns 0.01 rad a step; centres come as close as 2.6 to 7 radii
+//   boxes           random boxes on the same kind of way, centres 0.8 to 2 m apart at closest
+//   parallel-boxes  boxes of one orientation (half of them along the axes) that slide past each
+//                   other face to face
+//   links           hulls like those of robot links, 2 mm and 5 mrad a step
+// Made at first use and kept. Throws std::invalid_argument for any other name.
+[[nodiscard]] const Workload& workload(const std::string& name);
+
+// The orders of §3.5.
+inline constexpr int kOrders[] = {2, 4, 6, 8, 10, 15, 20, 30, 40};
+
+// Every name, in the order of the tables.
+[[nodiscard]] std::vector<std::string> workload_names();
 
 }  // namespace clearance::bench

@@ -1,0 +1,28 @@
+// The bodies that the workloads move.
+#pragma once
+
+#include <vector>
+
+#include "core/convex_polyhedron.hpp"
+#include "core/shapes.hpp"
+#include "tools/bench/random.hpp"
+
+namespace clearance::bench {
+
+// Facet normals evenly over the sphere: `order` rings from pole to pole, 2 * order facets at the
+// equator (§3.5). Orders 2, 4, 6, 8, 10, 15, 20, 30, 40 have 6, 22, 46, 82, 128, 288, 510, 1148,
+// 2042.
+[[nodiscard]] std::vector<Vec3> even_directions(int order);
+[[nodiscard]] std::vector<HalfSpace> ball_rows(int order);
+
+// The polyhedron of unit radius with those directions as facets ('f') or as vertices ('v').
+[[nodiscard]] ConvexPolyhedron ball(char kind, int order);
+
+// Half extents from 0.05 to 0.5 m.
+[[nodiscard]] ConvexPolyhedron random_box(Random& random);
+
+// Like the hull of a robot's link: 0.2 to 0.5 m long, four rings of twelve vertices, the outer ones
+// narrower, its ends of different widths. 48 vertices, about 40 facets.
+[[nodiscard]] ConvexPolyhedron random_link(Random& random);
+
+}  // namespace clearance::bench

@@ -1,0 +1,142 @@
+// One row of the benchmark: a solver on a workload, its time, its error and its failures.
+//
+// A Solver is
+//   struct Solver {
+//     using Shape = ...;                              // its own form of a body, made once a body
+//     static Shape shape(const ConvexPolyhedron&);
+//     Solver(const Shape& a, const Shape& b);         // one a pair; may remember the last query
+//     void forget();                                  // the next query is cold
+//     Answer query(const Pose& world_from_a, const Pose& world_from_b);
+//   };
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/bench/workload.hpp"
+
+namespace clearance::bench {
+
+struct Answer {
+  double distance;  // below 0 or 0: the bodies overlap
+  bool ok = true;   // false: the solver says itself that it failed
+  int iterations = 0;
+  double width = 0.0;  // m: upper - lower bound, for those who certify
+};
+
+// A query has failed when it says so, is NaN, or is off by more than this, m.
+inline constexpr double kFailure = 1e-6;
+
+// Over all queries of a workload, from a pass of its own outside the timed loop.
+struct Verdict {
+  double max_error = 0.0;  // m, of those that did not say themselves that they failed
+  double failures = 0.0;
+  double iterations = 0.0;  // mean
+  double widest_gap = 0.0;  // m: of the solver's own bounds
+  double truth_gap = 0.0;   // m: how far the truth itself may be off
+  double overlapping = 0.0;
+
+  void add(const Answer& answer, const Truth& truth) {
+    const double error = std::abs(std::max(0.0, answer.distance) - truth.distance);
+    failures += !answer.ok || !(error <= kFailure) || std::isnan(answer.distance);
+    if (answer.ok && !std::isnan(answer.distance)) max_error = std::max(max_error, error);
+    iterations += answer.iterations;
+    widest_gap = std::max(widest_gap, answer.width);
+    truth_gap = std::max(truth_gap, truth.gap);
+    overlapping += truth.distance == 0.0;
+  }
+};
+
+inline constexpr int kTracked = std::numeric_limits<int>::max();
+inline constexpr int kCold = 1;
+
+template <class Solver>
+class Row {
+ public:
+  // The solver forgets what it knew after every `interval` queries, and between trajectories.
+  Row(const Workload& load, int interval) : load_(load), interval_(interval) {
+    for (const Trajectory& t : load.trajectories) {
+      for (const Body& body : {t.a, t.b}) {
+        if (!shapes_.contains(body.get())) shapes_.emplace(body.get(), Solver::shape(*body));
+      }
+      solvers_.push_back(std::make_unique<Solver>(shapes_.at(t.a.get()), shapes_.at(t.b.get())));
+    }
+    verdict_ = judge();
+  }
+
+  void time(benchmark::State& state) {
+    double sum = 0.0;
+    for (auto _ : state) {
+      for (std::size_t i = 0; i < solvers_.size(); ++i) {
+        follow(i, [&](std::size_t, const Answer& answer) { sum += answer.distance; });
+      }
+      benchmark::DoNotOptimize(sum);
+    }
+    const double queries =
+        static_cast<double>(load_.queries()) * static_cast<double>(state.iterations());
+    state.counters["ns"] = benchmark::Counter(
+        queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["max_error"] = verdict_.max_error;
+    state.counters["failures"] = verdict_.failures;
+    state.counters["iterations"] = verdict_.iterations;
+    state.counters["truth_gap"] = verdict_.truth_gap;
+    state.counters["overlapping"] = verdict_.overlapping;
+    if (verdict_.widest_gap > 0.0) state.counters["widest_gap"] = verdict_.widest_gap;
+  }
+
+ private:
+  template <class Use>
+  void follow(std::size_t i, const Use& use) {
+    const auto& poses = load_.trajectories[i].poses;
+    int left = 0;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      if (left-- == 0) {
+        solvers_[i]->forget();
+        left = interval_ - 1;
+      }
+      use(k, solvers_[i]->query(poses[k].first, poses[k].second));
+    }
+  }
+
+  Verdict judge() {
+    Verdict verdict;
+    for (std::size_t i = 0; i < solvers_.size(); ++i) {
+      follow(i, [&](std::size_t k, const Answer& a) { verdict.add(a, load_.truth[i][k]); });
+    }
+    verdict.iterations /= static_cast<double>(load_.queries());
+    return verdict;
+  }
+
+  const Workload& load_;
+  int interval_;
+  std::map<const ConvexPolyhedron*, typename Solver::Shape> shapes_;
+  std::vector<std::unique_ptr<Solver>> solvers_;
+  Verdict verdict_;
+};
+
+// Nothing is made before the row is run.
+template <class Solver>
+void register_row(const std::string& name, const std::string& load, int interval) {
+  const auto row = std::make_shared<std::unique_ptr<Row<Solver>>>();
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    if (!*row) *row = std::make_unique<Row<Solver>>(workload(load), interval);
+    (*row)->time(state);
+  });
+}
+
+// PREFIXtracked/NAME and PREFIXcold/NAME for every workload.
+template <class Solver>
+void register_rows(const std::string& prefix) {
+  for (const std::string& name : workload_names()) {
+    register_row<Solver>(prefix + "tracked/" + name, name, kTracked);
+    register_row<Solver>(prefix + "cold/" + name, name, kCold);
+  }
+}
+
+}  // namespace clearance::bench

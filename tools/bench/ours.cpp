@@ -1,0 +1,36 @@
+#include "tools/bench/ours.hpp"
+
+#include "core/distance.hpp"
+#include "tools/bench/intervals.hpp"
+#include "tools/bench/measure.hpp"
+
+namespace clearance::bench {
+namespace {
+
+class Ours {
+ public:
+  using Shape = const ConvexPolyhedron*;
+  static Shape shape(const ConvexPolyhedron& body) { return &body; }
+
+  Ours(Shape a, Shape b) : a_(*a), b_(*b) {}
+  void forget() { tracking_ = {}; }
+  Answer query(const Pose& world_from_a, const Pose& world_from_b) {
+    const DistanceResult r = distance(a_, b_, relative_pose(world_from_a, world_from_b), tracking_);
+    return {r.distance, r.status != DistanceStatus::kIterationLimit, r.iterations,
+            r.upper - r.lower};
+  }
+
+ private:
+  const ConvexPolyhedron& a_;
+  const ConvexPolyhedron& b_;
+  TrackingState tracking_;
+};
+
+}  // namespace
+
+void register_ours() {
+  register_rows<Ours>("");
+  register_intervals<Ours>("");
+}
+
+}  // namespace clearance::bench
