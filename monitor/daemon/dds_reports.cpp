@@ -9,7 +9,7 @@ namespace clearance {
 namespace {
 
 // What a client that is held up for a moment can still be sent again.
-constexpr std::int32_t kDistancesDepth = 16;
+constexpr std::int32_t kDistancesDepth = 64;
 
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
                       void*) {

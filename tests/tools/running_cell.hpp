@@ -124,6 +124,17 @@ class Distances {
                                    scene.topics.distances, Delivery::kStream, 8192)) {}
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
 
+  // Past discovery: until both ends know each other, reports may be missing.
+  void settle() {
+    std::uint64_t cycle = 0;
+    for (int in_a_row = 0; in_a_row < 5;) {
+      const auto report = next();
+      ASSERT_NE(report, nullptr);
+      in_a_row = (*report)->cycle == cycle + 1 ? in_a_row + 1 : 0;
+      cycle = (*report)->cycle;
+    }
+  }
+
   // The next report; null when none comes.
   std::unique_ptr<Sample<clearance_msg_Distances>> next() {
     auto sample = std::make_unique<Sample<clearance_msg_Distances>>();
