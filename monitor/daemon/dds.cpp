@@ -63,6 +63,7 @@ std::string configuration(const DdsOptions& options) {
   // hold up all others. Keep-last already bounds what is kept.
   xml +=
       "<Internal><Watermarks><WhcLow>1MB</WhcLow><WhcHigh>1GB</WhcHigh>"
+      "<WhcHighInit>1GB</WhcHighInit>"
       "<WhcAdaptive>false</WhcAdaptive></Watermarks></Internal></Domain></CycloneDDS>";
   // What a person sets for all of Cyclone comes last, so it wins.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
