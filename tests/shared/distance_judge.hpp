@@ -43,6 +43,8 @@ class DistanceJudge {
                             const Pose& pose_b) const;
 
  private:
+  // A ball of this radius fits into both (of a point or segment: around one of its points). Says no
+  // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
 
   oracle::Body body_a_, body_b_;
