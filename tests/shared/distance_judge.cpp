@@ -91,6 +91,7 @@ double DistanceJudge::size(const ExactDistance& truth, const Pose& pose_a,
 
 bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const {
   if (body_a_.points.size() > 2 || body_b_.points.size() > 2) return false;
+  if (body_a_.rows.empty() && body_b_.rows.empty()) return false;
   try {
     return oracle::exact_distance(eroded(body_a_, depth), pose_a, eroded(body_b_, depth), pose_b)
         .cores_meet();
