@@ -24,7 +24,7 @@
 namespace clearance::bench {
 
 struct Answer {
-  double distance;  // below 0 or 0: the bodies overlap
+  double distance;  // 0 or less: they overlap; infinity: they do not, and that is all it says
   bool ok = true;   // false: the solver says itself that it failed
   int iterations = 0;
   double width = 0.0;  // m: upper - lower bound, for those who certify
@@ -43,7 +43,9 @@ struct Verdict {
   double overlapping = 0.0;
 
   void add(const Answer& answer, const Truth& truth) {
-    const double error = std::abs(std::max(0.0, answer.distance) - truth.distance);
+    const bool only_apart = answer.distance == kInfinity && truth.distance > 0.0;
+    const double error =
+        only_apart ? 0.0 : std::abs(std::max(0.0, answer.distance) - truth.distance);
     failures += !answer.ok || !(error <= kFailure) || std::isnan(answer.distance);
     if (answer.ok && !std::isnan(answer.distance)) max_error = std::max(max_error, error);
     iterations += answer.iterations;

@@ -19,8 +19,8 @@ class Random {
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
   Eigen::Quaterniond turn() {
-    const Vec3 axis = direction();
-    return Eigen::Quaterniond(Eigen::AngleAxisd(uniform(0.0, 2.0 * std::numbers::pi), axis));
+    const double angle = uniform(0.0, 2.0 * std::numbers::pi);
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, direction()));
   }
 
  private:

@@ -47,8 +47,8 @@ std::vector<std::pair<Pose, Pose>> pass(Random& random, const Drift& by, double 
                                         double farthest) {
   for (;;) {
     const std::vector<Pose> a = drift(random, Vec3::Zero(), by);
-    const double apart = random.uniform(nearest, farthest);
-    const std::vector<Pose> b = drift(random, apart * random.direction(), by);
+    const Vec3 direction = random.direction();
+    const std::vector<Pose> b = drift(random, random.uniform(nearest, farthest) * direction, by);
     if (closest_centres(a, b) < nearest) continue;
     std::vector<std::pair<Pose, Pose>> poses;
     for (int k = 0; k < kSteps; ++k) poses.emplace_back(a[k], b[k]);

@@ -1,0 +1,25 @@
+// Other solvers in the same process on the same poses: benchmarks peer/WHO/tracked/f2 ... Each at
+// its best setting for this use that does not change its code: double precision, no margins, its
+// own warm start where it has one, its solver called directly rather than through its scene.
+#pragma once
+
+#include <string>
+
+namespace clearance::bench {
+
+// FCL 0.7: 'fcl' is its default solver (libccd's simplex with FCL's fixes; climbs along edges from
+// 33 vertices; no warm start, so tracked is as cold), 'fcl-gjk' its own (cached guess while
+// tracked). Tolerance 1e-6, its default; 'fcl-tight' is fcl at 1e-12.
+void register_fcl();
+// Bullet 3 with doubles: btGjkEpaSolver2 on hulls, starting from the last separation while tracked.
+void register_bullet();
+// libccd 2: only answers whether the bodies touch, so only its failures can be judged, as wrong
+// answers. Its supports are ours: they climb along edges from the last vertex.
+void register_libccd();
+// A general primal active-set QP; see qp.hpp.
+void register_qp();
+
+// All of them; says on stderr which are left out because they are not installed.
+void register_peers();
+
+}  // namespace clearance::bench
