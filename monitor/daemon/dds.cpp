@@ -59,12 +59,7 @@ std::string configuration(const DdsOptions& options) {
   if (loopback) xml += "<Peer Address=\"127.0.0.1\"/>";
   for (const std::string& peer : options.peers) xml += "<Peer Address=\"" + peer + "\"/>";
   xml += "</Peers></Discovery>";
-  // By default a writer waits when 500 kB are not acknowledged: a client that stands still would
-  // hold up all others. Keep-last already bounds what is kept.
-  xml +=
-      "<Internal><Watermarks><WhcLow>1MB</WhcLow><WhcHigh>1GB</WhcHigh>"
-      "<WhcHighInit>1GB</WhcHighInit>"
-      "<WhcAdaptive>false</WhcAdaptive></Watermarks></Internal></Domain></CycloneDDS>";
+  xml += "</Domain></CycloneDDS>";
   // What a person sets for all of Cyclone comes last, so it wins.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;
