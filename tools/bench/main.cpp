@@ -7,6 +7,7 @@
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/variants.hpp"
 
 namespace {
 
@@ -17,6 +18,9 @@ constexpr const char* kHelp =
     "                     also boxes, parallel-boxes and links\n"
     "  cold/f2 ... links  the same without what the last query left\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
+    "  variant/WHICH/...  the thesis's loop without certificates: base, dual, consistent,\n"
+    "                     aggressive, all-facets, moved\n"
+    "  adjacency/WHO/f2   adjacency from half-spaces: walk (the thesis's), core, qhull\n"
     "  peer/WHO/...       the same by other solvers: fcl, fcl-tight, fcl-gjk, bullet, libccd, qp\n"
     "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
     "tracked\n"
@@ -43,6 +47,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   clearance::bench::register_ours();
+  clearance::bench::register_variants();
   clearance::bench::register_peers();
   clearance::bench::register_cells(CLEARANCE_CELLS);
   benchmark::RunSpecifiedBenchmarks();

@@ -1,0 +1,54 @@
+// A polyhedron whose tables are moved to a pose at every query, as the base algorithm of Table 4.2
+// needs them: all that the loop reads, no more. (The thesis's loop, without adjacency, read only
+// the half-spaces.)
+#pragma once
+
+#include "core/convex_polyhedron.hpp"
+#include "core/pose.hpp"
+
+namespace clearance::bench {
+
+class MovedBody {
+ public:
+  explicit MovedBody(const ConvexPolyhedron& own) : own_(own), moved_(own) {}
+
+  [[nodiscard]] const ConvexPolyhedron& at_pose() const { return moved_; }
+
+  void move(const Pose& world_from_body) {
+    rotation_ = world_from_body.orientation.toRotationMatrix();
+    translation_ = world_from_body.position;
+    for (std::size_t i = 0; i < own_.facets.size(); ++i) {
+      moved_.facets[i].normal = rotation_ * own_.facets[i].normal;
+      moved_.facets[i].offset = own_.facets[i].offset + moved_.facets[i].normal.dot(translation_);
+    }
+    for (std::size_t i = 0; i < own_.edges.size(); ++i) {
+      moved_.edges[i].point = point(own_.edges[i].point);
+      moved_.edges[i].direction = rotation_ * own_.edges[i].direction;
+      for (int k : {0, 1}) moved_.edges[i].inward[k] = rotation_ * own_.edges[i].inward[k];
+    }
+    for (std::size_t i = 0; i < own_.vertices.size(); ++i) {
+      moved_.vertices[i].position = point(own_.vertices[i].position);
+    }
+    for (std::size_t i = 0; i < own_.outgoing.size(); ++i) {
+      moved_.outgoing[i] = rotation_ * own_.outgoing[i];
+    }
+    for (std::size_t i = 0; i < own_.facet_sides.size(); ++i) {
+      FacetSide& side = moved_.facet_sides[i];
+      side.inward = rotation_ * own_.facet_sides[i].inward;
+      side.offset = own_.facet_sides[i].offset + side.inward.dot(translation_);
+    }
+    moved_.interior = point(own_.interior);
+  }
+  [[nodiscard]] Vec3 point(const Vec3& of_body) const { return rotation_ * of_body + translation_; }
+  [[nodiscard]] Vec3 point_of_body(const Vec3& p) const {
+    return rotation_.transpose() * (p - translation_);
+  }
+
+ private:
+  const ConvexPolyhedron& own_;
+  ConvexPolyhedron moved_;
+  Mat3 rotation_;
+  Vec3 translation_;
+};
+
+}  // namespace clearance::bench

@@ -1,0 +1,137 @@
+// The thesis's loop in its variants (§4.1), over the core's tables and its delta, alpha and lambda,
+// without what the core adds: no certificate, no rule for ties, no walk from feature to feature.
+#pragma once
+
+#include "core/active_side.hpp"
+#include "core/alpha.hpp"
+#include "core/delta.hpp"
+#include "core/lambda.hpp"
+#include "tools/bench/whole_scan.hpp"
+
+namespace clearance::bench {
+
+enum class Release {
+  kBase,        // at the optimum of the active set, the best one of both bodies (§3.3.2)
+  kDual,        // there, the best one of each body
+  kConsistent,  // at every cycle, the best one of both bodies; ends when there is none (§3.4.3.4)
+  kAggressive,  // at every cycle, all there are
+};
+
+enum class Scan {
+  kNeighbours,  // alpha over the feature's own boundary (§3.6.1)
+  kAllFacets,   // alpha over all facets (§3.3.1.3)
+};
+
+struct LoopEnd {
+  bool ok;  // false: still going after kCycles, which here means going in circles
+  int cycles;
+};
+
+namespace variant {
+
+constexpr int kCycles = 1000;
+constexpr double kContact = 1e-13;  // m
+constexpr double kRate = 1e-12;     // below this share of the distance a release gains nothing
+
+template <Scan kScan>
+bool step(ActiveSide& a, ActiveSide& b) {
+  const Delta to = delta(a, b);
+  const Vec3 move_a = to.a - a.common(), move_b = to.b - b.common();
+  const auto alpha_of = [](const ActiveSide& side, const Vec3& move) {
+    return kScan == Scan::kNeighbours ? alpha(side, move) : alpha_over_all(side, move);
+  };
+  const Alpha alpha_a = alpha_of(a, move_a), alpha_b = alpha_of(b, move_b);
+  advance(a, move_a, alpha_a);
+  advance(b, move_b, alpha_b);
+  return alpha_a.blocking == kNone && alpha_b.blocking == kNone;
+}
+
+inline void let_go(ActiveSide& side, const Lambda& l) { side.place(l.to, l.index, side.own()); }
+
+// The best release of both bodies, or of each.
+template <Release kRelease>
+bool release_best(ActiveSide& a, ActiveSide& b, double least) {
+  const Vec3 towards = b.common() - a.common();
+  const Lambda of_a = lambda(a, towards), of_b = lambda(b, -towards);
+  const bool a_wants = of_a.rate > least, b_wants = of_b.rate > least;
+  const bool both = kRelease == Release::kDual;
+  const bool a_first = of_a.rate >= of_b.rate;
+  if (a_wants && (both || a_first)) let_go(a, of_a);
+  if (b_wants && (both || !a_first)) let_go(b, of_b);
+  return a_wants || b_wants;
+}
+
+// Every active facet with a negative multiplier at once: the feature that is left.
+inline bool release_all(ActiveSide& side, const Vec3& towards_in_common, double least) {
+  const Lambda best = lambda(side, towards_in_common);
+  if (!(best.rate > least)) return false;
+  const Vec3 towards = side.direction_to_own(towards_in_common);
+  if (side.feature() == Feature::kEdge) {
+    const bool both =
+        side.edge().inward[0].dot(towards) > least && side.edge().inward[1].dot(towards) > least;
+    if (both)
+      side.place_inside(side.own());
+    else
+      let_go(side, best);
+    return true;
+  }
+  if (side.feature() != Feature::kVertex) {
+    let_go(side, best);
+    return true;
+  }
+  // A vertex: one rising edge leaves that edge, two of one facet that facet, others the inside.
+  const Vertex& vertex = side.vertex();
+  int rising = 0;
+  std::int32_t other = kNone;
+  for (std::int32_t i = vertex.first_edge; i < vertex.first_edge + vertex.edges; ++i) {
+    if (!(side.body().outgoing[i].dot(towards) > least)) continue;
+    ++rising;
+    if (side.body().vertex_edges[i].edge != best.index) other = side.body().vertex_edges[i].edge;
+  }
+  if (rising == 1) {
+    let_go(side, best);
+    return true;
+  }
+  const Edge& e = side.body().edges[best.index];
+  const Edge& f = side.body().edges[other];
+  for (const std::int32_t facet : e.facet) {
+    if (rising != 2 || (facet != f.facet[0] && facet != f.facet[1])) continue;
+    side.place(Feature::kFacet, facet, side.own());
+    return true;
+  }
+  side.place_inside(side.own());
+  return true;
+}
+
+inline bool release_all(ActiveSide& a, ActiveSide& b, double least) {
+  const Vec3 towards = b.common() - a.common();
+  const bool from_a = release_all(a, towards, least);
+  return release_all(b, -towards, least) || from_a;
+}
+
+}  // namespace variant
+
+template <Release kRelease, Scan kScan>
+LoopEnd dqp3_variant(ActiveSide& a, ActiveSide& b) {
+  using namespace variant;
+  for (int cycle = 1; cycle <= kCycles; ++cycle) {
+    const double apart = (b.common() - a.common()).norm();
+    if (apart < kContact) return {true, cycle};
+    const double least = kRate * apart;
+    if constexpr (kRelease == Release::kAggressive) {
+      const bool released = release_all(a, b, least);
+      if (step<kScan>(a, b) && !released) return {true, cycle};
+    } else if constexpr (kRelease == Release::kConsistent) {
+      const bool active = a.feature() != Feature::kInside && b.feature() != Feature::kInside;
+      if (active && !release_best<kRelease>(a, b, least)) return {true, cycle};
+      step<kScan>(a, b);
+    } else {
+      if (!step<kScan>(a, b)) continue;
+      const double left = (b.common() - a.common()).norm();
+      if (left < kContact || !release_best<kRelease>(a, b, kRate * left)) return {true, cycle};
+    }
+  }
+  return {false, variant::kCycles};
+}
+
+}  // namespace clearance::bench
