@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "tools/bench/adjacency.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   clearance::bench::register_ours();
   clearance::bench::register_variants();
+  clearance::bench::register_adjacency();
   clearance::bench::register_peers();
   clearance::bench::register_cells(CLEARANCE_CELLS);
   benchmark::RunSpecifiedBenchmarks();

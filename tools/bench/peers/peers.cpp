@@ -2,11 +2,13 @@
 
 #include <cstdio>
 
+#include "tools/bench/adjacency.hpp"
+
 namespace clearance::bench {
 namespace {
 
 void left_out [[maybe_unused]] (const char* who, const char* package) {
-  std::fprintf(stderr, "peer/%s is left out: it needs %s (tools/setup --bench)\n", who, package);
+  std::fprintf(stderr, "%s is left out: it needs %s (tools/setup --bench)\n", who, package);
 }
 
 }  // namespace
@@ -26,6 +28,11 @@ void register_peers() {
   register_libccd();
 #else
   left_out("libccd", "libccd-dev");
+#endif
+#ifdef CLEARANCE_BENCH_QHULL
+  register_qhull();
+#else
+  left_out("qhull", "libqhull-dev");
 #endif
   register_qp();
 }
