@@ -1,5 +1,6 @@
 #include "core/certificate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/support.hpp"
@@ -66,8 +67,23 @@ double tilt_to_proof(const Vec3& n, const ActiveSide& a, const ActiveSide& b) no
   return tilt < margin - rounding ? tilt : kInfinity;
 }
 
-double separation_of_unbounded(const Vec3& n, const ActiveSide& a, const ActiveSide& b) noexcept {
-  const double tilt = tilt_to_proof(n, a, b);
+// Against the exact normal of a facet its own body's rays are level or fall, whatever rounding
+// says: it is a proof when the other body's rays certainly fall away.
+double tilt_to_facet_proof(const Vec3& n, const ActiveSide& other,
+                           double direction_error) noexcept {
+  const double rounding = 0x1p-50 + direction_error;
+  const bool falls =
+      level_rays(other.body(), other.direction_to_own(n), 0x1p-40 + rounding).directions == 0;
+  return falls ? 2.0 * rounding : kInfinity;
+}
+
+double separation_of_unbounded(const Separator& s, const ActiveSide& a,
+                               const ActiveSide& b) noexcept {
+  const Vec3& n = s.normal;
+  const double error = a.direction_error() + b.direction_error();
+  double tilt = tilt_to_proof(n, a, b);
+  if (s.facet_of_a != kNone) tilt = std::min(tilt, tilt_to_facet_proof(-n, b, error));
+  if (s.facet_of_b != kNone) tilt = std::min(tilt, tilt_to_facet_proof(n, a, error));
   if (!(tilt < kInfinity)) return -kInfinity;
   const double of_a = support(a.body(), n).reach;
   const double of_b = support(b.body(), -b.direction_to_own(n)).reach;
@@ -95,7 +111,7 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
 
 double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
                   const Precision& p) noexcept {
-  if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s.normal, a, b);
+  if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s, a, b);
   const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a);
   const double of_b = reach(b, -s.normal, s.facet_of_b, p.reach_b);
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());

@@ -98,11 +98,38 @@ double descent(const Violation& violation, const Vec3& x, const Vec3& direction,
   return s;
 }
 
+// A point or a segment against a solid: what is left of it after each facet has cut its part off.
+bool share_a_point_of(const ActiveSide& flat, const ActiveSide& solid, const Precision& p,
+                      Vec3& shared) noexcept {
+  const bool is_point = flat.body().edges.empty();
+  const Vec3 start = is_point ? flat.body().vertices[0].position : flat.body().edges[0].point;
+  const Vec3 along = is_point ? Vec3(Vec3::Zero()) : flat.body().edges[0].direction;
+  const Vec3 origin = solid.point_to_common(Vec3::Zero());
+  const Vec3 from = solid.direction_to_own(flat.point_to_common(start) - origin);
+  const Vec3 way = solid.direction_to_own(flat.direction_to_common(along));
+  double first = 0.0, last = is_point ? 0.0 : flat.body().edges[0].end;
+  for (const Facet& f : solid.body().facets) {
+    const double room = f.offset - f.normal.dot(from) - 2.0 * p.slack, speed = f.normal.dot(way);
+    if (speed > 0.0) {
+      last = std::min(last, room / speed);
+    } else if (speed < 0.0) {
+      first = std::max(first, room / speed);
+    } else if (!(room > 0.0)) {
+      return false;
+    }
+  }
+  if (!(first <= last)) return false;
+  shared = flat.point_to_common(start + 0.5 * (first + last) * along);
+  return true;
+}
+
 }  // namespace
 
 bool share_a_point(const ActiveSide& a, const ActiveSide& b, const Precision& p,
                    Vec3& shared) noexcept {
-  if (a.body().facets.empty() || b.body().facets.empty()) return false;
+  if (a.body().facets.empty() && b.body().facets.empty()) return false;
+  if (a.body().facets.empty()) return share_a_point_of(a, b, p, shared);
+  if (b.body().facets.empty()) return share_a_point_of(b, a, p, shared);
   const Violation violation(a, b);
   Vec3 x = 0.5 * (a.common() + b.common());
   double band = 4.0 * p.slack;

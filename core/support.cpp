@@ -109,12 +109,15 @@ double ray_condition(const ConvexPolyhedron& body) noexcept {
     return std::any_of(rays.begin(), rays.end(), [&](const Ray& o) { return o.direction == -r; });
   };
   for (const Ray& ray : rays) {
-    if (!is_line(ray.direction)) {
-      middle += ray.direction.normalized();
-    } else if (line_count < 2 && (line_count == 0 || (lines[0] != -ray.direction))) {
+    if (is_line(ray.direction) && line_count < 2 &&
+        (line_count == 0 || (lines[0] != -ray.direction.normalized()))) {
       lines[line_count++] = ray.direction.normalized();
     }
   }
+  // No ray leads out of a facet and only lines run along all of them: against the sum of the
+  // normals every other ray has a part, where against the sum of the rays one of many may have
+  // none.
+  for (const Facet& facet : body.facets) middle -= facet.normal;
   const double skew = line_count == 2 ? lines[0].cross(lines[1]).norm() : 1.0;
   for (std::size_t i = 0; i < line_count; ++i) middle -= middle.dot(lines[i]) * lines[i];
   const double of_lines = line_count == 0 ? 0.0 : line_count == 1 ? 1.0 : 1.5 / skew;
