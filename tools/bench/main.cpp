@@ -2,12 +2,17 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/report/report.hpp"
 #include "tools/bench/variants.hpp"
 
 namespace {
@@ -33,26 +38,63 @@ constexpr const char* kHelp =
     "the\n"
     "reference itself may be off; overlapping, how many pairs are.\n"
     "\n"
+    "  --report DIR       runs all but the cells, for a few minutes, and writes DIR/report.md, "
+    "the\n"
+    "                     tables, and DIR/pareto.svg, error against time\n"
+    "\n"
     "example: clearance-bench --benchmark_filter='tracked/(f|v)' --benchmark_repetitions=5\n"
+    "         clearance-bench --report build/report\n"
     "\n"
     "Options of Google Benchmark:\n";
+
+void register_all() {
+  using namespace clearance::bench;
+  register_ours();
+  register_variants();
+  register_adjacency();
+  register_peers();
+  register_cells(CLEARANCE_CELLS);
+}
+
+// What --report asks of Google Benchmark, unless the caller asks for something else.
+std::vector<std::string> report_options() {
+  return {std::string("--benchmark_filter=") + clearance::bench::kReportRows,
+          "--benchmark_min_time=0.02", "--benchmark_repetitions=3",
+          "--benchmark_enable_random_interleaving=true"};
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::optional<std::filesystem::path> report;
+  std::vector<std::string> options, others;
   for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--help" || std::string_view(argv[i]) == "-h") {
-      std::fputs(kHelp, stdout);
+    const std::string_view word = argv[i];
+    if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);
+    if (word != "--report") {
+      others.emplace_back(word);
+    } else if (i + 1 < argc) {
+      report = argv[++i];
+    } else {
+      std::fputs("--report needs the folder to write to, as in: --report build/report\n", stderr);
+      return 2;
     }
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  clearance::bench::register_ours();
-  clearance::bench::register_variants();
-  clearance::bench::register_adjacency();
-  clearance::bench::register_peers();
-  clearance::bench::register_cells(CLEARANCE_CELLS);
-  benchmark::RunSpecifiedBenchmarks();
+  if (report) options = report_options();
+  options.insert(options.end(), others.begin(), others.end());
+  std::vector<char*> words{argv[0]};
+  for (std::string& option : options) words.push_back(option.data());
+  int count = static_cast<int>(words.size());
+  benchmark::Initialize(&count, words.data());
+  if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 2;
+  register_all();
+  if (report) {
+    clearance::bench::Collector collector;
+    benchmark::RunSpecifiedBenchmarks(&collector);
+    if (!clearance::bench::write_report(*report, collector.figures())) return 1;
+  } else {
+    benchmark::RunSpecifiedBenchmarks();
+  }
   benchmark::Shutdown();
   return 0;
 }

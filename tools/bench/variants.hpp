@@ -2,7 +2,7 @@
 //   base, dual, consistent, aggressive   the release rules of §4.1, alpha over neighbours
 //   all-facets                           base with alpha over all facets, as in §3.3
 //   moved                                base on tables that are moved to the poses first
-// and variant/moving-only/f2 ..., what that moving costs by itself.
+// and variant/moved-before/tracked/f2 ..., the same without the time that moving takes.
 #pragma once
 
 namespace clearance::bench {

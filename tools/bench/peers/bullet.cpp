@@ -4,6 +4,7 @@
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/peers/welded.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -22,7 +23,7 @@ class Bullet {
   using Shape = std::shared_ptr<btConvexHullShape>;
   static Shape shape(const ConvexPolyhedron& body) {
     const auto hull = std::make_shared<btConvexHullShape>();
-    for (const Vertex& v : body.vertices) hull->addPoint(vector(v.position), false);
+    for (const Vec3& p : welded(body).points) hull->addPoint(vector(p), false);
     hull->recalcLocalAabb();
     hull->setMargin(0.0);
     return hull;

@@ -4,8 +4,8 @@
 
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
-#include "tools/bench/peers/corners.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/peers/welded.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -14,15 +14,15 @@ using Hull = fcl::Convex<double>;
 
 // Its faces as FCL wants them: the number of corners, then the corners counter-clockwise.
 std::shared_ptr<Hull> hull(const ConvexPolyhedron& body) {
-  const auto points = std::make_shared<std::vector<fcl::Vector3d>>();
-  for (const Vertex& v : body.vertices) points->push_back(v.position);
+  const Welded mesh = welded(body);
+  const auto points =
+      std::make_shared<std::vector<fcl::Vector3d>>(mesh.points.begin(), mesh.points.end());
   const auto faces = std::make_shared<std::vector<int>>();
-  for (const Facet& facet : body.facets) {
-    const std::vector<int> corner = corners(body, facet);
-    faces->push_back(static_cast<int>(corner.size()));
-    faces->insert(faces->end(), corner.begin(), corner.end());
+  for (const std::vector<int>& face : mesh.faces) {
+    faces->push_back(static_cast<int>(face.size()));
+    faces->insert(faces->end(), face.begin(), face.end());
   }
-  return std::make_shared<Hull>(points, static_cast<int>(body.facets.size()), faces);
+  return std::make_shared<Hull>(points, static_cast<int>(mesh.faces.size()), faces);
 }
 
 fcl::Transform3d transform_of(const Pose& pose) {
@@ -68,7 +68,7 @@ class WithLibccd : public Pair {
 // can be.
 class WithOwnGjk : public Pair {
  public:
-  using Pair::Pair;
+  WithOwnGjk(Shape a, Shape b) : Pair(std::move(a), std::move(b)) { gjk_.gjk_tolerance = 1e-12; }
   void forget() { gjk_.enableCachedGuess(false); }
   Answer query(const Pose& a, const Pose& b) {
     const bool tracked = gjk_.enable_cached_guess;

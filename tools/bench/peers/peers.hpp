@@ -7,16 +7,17 @@
 
 namespace clearance::bench {
 
-// FCL 0.7: 'fcl' is its default solver (libccd's simplex with FCL's fixes; climbs along edges from
-// 33 vertices; no warm start, so tracked is as cold), 'fcl-gjk' its own (cached guess while
-// tracked). Tolerance 1e-6, its default; 'fcl-tight' is fcl at 1e-12.
+// FCL 0.7. 'fcl': its default solver (libccd's simplex with FCL's repairs; climbs along edges from
+// 33 vertices; no warm start, so tracked is as cold) at its default tolerance, 1e-6. 'fcl-tight':
+// the same at 1e-12, which costs hardly any time here. 'fcl-gjk': its own GJK (cached guess while
+// tracked; supports by search of all vertices) at 1e-12, which costs none.
 void register_fcl();
 // Bullet 3 with doubles: btGjkEpaSolver2 on hulls, starting from the last separation while tracked.
 void register_bullet();
 // libccd 2: only answers whether the bodies touch, so only its failures can be judged, as wrong
 // answers. Its supports are ours: they climb along edges from the last vertex.
 void register_libccd();
-// A general primal active-set QP; see qp.hpp.
+// A general primal active-set QP; see qp.cpp.
 void register_qp();
 
 // All of them; says on stderr which are left out because they are not installed.

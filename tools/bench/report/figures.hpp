@@ -1,0 +1,44 @@
+// What one run of the benchmark found, by the names of its rows.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <limits>
+#include <map>
+#include <string>
+
+namespace clearance::bench {
+
+struct Figure {
+  double ns = std::numeric_limits<double>::infinity();  // the least of all repetitions
+  double max_error = 0.0;
+  double failures = 0.0;
+  double iterations = 0.0;
+  double facets = 0.0, wrong = 0.0;  // adjacency only
+};
+
+class Figures {
+ public:
+  // Null where there was no such row.
+  [[nodiscard]] const Figure* at(const std::string& name) const {
+    const auto found = rows_.find(name);
+    return found == rows_.end() ? nullptr : &found->second;
+  }
+  void add(const benchmark::BenchmarkReporter::Run& run);
+
+ private:
+  std::map<std::string, Figure> rows_;
+};
+
+// Collects what Google Benchmark reports and says on stderr how far it is.
+class Collector : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override;
+  [[nodiscard]] const Figures& figures() const { return figures_; }
+
+ private:
+  Figures figures_;
+};
+
+}  // namespace clearance::bench

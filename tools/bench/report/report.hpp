@@ -1,0 +1,23 @@
+// clearance-bench --report DIR: the thesis's tables, ours and the peers', and error against time as
+// a picture, from one run.
+#pragma once
+
+#include <filesystem>
+
+#include "tools/bench/report/figures.hpp"
+
+namespace clearance::bench {
+
+// The rows that the report shows, as a --benchmark_filter.
+inline constexpr const char* kReportRows =
+    "^(tracked|cold|peer|interval|adjacency|variant/(base|dual|aggressive|consistent|all-facets|"
+    "moved-before|moved/tracked))/";
+
+// Writes DIR/report.md and DIR/pareto.svg. False, and says so on stderr, when it cannot.
+[[nodiscard]] bool write_report(const std::filesystem::path& folder, const Figures& figures);
+
+// The parts of it.
+[[nodiscard]] std::string tables(const Figures& figures);
+[[nodiscard]] std::string pareto(const Figures& figures);
+
+}  // namespace clearance::bench
