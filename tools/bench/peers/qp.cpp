@@ -7,19 +7,16 @@
 // solved in the null space of the active rows. Slacks are carried along, so alpha costs one product
 // with the rows. It remembers x and the active set while tracked, and starts from the bodies'
 // middles else.
-#include <Eigen/QR>
 #include <algorithm>
 
 #include "tools/bench/measure.hpp"
+#include "tools/bench/peers/null_space.hpp"
 #include "tools/bench/peers/peers.hpp"
 
 namespace clearance::bench {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Wide = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6>;
-using Tall = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
-using Short = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1>;
+using Vec6 = NullSpace::Vec6;
 
 struct Rows {
   Eigen::Matrix<double, Eigen::Dynamic, 3> normals;
@@ -47,6 +44,7 @@ class Qp {
 
   void forget() {
     active_.clear();
+    free_.resize(0);
     x_ << a_.middle, b_.middle;
   }
 
@@ -100,29 +98,9 @@ class Qp {
     speed_.tail(b_.offsets.size()).noalias() = b_.normals * v.tail<3>();
   }
 
-  [[nodiscard]] Tall active_rows() const {
-    Tall rows(6, active_.size());
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-      rows.col(static_cast<Eigen::Index>(k)) = row(active_[k]);
-    }
-    return rows;
-  }
-
-  // Delta: the best move that keeps the active rows (3.3.5), (3.3.6).
-  [[nodiscard]] Vec6 delta(const Vec3& residual) const {
-    const auto k = static_cast<Eigen::Index>(active_.size());
-    if (k == 6) return Vec6::Zero();
-    Eigen::Matrix<double, 6, 6> q = Eigen::Matrix<double, 6, 6>::Identity();
-    if (k > 0) q = Eigen::HouseholderQR<Tall>(active_rows()).householderQ() * q;
-    const Tall free = q.rightCols(6 - k);
-    const Wide seen = jacobian_ * free;
-    const Short y = Eigen::CompleteOrthogonalDecomposition<Wide>(seen).solve(-residual);
-    return free * y;
-  }
-
   // Delta and alpha; true if nothing blocked.
   bool step(const Vec3& residual, int& idle) {
-    const Vec6 move = delta(residual);
+    const Vec6 move = free_.least_squares(jacobian_, residual);
     const double length = move.norm();
     if (length <= kRounding * (1.0 + x_.norm())) return true;
     product(move);
@@ -139,6 +117,7 @@ class Qp {
     idle = alpha * length > kRounding ? 0 : idle + 1;
     if (blocking < 0) return true;
     active_.push_back(blocking);
+    free_.add(row(blocking));
     return false;
   }
 
@@ -146,27 +125,27 @@ class Qp {
   bool release(const Vec3& residual, bool smallest_index) {
     if (active_.empty()) return false;
     const Vec6 gradient = jacobian_.transpose() * residual;
-    const Short lambda = Eigen::HouseholderQR<Tall>(active_rows()).solve(-gradient);
-    std::size_t leaving = active_.size();
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      if (lambda[at] >= -kRounding * gradient.norm()) continue;
-      const bool better =
-          leaving == active_.size() ||
-          (smallest_index ? active_[k] < active_[leaving]
-                          : lambda[at] < lambda[static_cast<Eigen::Index>(leaving)]);
+    const Vec6 lambda = free_.multipliers(-gradient);
+    int leaving = -1;
+    for (int k = 0; k < free_.size(); ++k) {
+      if (lambda[k] >= -kRounding * gradient.norm()) continue;
+      const bool better = leaving < 0 || (smallest_index ? active_[k] < active_[leaving]
+                                                         : lambda[k] < lambda[leaving]);
       if (better) leaving = k;
     }
-    if (leaving == active_.size()) return false;
-    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(leaving));
+    if (leaving < 0) return false;
+    active_.erase(active_.begin() + leaving);
+    free_.resize(leaving);
+    for (std::size_t k = leaving; k < active_.size(); ++k) free_.add(row(active_[k]));
     return true;
   }
 
   const Rows& a_;
   const Rows& b_;
-  Eigen::Matrix<double, 3, 6> jacobian_;
+  NullSpace::Wide jacobian_;
   Vec6 x_;  // of A in its frame, of B in its frame
   std::vector<Eigen::Index> active_;
+  NullSpace free_;  // of the active rows, in their order
   Eigen::VectorXd slack_, speed_;
 };
 
