@@ -7,11 +7,13 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -272,6 +274,10 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   }
   out.flush();
   answerer.print_summary(asked, bad);
+  if (in.bad()) {
+    std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
+    return 2;
+  }
   if (!out) {
     std::cerr << "clearance-distance: could not write all answers to " << options.out << '\n';
     return 2;
@@ -280,6 +286,12 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
 }
 
 int run(const Options& options) {
+  std::error_code not_there;
+  if (std::filesystem::equivalent(options.cases, options.out, not_there)) {
+    std::cerr << "clearance-distance: " << options.out
+              << " is the file of cases itself; give another one for the answers\n";
+    return 2;
+  }
   std::ifstream file_in;
   std::ofstream file_out;
   if (options.cases != "-") {

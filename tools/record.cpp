@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <system_error>
 
 #include "config/cell_file.hpp"
 #include "monitor/daemon/dds.hpp"
@@ -45,6 +46,13 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  std::error_code not_there;
+  if (std::filesystem::equivalent(arguments.from_csv, arguments.out, not_there)) {
+    std::fprintf(stderr,
+                 "clearance-record: %s is the pose log itself; give another file to write\n",
+                 arguments.out.c_str());
+    return kUsage;
   }
   if (!arguments.overwrite && std::filesystem::exists(arguments.out)) {
     std::fprintf(stderr, "clearance-record: %s exists; --overwrite replaces it\n",

@@ -126,6 +126,9 @@ void HealthLog::update(const clearance_msg_Health& health) {
     }
     stale_[input.object] = stale;
   }
+  if (lines > kLinesAtOnce) {
+    spdlog::warn("{} more refusals and late inputs left out", lines - kLinesAtOnce);
+  }
   log_growth("batches lost", health.lost_batches, lost_);
   log_growth("overruns", health.overruns, overruns_);
   log_growth("reports dropped", health.dropped_reports, dropped_);

@@ -52,6 +52,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
                                              bool judge) {
   std::vector<std::string> broken;
   if (!all_seen(monitor) || !judge) return broken;
+  judged_ = true;
   if (const auto what = check_distance(report, monitor)) broken.push_back(*what);
   for (NoZone& expected : no_zone_) {
     const ZoneReport& zone = report.zones[expected.zone];
@@ -83,7 +84,8 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 }
 
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {
-  if (all_seen_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
+  if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
+  if (all_seen_) return "no tick could be judged: none lies between the start and the end given";
   std::vector<std::string> unseen;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) {

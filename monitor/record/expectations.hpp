@@ -24,7 +24,7 @@ class Expectations {
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
                                                bool judge);
 
-  // After the last tick: what could not be judged at all, because objects were never seen.
+  // After the last tick: why no tick could be judged, if so.
   [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
 
  private:
@@ -42,6 +42,7 @@ class Expectations {
   bool distance_broken_ = false;
   std::vector<NoZone> no_zone_;
   bool all_seen_ = false;
+  bool judged_ = false;  // some tick
   std::string error_;
 };
 

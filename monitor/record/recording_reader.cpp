@@ -32,10 +32,7 @@ bool RecordingReader::next(RecordedMessage& message) {
   while (mcap_.next(raw)) {
     const auto [known, added] = kinds_.try_emplace(raw.channel);
     if (added) known->second = kind_of(*raw.channel);
-    if (!known->second) {
-      ++passed_over_;
-      continue;
-    }
+    if (!known->second) continue;
     message = {*known->second, static_cast<std::int64_t>(raw.log_time),
                static_cast<std::int64_t>(raw.publish_time), raw.payload, raw.channel};
     return true;

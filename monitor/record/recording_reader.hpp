@@ -35,13 +35,10 @@ class RecordingReader {
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
     return mcap_.summary();
   }
-  // Messages of other topics or encodings.
-  [[nodiscard]] std::uint64_t passed_over() const noexcept { return passed_over_; }
 
  private:
   McapReader mcap_;
   std::map<const McapChannel*, std::optional<TopicKind>> kinds_;
-  std::uint64_t passed_over_ = 0;
 };
 
 // What a replay must know before it begins.

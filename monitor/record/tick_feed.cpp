@@ -24,6 +24,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.sources.clear();
   tick.recorded = nullptr;
   tick.restart = false;
+  tick.complete = true;
   return by_report_ ? next_by_report(tick) : next_by_time(tick);
 }
 
@@ -73,7 +74,10 @@ bool TickFeed::next_by_report(TickInput& tick) {
   tick.now_ns = report.now_ns;
   tick.restart = last_cycle_ != 0 && report.cycle <= last_cycle_;
   last_cycle_ = report.cycle;
-  if (tick.restart) consumed_.clear();
+  if (tick.restart) {
+    consumed_.clear();
+    missing_.clear();
+  }
   for (std::uint32_t i = 0; i < report.sources._length; ++i) {
     const clearance_msg_SourceUse& use = report.sources._buffer[i];
     tick.sources.push_back({SourceName(use.source), use.sequence_number});
@@ -82,6 +86,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
     if (!read_one()) break;
   }
   take_used(tick.sources, tick.samples);
+  tick.complete = missing_.empty();
   forget_unused(current_.log_ns);
   return true;
 }
@@ -111,7 +116,12 @@ void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSam
   for (const SourceUse& use : sources) {
     const std::size_t place = place_of(use);
     const bool found = place < batches_waiting_.size();
-    if (!found && !consumed(use)) ++not_in_the_file_;
+    if (found) {
+      missing_.erase(use.source.c_str());
+    } else if (!consumed(use)) {
+      ++not_in_the_file_;
+      missing_.insert(use.source.c_str());
+    }
     until.push_back(found ? place + 1 : 0);
     consumed_[use.source.c_str()] = use.sequence_number;
   }

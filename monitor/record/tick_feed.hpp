@@ -10,6 +10,7 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct TickInput {
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   bool restart = false;  // the daemon had been started anew: its monitor knew nothing
+  bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
 };
 
 class TickFeed {
@@ -81,6 +83,7 @@ class TickFeed {
   std::deque<WaitingReport> reports_waiting_;  // in file order
   WaitingReport current_;
   std::map<std::string, std::uint64_t> consumed_;  // by source: the last sequence number
+  std::set<std::string> missing_;                  // sources whose last batch is not in the file
   std::vector<clearance_msg_ZoneState> zones_;
   std::int64_t read_to_ns_ = 0;
   std::uint64_t last_cycle_ = 0;

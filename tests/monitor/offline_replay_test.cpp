@@ -272,6 +272,34 @@ TEST_F(OfflineReplayTest, RecordingThatBeginsLateIsComparedInWhatIsCertain) {
   EXPECT_THAT(result.notes, Contains(HasSubstr("begins at tick 51 of the daemon")));
 }
 
+TEST_F(OfflineReplayTest, TicksWhosePosesWereLostAreNotComparedInWhatIsCertain) {
+  record_run(scene, run);
+  rewrite([](std::vector<Kept>& messages) {
+    std::size_t place = report_of(messages, 50);
+    while (messages[place].kind != TopicKind::kPoses) --place;
+    messages.erase(messages.begin() + static_cast<std::ptrdiff_t>(place));
+  });
+  const OfflineReplay some = replay({.compare = Comparison::kBounds});
+  EXPECT_TRUE(some.ok()) << some.text();
+  EXPECT_LT(some.compared, 200u);
+  EXPECT_GT(some.compared, 150u);
+  EXPECT_THAT(some.notes, Contains(HasSubstr("1 batches that a tick used are not in")));
+  rewrite([](std::vector<Kept>& messages) {
+    std::erase_if(messages, [](const Kept& m) { return m.kind == TopicKind::kPoses; });
+  });
+  const OfflineReplay none = replay({.compare = Comparison::kBounds});
+  ASSERT_EQ(1u, none.failures.size()) << none.text();
+  EXPECT_THAT(none.failures[0].what, HasSubstr("no report could be compared"));
+}
+
+TEST_F(OfflineReplayTest, WindowWithoutATickIsNoProof) {
+  record_run(scene, run);
+  const OfflineReplay judged = replay({.start_s = 100.0, .expect_min_distance = 0.01});
+  ASSERT_EQ(1u, judged.failures.size()) << judged.text();
+  EXPECT_THAT(judged.failures[0].what, HasSubstr("none lies between the start and the end"));
+  EXPECT_FALSE(replay({.start_s = 100.0, .compare = Comparison::kBits}).ok());
+}
+
 TEST_F(OfflineReplayTest, PoseLogWithoutReportsTicksOnceADistinctTime) {
   write_text(folder / "log.csv",
              "t_ns,object,px,py,pz,qw,qx,qy,qz\n"

@@ -189,6 +189,10 @@ TEST_F(DistanceTool, SaysWhatIsWrongWithItsArguments) {
   const Outcome missing = run("--cases " + path("nowhere.jsonl") + " --out -");
   EXPECT_EQ(missing.status, 2);
   EXPECT_NE(missing.err.find("cannot read"), std::string::npos) << missing.err;
+  EXPECT_EQ(run("--cases " + path("") + " --out -").status, 2) << "a directory";
+  std::ofstream(path("cases.jsonl")) << cubes("one", 1.5);
+  EXPECT_EQ(run("--cases " + path("cases.jsonl") + " --out " + path("cases.jsonl")).status, 2);
+  EXPECT_EQ(read("cases.jsonl"), cubes("one", 1.5)) << "the cases are as they were";
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("Example"), std::string::npos) << help.out;

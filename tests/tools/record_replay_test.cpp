@@ -140,6 +140,19 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));
 }
 
+TEST_F(RecordReplay, NeverWritesOverTheFileThatItReads) {
+  ASSERT_EQ(0, record_log()) << output;
+  const std::string before = read_text(folder / "run.mcap");
+  for (const char* option : {"-o", "--csv"}) {
+    EXPECT_EQ(2, replay({option, path("run.mcap")}));
+    EXPECT_THAT(output, HasSubstr("is the recording itself"));
+    EXPECT_EQ(before, read_text(folder / "run.mcap"));
+  }
+  const std::string log = read_text(folder / "log.csv");
+  EXPECT_EQ(2, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("log.csv"), "--overwrite"}));
+  EXPECT_EQ(log, read_text(folder / "log.csv"));
+}
+
 TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
   const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
   record_run(scene, folder / "run.mcap", {.ticks = 300, .nearest = 0.05});

@@ -1,6 +1,8 @@
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include "config/cell_file.hpp"
 #include "monitor/record/expectations.hpp"
@@ -15,6 +17,11 @@ namespace clearance {
 namespace {
 
 void say(const std::string& text) { std::fprintf(stderr, "clearance-replay: %s\n", text.c_str()); }
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code neither_is_there;
+  return std::filesystem::equivalent(a, b, neither_is_there);
+}
 
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
@@ -97,6 +104,11 @@ int replay_in(Scene& scene, const ReplayArguments& arguments) {
 }  // namespace
 
 int replay_without_dds(const ReplayArguments& arguments) {
+  for (const std::string& output : {arguments.out, arguments.csv}) {
+    if (!same_file(output, arguments.recording)) continue;
+    say(output + " is the recording itself: it would be destroyed; give another file to write");
+    return kUsage;
+  }
   std::optional<CellResult> cell = find_cell(arguments);
   if (!cell) return kFailed;
   if (const auto* errors = std::get_if<std::vector<CellError>>(&*cell)) {
