@@ -9,6 +9,7 @@
 // middles else.
 #include <algorithm>
 
+#include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/peers/null_space.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -151,6 +152,9 @@ class Qp {
 
 }  // namespace
 
-void register_qp() { register_rows<Qp>("peer/qp/"); }
+void register_qp() {
+  register_rows<Qp>("peer/qp/");
+  register_intervals<Qp>("peer/qp/");
+}
 
 }  // namespace clearance::bench

@@ -135,7 +135,7 @@ std::string tracked_and_cold(const Figures& figures) {
 std::string intervals(const Figures& figures) {
   Cells head{"steps"};
   for (const char* load : kIntervalLoads) {
-    for (const char* who : {"ours", "fcl-gjk", "bullet"}) {
+    for (const char* who : {"ours", "fcl-gjk", "bullet", "qp"}) {
       head.push_back(print("%s: %s", load, who));
     }
   }
@@ -144,9 +144,9 @@ std::string intervals(const Figures& figures) {
     Cells cells{std::to_string(steps)};
     for (const char* load : kIntervalLoads) {
       const std::string name = "interval/" + std::to_string(steps) + "/" + load;
-      cells.push_back(ns_and_failures(figures.at(name)));
-      cells.push_back(ns_and_failures(figures.at("peer/fcl-gjk/" + name)));
-      cells.push_back(ns_and_failures(figures.at("peer/bullet/" + name)));
+      for (const char* who : {"", "peer/fcl-gjk/", "peer/bullet/", "peer/qp/"}) {
+        cells.push_back(ns_and_failures(figures.at(who + name)));
+      }
     }
     table.row(cells);
   }
