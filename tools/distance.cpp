@@ -85,12 +85,18 @@ std::array<double, N> numbers(const Json& list, const std::string& where, const 
   return out;
 }
 
+// As far as the core's shapes may reach: squares of such lengths are far from overflowing.
+constexpr double kFarthest = 1e100;  // m
+
 Pose read_pose(const Json& list, const std::string& where) {
   const auto v = numbers<7>(list, where, "[x, y, z, qw, qx, qy, qz]");
   const Pose pose{{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
   const double norm = pose.orientation.norm();
   if (!pose.position.allFinite() || !std::isfinite(norm)) {
     throw BadLine(where + " is not finite");
+  }
+  if (!(pose.position.cwiseAbs().maxCoeff() <= kFarthest)) {
+    throw BadLine(where + " lies more than 1e100 m from the origin");
   }
   if (norm == 0.0) throw BadLine(where + ": the quaternion has length zero");
   return pose;
@@ -122,8 +128,10 @@ ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   if (!body.is_object()) throw BadLine(where + " is not a JSON object");
   double radius = 0.0;
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
-    if (!found->is_number() || !(found->get<double>() >= 0.0)) {
-      throw BadLine(where + ".radius: expected a length in metres, found " + shown(*found));
+    if (!found->is_number() || !(found->get<double>() >= 0.0) ||
+        !(found->get<double>() <= kFarthest)) {
+      throw BadLine(where + ".radius: expected a length in metres, at most 1e100, found " +
+                    shown(*found));
     }
     radius = found->get<double>();
   }

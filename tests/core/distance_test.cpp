@@ -166,6 +166,20 @@ TEST(Distance, OfPointsIsEuclid) {
   expect_distance(ask(cube(), p, at(0, 0, 0)), std::sqrt(0.25 + 2 * 2.25));
 }
 
+// Squares of such lengths are zero in doubles.
+TEST(Distance, HoldsWhereSquaresUnderflow) {
+  const ConvexPolyhedron p = made(point(Vec3::Zero(), 0.0));
+  for (const double apart : {1e-150, 1e-160, 1e-200, 1e-300}) {
+    for (const DistanceResult& r :
+         {ask(p, p, at(apart, 0, 0)), ask(cube(), cube(), at(0, 1, apart)),
+          ask(half_space({0, 0, 1}, 0.0), p, at(0, 0, apart))}) {
+      EXPECT_LE(r.lower, apart);
+      EXPECT_GE(r.upper, r.lower);
+    }
+    EXPECT_GE(ask(p, p, at(apart, 0, 0)).upper, apart);
+  }
+}
+
 TEST(Distance, StopsEarlyWhenNobodyAskedHowFar) {
   TrackingState state;
   const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));

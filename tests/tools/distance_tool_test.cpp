@@ -146,6 +146,8 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
       R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":-1},"b":{"vertices":[[0,0,0]]}})",
       R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,0,0,0,0]})",
       R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"poses":[[[0,0,0,1,0,0,0]]]})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":1e101},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,1e101,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})",
       R"({"id":"x","a":{"vertices":[[0,0,1e999]]},"b":{"vertices":[[0,0,0]]}})",
   };
   const char* expected[] = {"not JSON",
@@ -156,6 +158,8 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
                             "a.radius: expected a length",
                             "pose_b: the quaternion has length zero",
                             "poses[0]: expected [pose_a, pose_b]",
+                            "at most 1e100",
+                            "pose_a lies more than 1e100 m from the origin",
                             "not JSON"};
   std::string in = cubes("good", 2.0);
   for (const std::string& line : bad) in += line + "\n";
