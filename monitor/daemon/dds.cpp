@@ -58,8 +58,7 @@ std::string configuration(const DdsOptions& options) {
       "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>";
   if (loopback) xml += "<Peer Address=\"127.0.0.1\"/>";
   for (const std::string& peer : options.peers) xml += "<Peer Address=\"" + peer + "\"/>";
-  xml += "</Peers></Discovery>";
-  xml += "</Domain></CycloneDDS>";
+  xml += "</Peers></Discovery></Domain></CycloneDDS>";
   // What a person sets for all of Cyclone comes last, so it wins.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;
