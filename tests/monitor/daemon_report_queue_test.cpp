@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {

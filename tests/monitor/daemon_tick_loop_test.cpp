@@ -6,8 +6,8 @@
 
 #include <deque>
 
-#include "tests/shared/allocation_count.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {

@@ -12,9 +12,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kRecord = std::string(CLEARANCE_BIN) + "/clearance-record";
-const std::string kReplay = std::string(CLEARANCE_BIN) + "/clearance-replay";
-
 constexpr const char* kCell = R"(name: bench
 units: {length: m, angle: deg}
 defaults: {age_limit_ms: 50, max_speed: 2}

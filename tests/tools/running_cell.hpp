@@ -20,6 +20,7 @@ namespace clearance::test {
 
 inline const std::string kDaemon = std::string(CLEARANCE_BIN) + "/clearanced";
 inline const std::string kRobot = std::string(CLEARANCE_BIN) + "/clearance-robot";
+inline const std::string kRecord = std::string(CLEARANCE_BIN) + "/clearance-record";
 inline const std::string kReplay = std::string(CLEARANCE_BIN) + "/clearance-replay";
 inline const std::string kWatch = std::string(CLEARANCE_BIN) + "/clearance-watch";
 

@@ -1,0 +1,79 @@
+// A recorded stream through the real programs, over real DDS on loopback: clearance-replay
+// publishes it, clearanced measures, clearance-record listens as any client would.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "tests/monitor/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// A second at 200 Hz: the right box comes to 0.2 m from the left one, stays a while, and leaves.
+std::string pose_log() {
+  std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
+  for (int k = 0; k < 200; ++k) {
+    const int away = std::max({0, 80 - k, k - 120});
+    const std::string time = std::to_string(5'000'000LL * k);
+    log += time + ",left,-0.5,0,3,1,0,0,0\n";
+    log += time + ",right," + std::to_string(-0.1 + 0.01 * away) + ",0,3,1,0,0,0\n";
+  }
+  return log;
+}
+
+std::string run(const std::string& program, const std::vector<std::string>& arguments) {
+  ChildProcess child(program, arguments);
+  EXPECT_EQ(child.wait(), 0) << child.output();
+  return child.output();
+}
+
+// "closest: left - right, 0.2 m (0.2 to 0.2)", without the tick.
+std::string closest(const std::string& output) {
+  const std::size_t begin = output.find("closest: ");
+  if (begin == std::string::npos) return output;
+  return output.substr(begin, output.find(" at tick", begin) - begin);
+}
+
+TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
+  const ScratchFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  write_text(folder / "cell.yaml", small_cell("small"));
+  write_text(folder / "log.csv", pose_log());
+  const Scene scene = std::get<Scene>(read_cell(path("cell.yaml")));
+  const DdsOptions dds = own_dds();
+  const auto where = dds_arguments(dds);
+  run(kRecord,
+      {"--from-csv", path("log.csv"), "-o", path("log.mcap"), "--cell", path("cell.yaml")});
+
+  ChildProcess client(kRecord, with({"-o", path("heard.mcap")}, where));
+  Participant probe(dds);
+  const Poses poses(probe, scene);  // never sends: it only tells who listens
+  ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; })) << client.output();
+  ChildProcess daemon(kDaemon, with({path("cell.yaml")}, where));
+  ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 2; })) << daemon.output();
+  run(kReplay,
+      with({path("log.mcap"), "--only", "clearance/poses", "--restamp", "--wait", "20"}, where));
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  client.signal(SIGINT);
+  EXPECT_EQ(client.wait(), 0) << client.output();
+
+  const std::string offline = run(kReplay, {"--offline", path("log.mcap")});
+  const std::string online = run(kReplay, {"--offline", path("heard.mcap"), "--compare-bounds"});
+  EXPECT_EQ(closest(offline), "closest: left - right, 0.2 m (0.2 to 0.2)");
+  EXPECT_EQ(closest(online), closest(offline));
+  EXPECT_TRUE(daemon.wrote("minimum  0.200000 m in [0.200000, 0.200000], left to right"))
+      << daemon.output();
+  EXPECT_THAT(online, HasSubstr("reports compared"));
+  EXPECT_THAT(online, Not(HasSubstr("reports are missing"))) << "a tick was lost";
+  EXPECT_TRUE(daemon.wrote(" 0 reports dropped")) << daemon.output();
+}
+
+}  // namespace
+}  // namespace clearance::test
