@@ -119,8 +119,8 @@ LoopEnd dqp3_variant(ActiveSide& a, ActiveSide& b) {
     if (apart < kContact) return {true, cycle};
     const double least = kRate * apart;
     if constexpr (kRelease == Release::kAggressive) {
-      const bool released = release_all(a, b, least);
-      if (step<kScan>(a, b) && !released) return {true, cycle};
+      release_all(a, b, least);
+      if (step<kScan>(a, b) && !release_all(a, b, least)) return {true, cycle};
     } else if constexpr (kRelease == Release::kConsistent) {
       const bool active = a.feature() != Feature::kInside && b.feature() != Feature::kInside;
       if (active && !release_best<kRelease>(a, b, least)) return {true, cycle};
