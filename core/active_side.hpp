@@ -78,7 +78,7 @@ class ActiveSide {
   // unusable.
   [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
-    return {static_cast<std::uint8_t>(feature_), index_, own_};
+    return {static_cast<std::uint8_t>(feature_), false, index_, own_};
   }
 
  private:

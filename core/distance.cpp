@@ -70,22 +70,13 @@ DistanceStatus judge(const Bounds& bounds, const Precision& p, double lower) noe
 DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& bounds,
                         const Precision& p) noexcept {
   DistanceResult r;
-  r.lower = std::max(0.0, bounds.lower - p.slack);
+  r.lower = bounds.lower - p.slack;
   r.upper = bounds.upper + p.slack;
   r.distance = bounds.upper;
   r.normal = bounds.normal;
   r.point_on_a = a.common();
   r.point_on_b = b.common();
   r.status = judge(bounds, p, r.lower);
-  return r;
-}
-
-DistanceResult overlapping(const Vec3& common_point) noexcept {
-  DistanceResult r;
-  r.distance = r.lower = r.upper = 0.0;
-  r.normal = Vec3::Constant(std::nan(""));
-  r.point_on_a = r.point_on_b = common_point;
-  r.status = DistanceStatus::kOverlapping;
   return r;
 }
 
@@ -115,20 +106,15 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   Bounds bounds;
   bounds.upper = (b.common() - a.common()).norm();
   const Precision p = precision(a.body(), b.body(), a_from_b, std::min(first, bounds.upper));
-  DistanceResult result;
-  Vec3 shared;
-  if (outcome.end == Dqp3End::kContact && share_a_point(a, b, p, shared)) {
-    result = overlapping(shared);
-  } else {
-    if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
-      const double apart = outcome.towards.norm();
-      const Vec3 n = outcome.towards / apart;
-      bounds.raise(proved_distance(n, apart, a, b, p), n);
-    }
-    if (!(bounds.upper - bounds.lower <= p.tight)) prove_from_below(bounds, a, b, p);
-    result = conclude(a, b, bounds, p);
-    if (bounds.upper - bounds.lower > p.tight) refine(a, b, a_from_b, p, result);
+  if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
+    const double apart = outcome.towards.norm();
+    const Vec3 n = outcome.towards / apart;
+    bounds.raise(proved_distance(n, apart, a, b, p), n);
   }
+  const bool met = outcome.end == Dqp3End::kContact;
+  if (!met && !(bounds.upper - bounds.lower <= p.tight)) prove_from_below(bounds, a, b, p);
+  DistanceResult result = conclude(a, b, bounds, p);
+  if (!met && bounds.upper - bounds.lower > p.tight) refine(a, b, a_from_b, p, result);
   result.iterations = outcome.iterations;
   return result;
 }
@@ -194,12 +180,14 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const DistanceOptions& options) noexcept {
   DistanceResult result;
   if (far_by_spheres(a, b, a_from_b, options.far_away, result)) return result;
-  if (!by_walking(a, b, a_from_b, state, result)) {
+  if (!still_overlapping(a, b, a_from_b, state, result) &&
+      !by_walking(a, b, a_from_b, state, result)) {
     ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
     place(side_a, state.a, side_b);
     place(side_b, state.b, side_a);
     result = core_distance(side_a, side_b, a_from_b);
     state = {side_a.tracked(), side_b.tracked()};
+    if (!(result.lower > 0.0)) measure_overlap(a, b, a_from_b, state, result);
   }
   add_radii(result, a, b);
   return result;

@@ -15,16 +15,27 @@ namespace clearance {
 enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
   kFarAway,         // lower >= far_away; nobody asked by how much
-  kTouching,        // apart or overlapping by less than rounding can tell
-  kOverlapping,     // A and B share a point
+  kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
+  kOverlapping,     // proved: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
 };
 
 [[nodiscard]] const char* name(DistanceStatus status) noexcept;
 
 // Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'
-// doubles. Signed where radii overlap but cores do not (sphere against box: minus the depth). Where
-// cores overlap the distance reported is minus the sum of the radii: no deeper depth is claimed.
+// doubles. The distance is signed: apart, that of the closest points; overlapping, minus the depth,
+// the length of the shortest translation after which the bodies only touch (core/depth.hpp). Either
+// way no motion that moves every point by at most s changes it by more than s.
+//
+// Apart, point_on_a and point_on_b are closest points, and point_on_b - point_on_a = distance *
+// normal. Overlapping, B moved by depth * normal only touches A, and the two points are those that
+// meet there: point_on_a is A's farthest along the normal, point_on_b is B's farthest against it
+// (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
+// up to rounding.
+//
+// Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
+// vouch for: lower is -infinity then, distance and normal are NaN, the points lie in both bodies,
+// and upper still bounds the depth (-infinity: certainly no translation).
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;
@@ -35,13 +46,14 @@ struct DistanceResult {
 };
 
 // What a pair remembers between calls: the active feature of each body and where the witness lay on
-// it. A hint and never a fact: an empty, stale or wrong state costs iterations and leaves the
+// it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never a fact: an empty, stale or wrong state costs iterations and leaves the
 // bounds true.
 struct TrackingState {
   static constexpr std::uint8_t kCold = 255;
   struct Side {
     std::uint8_t dimension =
         kCold;  // 0 vertex, 1 edge, 2 facet, 3 inside (none active); kCold: no hint
+    bool deep = false;  // of A only: the bodies overlapped
     std::int32_t feature = kNone;
     Vec3 point = Vec3::Zero();  // in the body's own frame
   };

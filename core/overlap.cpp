@@ -1,162 +1,141 @@
 #include "core/overlap.hpp"
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 
-#include "core/simplex.hpp"
+#include "core/depth.hpp"
+#include "core/dqp3.hpp"
+#include "core/feature_walk.hpp"
+#include "core/precision.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr int kSteps = 32;
-constexpr int kHullSteps = 24;
+// Edges nearer to parallel than this (the sine) do not say much about a direction across both.
+constexpr double kCrossing = 1e-3;
 
-// The largest n.x - d over the facets of both bodies, as a function of x.
-class Violation {
- public:
-  Violation(const ActiveSide& a, const ActiveSide& b) noexcept : sides_{&a, &b} {}
+// To find the points that meet when B has been moved by its depth, B is moved a little farther: by
+// the depth again, at least by this part of the bodies' size, so that the direction between the
+// closest points is not lost in rounding.
+constexpr double kFarther = 0x1p-20;
 
-  // Calls visit(value at x, normal) for every facet, all in the common frame.
-  template <class Visit>
-  void each(const Vec3& x, Visit&& visit) const noexcept {
-    for (const ActiveSide* side : sides_) {
-      const Vec3 origin = side->point_to_common(Vec3::Zero());
-      const Vec3 own = side->direction_to_own(x - origin);
-      for (const Facet& f : side->body().facets) {
-        visit(f.normal.dot(own) - f.offset, *side, f);
-      }
-    }
+// The direction along which the features of a tracking state part the bodies. False: they do not
+// say.
+bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState& state,
+                  Separator& out) noexcept {
+  const auto has = [](const TrackingState::Side& side, int dimension, std::size_t count) {
+    return side.dimension == dimension && side.feature >= 0 &&
+           static_cast<std::size_t>(side.feature) < count;
+  };
+  if (has(state.a, 2, a.body().facets.size())) {
+    out = {a.body().facets[state.a.feature].normal, state.a.feature, kNone};
+    return true;
   }
-
-  [[nodiscard]] double at(const Vec3& x) const noexcept {
-    double worst = -kInfinity;
-    each(x, [&](double v, const ActiveSide&, const Facet&) { worst = std::max(worst, v); });
-    return worst;
+  if (has(state.b, 2, b.body().facets.size())) {
+    const Vec3 normal = b.direction_to_common(b.body().facets[state.b.feature].normal);
+    out = {-normal, kNone, state.b.feature};
+    return true;
   }
-
- private:
-  std::array<const ActiveSide*, 2> sides_;
-};
-
-// The normals of the facets that are (nearly) the worst, and the shortest vector of their hull
-// (Gilbert).
-class WorstNormals {
- public:
-  void add(const Vec3& n) noexcept {
-    if (size_ < items_.size()) items_[size_++] = n;
+  if (!has(state.a, 1, a.body().edges.size()) || !has(state.b, 1, b.body().edges.size())) {
+    return false;
   }
-  [[nodiscard]] Vec3 shortest() const noexcept {
-    std::array<WideVec, 4> simplex{wide(items_[0])};
-    std::size_t size = 1;
-    Vec3 p = items_[0];
-    for (int k = 0; k < kHullSteps; ++k) {
-      std::size_t lowest = 0;
-      for (std::size_t i = 1; i < size_; ++i) {
-        if (items_[i].dot(p) < items_[lowest].dot(p)) lowest = i;
-      }
-      if (p.squaredNorm() - items_[lowest].dot(p) < 1e-9 * p.squaredNorm() || size == 4) break;
-      simplex[size++] = wide(items_[lowest]);
-      const ClosestPoint closest = closest_to_origin(simplex, size);
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        if (closest.weights[i].high > 0.0) simplex[kept++] = simplex[i];
-      }
-      size = kept;
-      p = narrow(closest.point);
-    }
-    return p;
-  }
-
- private:
-  std::array<Vec3, 24> items_;
-  std::size_t size_ = 0;
-};
-
-// How far along `direction` (unit) the largest violation falls: follows its piecewise linear
-// course.
-double descent(const Violation& violation, const Vec3& x, const Vec3& direction,
-               double farthest) noexcept {
-  double s = 0.0, height = violation.at(x), slope = -kInfinity;
-  violation.each(x, [&](double v, const ActiveSide& side, const Facet& f) {
-    if (v == height) slope = std::max(slope, side.direction_to_common(f.normal).dot(direction));
-  });
-  while (slope < 0.0 && s < farthest) {
-    double next = farthest, next_slope = 0.0;
-    violation.each(x, [&](double v, const ActiveSide& side, const Facet& f) {
-      const double g = side.direction_to_common(f.normal).dot(direction);
-      if (!(g > slope)) return;
-      const double crossing = (height - v) / (g - slope);
-      if (crossing > s && crossing < next) {
-        next = crossing;
-        next_slope = g;
-      }
-    });
-    // Lines through (0, value): continue on the one that takes over.
-    height += next_slope == 0.0 ? 0.0 : (slope - next_slope) * next;
-    s = next;
-    slope = next_slope;
-  }
-  return s;
+  const Edge& e = a.body().edges[state.a.feature];
+  const Vec3 n = e.direction.cross(
+      b.direction_to_common(b.body().edges[state.b.feature].direction));
+  const double sine = n.norm();
+  if (!(sine > kCrossing)) return false;
+  const double inwards = n.dot(e.inward[0] + e.inward[1]);
+  out = {n / (inwards > 0.0 ? -sine : sine)};
+  return true;
 }
 
-// A point or a segment against a solid: what is left of it after each facet has cut its part off.
-bool share_a_point_of(const ActiveSide& flat, const ActiveSide& solid, const Precision& p,
-                      Vec3& shared) noexcept {
-  const bool is_point = flat.body().edges.empty();
-  const Vec3 start = is_point ? flat.body().vertices[0].position : flat.body().edges[0].point;
-  const Vec3 along = is_point ? Vec3(Vec3::Zero()) : flat.body().edges[0].direction;
-  const Vec3 origin = solid.point_to_common(Vec3::Zero());
-  const Vec3 from = solid.direction_to_own(flat.point_to_common(start) - origin);
-  const Vec3 way = solid.direction_to_own(flat.direction_to_common(along));
-  double first = 0.0, last = is_point ? 0.0 : flat.body().edges[0].end;
-  for (const Facet& f : solid.body().facets) {
-    const double room = f.offset - f.normal.dot(from) - 2.0 * p.slack, speed = f.normal.dot(way);
-    if (speed > 0.0) {
-      last = std::min(last, room / speed);
-    } else if (speed < 0.0) {
-      first = std::max(first, room / speed);
-    } else if (!(room > 0.0)) {
-      return false;
-    }
+// Where nothing is remembered: from one middle to the other.
+Separator between_middles(const ActiveSide& a, const ActiveSide& b) noexcept {
+  const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
+  const double length = between.norm();
+  return {length > 0.0 ? Vec3(between / length) : Vec3::UnitZ()};
+}
+
+Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                    const RelativePose& a_from_b, const TrackingState& state) noexcept {
+  const ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  Separator guess;
+  if (!direction_of(side_a, side_b, state, guess)) guess = between_middles(side_a, side_b);
+  return depth(side_a, side_b, a_from_b, &guess);
+}
+
+// The points that meet when B has been moved clear of A.
+void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, const Depth& found, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation.norm();
+  const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
+  RelativePose moved = a_from_b;
+  moved.translation += (found.value + farther) * found.normal;
+  ClosestFeatures closest;
+  if (walk_features(a, b, moved, state, closest)) {
+    state.a.point = closest.point_a;
+    state.b.point = closest.own_b;
+    r.iterations = static_cast<std::uint16_t>(closest.steps);
+  } else {
+    ActiveSide side_a(a, nullptr), side_b(b, &moved);
+    if (!side_a.place_tracked(state.a)) side_a.place_cold(side_b.point_to_common(b.interior));
+    if (!side_b.place_tracked(state.b)) side_b.place_cold(a.interior);
+    r.iterations = dqp3(side_a, side_b, 0.0).iterations;
+    state = {side_a.tracked(), side_b.tracked()};
   }
-  if (!(first <= last)) return false;
-  shared = flat.point_to_common(start + 0.5 * (first + last) * along);
-  return true;
+  r.point_on_a = state.a.point;
+  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+}
+
+void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                          const RelativePose& a_from_b, const Depth& found, TrackingState& state,
+                          DistanceResult& r) noexcept {
+  r.status = DistanceStatus::kOverlapping;
+  r.lower = -found.upper;
+  r.upper = -found.lower;
+  if (!(found.value < kInfinity)) {
+    r.distance = std::nan("");
+    r.normal = Vec3::Constant(std::nan(""));
+    return;
+  }
+  r.distance = std::clamp(-found.value, r.lower, r.upper);
+  r.normal = found.normal;
+  place_witnesses(a, b, a_from_b, found, state, r);
+  state.a.deep = true;
 }
 
 }  // namespace
 
-bool share_a_point(const ActiveSide& a, const ActiveSide& b, const Precision& p,
-                   Vec3& shared) noexcept {
-  if (a.body().facets.empty() && b.body().facets.empty()) return false;
-  if (a.body().facets.empty()) return share_a_point_of(a, b, p, shared);
-  if (b.body().facets.empty()) return share_a_point_of(b, a, p, shared);
-  const Violation violation(a, b);
-  Vec3 x = 0.5 * (a.common() + b.common());
-  double band = 4.0 * p.slack;
-  for (int k = 0; k < kSteps; ++k) {
-    const double worst = violation.at(x);
-    if (worst < -2.0 * p.slack) {
-      shared = x;
-      return true;
-    }
-    WorstNormals normals;
-    violation.each(x, [&](double v, const ActiveSide& side, const Facet& f) {
-      if (v >= worst - band) normals.add(side.direction_to_common(f.normal));
-    });
-    const Vec3 up = normals.shortest();
-    const double length = up.norm();
-    if (!(length > 1e-12)) return false;
-    const Vec3 direction = -up / length;
-    const double s = descent(violation, x, direction, p.size);
-    const Vec3 next = x + s * direction;
-    if (!(violation.at(next) < worst)) {
-      band *= 16.0;
-      if (band > 1e-3 * p.size) return false;
-      continue;
-    }
-    x = next;
+bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                       const RelativePose& a_from_b, TrackingState& state,
+                       DistanceResult& result) noexcept {
+  if (!state.a.deep) return false;
+  state.a.deep = false;
+  const Depth found = tracked_depth(a, b, a_from_b, state);
+  if (!(found.lower > 0.0 && found.value < kInfinity)) return false;
+  conclude_overlapping(a, b, a_from_b, found, state, result);
+  return true;
+}
+
+void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, TrackingState& state,
+                     DistanceResult& result) noexcept {
+  const Depth found = tracked_depth(a, b, a_from_b, state);
+  if (found.lower > 0.0) {
+    conclude_overlapping(a, b, a_from_b, found, state, result);
+    return;
   }
-  return false;
+  if (-found.upper > result.lower) {
+    result.lower = -found.upper;
+    result.normal = found.normal;
+  }
+  result.distance = std::max(result.distance, result.lower);
+  const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
+  const bool tight = result.upper - result.lower <= 2.0 * (p.slack + p.tight);
+  result.status = !tight                ? DistanceStatus::kIterationLimit
+                  : result.lower > 0.0 ? DistanceStatus::kConverged
+                                       : DistanceStatus::kTouching;
 }
 
 }  // namespace clearance

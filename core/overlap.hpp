@@ -1,15 +1,22 @@
-// Do the two bodies share a point beyond doubt?
+// From the depth of two overlapping bodies to a DistanceResult, tracked.
 #pragma once
 
-#include "core/active_side.hpp"
-#include "core/precision.hpp"
+#include "core/convex_polyhedron.hpp"
+#include "core/distance.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
-// Starts where the two points met and goes deeper into both bodies (steepest descent on the largest
-// facet violation, which is convex) until a point lies inside every facet of both by more than
-// rounding. That point, in the common frame, is the proof. False: none found, which proves nothing.
-[[nodiscard]] bool share_a_point(const ActiveSide& a, const ActiveSide& b, const Precision& p,
-                                 Vec3& shared) noexcept;
+// For bodies that overlapped in the last query: settles this one, if they do still. False: not
+// proved; `result` is not touched, and the features of `state` are where a search should begin.
+[[nodiscard]] bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                     const RelativePose& a_from_b, TrackingState& state,
+                                     DistanceResult& result) noexcept;
+
+// For a result (cores only, without radii) whose lower bound is not positive: bounds it from below,
+// and where the cores overlap, finds their depth. `state` holds the last features, and is moved on.
+void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, TrackingState& state,
+                     DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -100,18 +100,6 @@ class Simplex {
     for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(corners_[i].b);
     return p;
   }
-  // Distance of the origin from the nearest face, when it lies inside a tetrahedron.
-  [[nodiscard]] double depth() const noexcept {
-    double least = kInfinity;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const WideVec& p = corners_[i].difference;
-      const WideVec& q = corners_[(i + 1) % 4].difference;
-      const WideVec n = cross(q - p, corners_[(i + 2) % 4].difference - p);
-      const double length = static_cast<double>(sqrt(dot(n, n)));
-      least = std::min(least, std::abs(static_cast<double>(dot(n, p))) / length);
-    }
-    return least;
-  }
 
  private:
   std::array<Corner, 4> corners_;
@@ -128,17 +116,6 @@ void improve_upper(DistanceResult& r, const Simplex& simplex, double length,
   r.point_on_b = simplex.point_on_b();
 }
 
-void conclude_inside(DistanceResult& r, const Simplex& simplex, double slack) noexcept {
-  improve_upper(r, simplex, 0.0, slack);
-  if (simplex.size() == 4 && simplex.depth() > slack) {
-    r.distance = r.lower = r.upper = 0.0;
-    r.normal = Vec3::Constant(std::nan(""));
-    r.status = DistanceStatus::kOverlapping;
-  } else {
-    r.status = DistanceStatus::kTouching;
-  }
-}
-
 }  // namespace
 
 void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
@@ -149,7 +126,11 @@ void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   for (int round = 0; round < kRounds; ++round) {
     const ClosestPoint closest = simplex.reduce();
     const double length = static_cast<double>(sqrt(closest.length2));
-    if (simplex.size() == 4 || !(length > 0.0)) return conclude_inside(r, simplex, p.slack);
+    if (simplex.size() == 4 || !(length > 0.0)) {  // the origin is inside
+      improve_upper(r, simplex, 0.0, p.slack);
+      r.status = DistanceStatus::kTouching;
+      return;
+    }
     improve_upper(r, simplex, length, p.slack);
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
     const Corner next = body.corner(n);

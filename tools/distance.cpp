@@ -246,9 +246,13 @@ class Answerer {
 
   static OrderedJson figures(const DistanceResult& r, const Pose& world_from_a) {
     OrderedJson out;
-    out["distance"] = r.distance;
-    out["lower"] = r.lower;
-    out["upper"] = r.upper;
+    const auto positive = [](double signed_value) { return std::max(0.0, signed_value); };
+    out["distance"] = r.upper < 0.0 ? 0.0 : positive(r.distance);
+    out["lower"] = positive(r.lower);
+    out["upper"] = positive(r.upper);
+    out["penetration"] = positive(-r.distance);
+    out["penetration_lower"] = positive(-r.upper);
+    out["penetration_upper"] = positive(-r.lower);
     out["witness_a"] = world_point(world_from_a, r.point_on_a);
     out["witness_b"] = world_point(world_from_a, r.point_on_b);
     out["status"] = name(r.status);

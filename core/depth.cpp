@@ -1,0 +1,97 @@
+#include "core/depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/depth_search.hpp"
+
+namespace clearance {
+namespace {
+
+// Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
+// the exact one next to it on the exact arc (6), a corner in its plane (6).
+constexpr double kOnArc = 12 * 0x1p-53;
+
+using Source = DepthSearch::Source;
+
+// Where the best direction is exactly a facet's, the certificate may use the facet.
+Separator separator(const DifferenceBody& body, const DepthSearch::Best& best, const ActiveSide& a,
+                    const ActiveSide& b) noexcept {
+  if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
+    return {body.to_common(best.n).normalized()};
+  }
+  const bool of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
+  if (!of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
+  return {-b.direction_to_common(b.body().facets[best.facet].normal), kNone, best.facet};
+}
+
+// How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
+// edge of X, has a direction exactly there in which X reaches exactly as far as that feature.
+double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
+                 const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+  const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
+  if (feature_of_x && body.y().bounded()) return best.height + kOnArc * p.size + p.slack;
+  return -separation(s, a, b, p) + p.slack;
+}
+
+// Two points or segments have no inside: they meet in a point and are parted by next to nothing.
+Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+  const auto along = [](const ActiveSide& s) {
+    return s.body().edges.empty() ? Vec3::Zero().eval()
+                                  : s.direction_to_common(s.body().edges[0].direction);
+  };
+  const Vec3 e = along(a), f = along(b);
+  Vec3 n = e.cross(f);
+  if (!(n.norm() > 1e-6)) n = (e.isZero() ? (f.isZero() ? Vec3::UnitZ().eval() : f) : e).unitOrthogonal();
+  n.normalize();
+  const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
+  Depth out;
+  out.normal = forth >= back ? n : Vec3(-n);
+  out.value = -std::max(forth, back);
+  out.upper = out.value + p.slack;
+  return out;
+}
+
+}  // namespace
+
+Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+            const Separator* guess) noexcept {
+  const Precision start = precision(a.body(), b.body(), a_from_b, 0.0);
+  if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
+  const DifferenceBody body(a.body(), b.body(), a_from_b);
+  DepthSearch search(body, start.tight, a_from_b.rotation_error + 0x1p-50);
+  if (guess != nullptr) {
+    const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
+    const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
+    if (of_x != kNone) {
+      search.guess_facet_of_x(of_x);
+    } else if (of_y != kNone) {
+      search.guess_facet_of_y(of_y);
+    } else {
+      search.guess(body.from_common(guess->normal));
+    }
+  }
+  if (!search.ended_early()) search.run();
+
+  Depth out;
+  const DepthSearch::Best& best = search.best();
+  if (best.source == Source::kNothing) {
+    out.lower = std::max(0.0, search.lower() - kOnArc * start.size - start.slack);
+    return out;
+  }
+  const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
+  const Separator s = separator(body, best, a, b);
+  out.normal = s.normal;
+  out.upper = certified(body, best, s, a, b, p);
+  if (!(out.upper < kInfinity)) {
+    out.value = kInfinity;
+  } else {
+    out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
+  }
+  if (!search.ended_early()) {
+    out.lower = std::max(0.0, std::min(search.lower(), best.height) - kOnArc * p.size - p.slack);
+  }
+  return out;
+}
+
+}  // namespace clearance

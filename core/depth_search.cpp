@@ -1,0 +1,192 @@
+#include "core/depth_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+// Parts of one arc that wait their turn. A split leaves one behind, and the other shrinks by a
+// vertex of Y's outline at least; on the hard cases of tests/ no more than 7 have ever waited.
+constexpr std::size_t kWaiting = 48;
+// Samples of one arc; more than the vertices on the outline of any body of some thousand facets.
+constexpr int kSamples = 1024;
+
+// Does the body go on for ever along n? For certain; or as far as rounding can tell.
+bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
+  return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
+    return n.dot(ray.direction) > margin * ray.direction.norm();
+  });
+}
+bool may_rise(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
+  return rises(body, n, -margin);
+}
+
+}  // namespace
+
+std::size_t DepthSearch::cell(const Vec3& n) noexcept {
+  const double x = std::abs(n.x()), y = std::abs(n.y()), z = std::abs(n.z());
+  const int axis = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+  return static_cast<std::size_t>(axis * 8 + (n.x() < 0.0) * 4 + (n.y() < 0.0) * 2 +
+                                  (n.z() < 0.0));
+}
+
+void DepthSearch::improve(double height, const Vec3& n, Source source,
+                          std::int32_t facet) noexcept {
+  if (height < best_.height) best_ = {height, n, source, facet};
+}
+
+void DepthSearch::guess(const Vec3& n) noexcept {
+  if (may_rise(body_.x(), n, level_) || may_rise(body_.y(), -body_.direction_to_y(n), level_)) {
+    return;
+  }
+  const Vec3 on_x = body_.x().anchors[support(body_.x(), n).anchor];
+  const Vec3 corner = body_.corner(on_x, n);
+  const std::size_t slot = cell(n);
+  corners_[slot] = corner;
+  has_corner_[slot] = true;
+  improve(corner.dot(n) + 2.0 * tight_, n, Source::kGuess, kNone);
+}
+
+void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
+  const Facet& facet = body_.x().facets[index];
+  const Vec3& n = facet.normal;
+  if (!body_.y().bounded() && rises(body_.y(), -body_.direction_to_y(n), level_)) return;
+  const std::size_t slot = cell(n);
+  if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
+  corners_[slot] = body_.corner(facet.point, n);
+  has_corner_[slot] = true;
+  const double height = corners_[slot].dot(n);
+  lower_to(height);
+  improve(height, n, Source::kFacetOfX, index);
+}
+
+void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
+  const Facet& facet = body_.y().facets[index];
+  const Vec3 n = -body_.direction_from_y(facet.normal);
+  if (rises(body_.x(), n, level_)) return;
+  const std::size_t slot = cell(n);
+  if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
+  corners_[slot] = body_.corner_on_x(facet.point, n);
+  has_corner_[slot] = true;
+  const double height = corners_[slot].dot(n);
+  lower_to(height);
+  // On the rim of what an unbounded X allows, X's own arcs have it more accurately.
+  if (!may_rise(body_.x(), n, level_)) improve(height, n, Source::kFacetOfY, index);
+}
+
+void DepthSearch::facets_of_x() noexcept {
+  const auto count = static_cast<std::int32_t>(body_.x().facets.size());
+  for (std::int32_t i = 0; i < count && !ended_early(); ++i) look_at_facet_of_x(i);
+}
+
+void DepthSearch::facets_of_y() noexcept {
+  const auto count = static_cast<std::int32_t>(body_.y().facets.size());
+  for (std::int32_t i = 0; i < count && !ended_early(); ++i) look_at_facet_of_y(i);
+}
+
+DepthSearch::Sample DepthSearch::sample(const Arc& arc, const Vec2& at) noexcept {
+  const Vec3 n = arc.direction(at);
+  const std::size_t slot = cell(n);
+  corners_[slot] = body_.corner(arc.on_edge, n);
+  has_corner_[slot] = true;
+  const Sample found{at, arc.project(corners_[slot])};
+  improve(found.height(), n, Source::kArc, kNone);
+  return found;
+}
+
+bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
+  for (const Ray& ray : body_.y().rays) {
+    const Vec2 along = -arc.project(body_.direction_from_y(ray.direction.normalized()));
+    const bool l_rises = along.dot(l) > level_, r_rises = along.dot(r) > level_;
+    if (l_rises && r_rises) return false;
+    if (!l_rises && !r_rises) continue;
+    Vec2 level(-along.y(), along.x());
+    if (level.dot(l_rises ? r : l) < 0.0) level = -level;
+    (l_rises ? l : r) = level.normalized();
+  }
+  return true;
+}
+
+void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last) noexcept {
+  struct Part {
+    Sample l, r;
+  };
+  std::array<Part, kWaiting> waiting;
+  std::size_t count = 1;
+  waiting[0] = {first, last};
+  for (int samples = 0; count > 0;) {
+    const Part part = waiting[--count];
+    const Sample &l = part.l, &r = part.r;
+    const double bound = std::max(std::min(l.height(), l.corner.dot(r.at)),
+                                  std::min(r.height(), r.corner.dot(l.at)));
+    if (bound >= goal()) {
+      lower_to(bound);
+      continue;
+    }
+    const Vec2 between = r.corner - l.corner;
+    Vec2 m(-between.y(), between.x());
+    if (m.dot(l.at + r.at) < 0.0) m = -m;
+    const Sample middle = sample(arc, m.normalized());
+    const double crossing = std::min(l.corner.dot(middle.at), r.corner.dot(middle.at));
+    if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > kSamples) {
+      lower_to(std::min({l.height(), crossing, r.height()}));
+      continue;
+    }
+    waiting[count++] = {middle, r};
+    waiting[count++] = {l, middle};
+  }
+}
+
+// All directions from l to r, less than half a turn.
+void DepthSearch::settle(const Arc& arc, Vec2 l, Vec2 r) noexcept {
+  if (!body_.y().bounded() && !clip(arc, l, r)) return;
+  // Both tests are for the whole arc: c.n at least the smaller one of c.l and c.r.
+  const auto settled_by = [&](const Vec2& corner) {
+    const double bound = std::min(corner.dot(l), corner.dot(r));
+    if (!(bound >= goal())) return false;
+    lower_to(bound);
+    return true;
+  };
+  const Vec2 sum = l + r;
+  const Vec2 middle = sum.squaredNorm() > 1e-3 ? sum.normalized() : Vec2(-l.y(), l.x());
+  const std::size_t slot = cell(arc.direction(middle));
+  if (has_corner_[slot] && settled_by(arc.project(corners_[slot]))) return;
+  const Sample m = sample(arc, middle);
+  if (settled_by(m.corner)) return;
+  const Sample from_l = sample(arc, l);
+  if (settled_by(from_l.corner)) return;
+  const Sample from_r = sample(arc, r);
+  if (settled_by(from_r.corner)) return;
+  split(arc, from_l, m);
+  if (!ended_early()) split(arc, m, from_r);
+}
+
+// A segment's only edge: all directions across it.
+void DepthSearch::full_circle(const Edge& edge) noexcept {
+  const Vec3 u = edge.direction.unitOrthogonal();
+  const Arc arc{u, edge.direction.cross(u), edge.point};
+  const std::array<Vec2, 5> quarters = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1),
+                                        Vec2(1, 0)};
+  for (std::size_t i = 0; i < 4; ++i) settle(arc, quarters[i], quarters[i + 1]);
+}
+
+void DepthSearch::arcs() noexcept {
+  for (const Edge& edge : body_.x().edges) {
+    if (ended_early()) return;
+    if (edge.facet[0] == kNone) {
+      full_circle(edge);
+      continue;
+    }
+    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward[0], edge.point};
+    settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
+  }
+}
+
+void DepthSearch::run() noexcept {
+  facets_of_x();
+  facets_of_y();
+  arcs();
+}
+
+}  // namespace clearance

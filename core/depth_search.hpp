@@ -1,0 +1,85 @@
+// One search for the direction in which two bodies part soonest (see core/depth.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/difference_body.hpp"
+
+namespace clearance {
+
+class DepthSearch {
+ public:
+  enum class Source : std::uint8_t { kNothing, kGuess, kFacetOfX, kFacetOfY, kArc };
+  struct Best {
+    double height = kInfinity;  // m: h(n)
+    Vec3 n = Vec3::Zero();      // X's frame
+    Source source = Source::kNothing;
+    std::int32_t facet = kNone;
+  };
+
+  // tight: m, how near to the best h a bound from below must come. direction_error: of a direction
+  // turned into the other body's frame.
+  DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
+      : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {}
+
+  // Any unit n. Only a target to beat: what the facets and arcs have is found again there.
+  void guess(const Vec3& n) noexcept;
+  void guess_facet_of_x(std::int32_t facet) noexcept { look_at_facet_of_x(facet); }
+  void guess_facet_of_y(std::int32_t facet) noexcept { look_at_facet_of_y(facet); }
+  // Everything there is; stops early when the bodies turn out to be apart.
+  void run() noexcept;
+
+  [[nodiscard]] const Best& best() const noexcept { return best_; }
+  // No h is lower (before rounding): valid after run() unless ended_early().
+  [[nodiscard]] double lower() const noexcept { return lower_; }
+  [[nodiscard]] bool ended_early() const noexcept { return best_.height <= tight_; }
+
+ private:
+  using Vec2 = Eigen::Vector2d;
+
+  // Directions x u + y w of the plane across an edge of X, and a point of that edge.
+  struct Arc {
+    Vec3 u, w, on_edge;
+    [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept {
+      return at.x() * u + at.y() * w;
+    }
+    [[nodiscard]] Vec2 project(const Vec3& v) const noexcept { return {v.dot(u), v.dot(w)}; }
+  };
+  // What is known in one direction of an arc.
+  struct Sample {
+    Vec2 at;      // the direction
+    Vec2 corner;  // a farthest corner of the difference body along it, projected
+    [[nodiscard]] double height() const noexcept { return corner.dot(at); }
+  };
+
+  [[nodiscard]] double goal() const noexcept { return best_.height - tight_; }
+  void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
+  void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
+
+  void look_at_facet_of_x(std::int32_t facet) noexcept;
+  void look_at_facet_of_y(std::int32_t facet) noexcept;
+  void facets_of_x() noexcept;
+  void facets_of_y() noexcept;
+  void arcs() noexcept;
+  void full_circle(const Edge& edge) noexcept;
+
+  [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
+  // False: nothing is left of it, because Y is unbounded along all of it.
+  [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
+  void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
+  void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
+
+  const DifferenceBody& body_;
+  double tight_, level_;
+  Best best_;
+  double lower_ = kInfinity;
+
+  // Corners found on the way, by where the directions point that they were found for: six axes by
+  // the signs of the other two components.
+  static std::size_t cell(const Vec3& n) noexcept;
+  std::array<Vec3, 24> corners_;
+  std::array<bool, 24> has_corner_{};
+};
+
+}  // namespace clearance
