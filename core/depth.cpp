@@ -42,7 +42,8 @@ Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& 
   };
   const Vec3 e = along(a), f = along(b);
   Vec3 n = e.cross(f);
-  if (!(n.norm() > 1e-6)) n = (e.isZero() ? (f.isZero() ? Vec3::UnitZ().eval() : f) : e).unitOrthogonal();
+  if (!(n.norm() > 1e-6))
+    n = (e.isZero() ? (f.isZero() ? Vec3::UnitZ().eval() : f) : e).unitOrthogonal();
   n.normalize();
   const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
   Depth out;

@@ -9,12 +9,12 @@
 // h is that of the other body moved there, and is smallest at a facet of it or on the region's rim.
 // The same argument, with h <= 0, says that a positive bound there proves that the bodies overlap.
 //
-// The bound from below needs no combinatorics that rounding could upset. A point c of the difference
-// body gives h(n) >= c.n everywhere, and on the arc between l and r at least the smaller one of c.l
-// and c.r. One such c, kept from elsewhere, settles most arcs and facets against the best h known;
-// where it does not, the arc is split where two such bounds cross, until the support there shows
-// nothing higher. That ends because each split finds a new corner, and nothing has to be stored
-// from one arc to the next.
+// The bound from below needs no combinatorics that rounding could upset. A point c of the
+// difference body gives h(n) >= c.n everywhere, and on the arc between l and r at least the smaller
+// one of c.l and c.r. One such c, kept from elsewhere, settles most arcs and facets against the
+// best h known; where it does not, the arc is split where two such bounds cross, until the support
+// there shows nothing higher. That ends because each split finds a new corner, and nothing has to
+// be stored from one arc to the next.
 #pragma once
 
 #include "core/active_side.hpp"
@@ -25,9 +25,10 @@ namespace clearance {
 struct Depth {
   // m, rounding included. lower > 0: the bodies overlap, and no translation shorter than this parts
   // them. upper: B moved by this along `normal` is clear of A; negative: they are this far apart as
-  // they are (the search ends there, and lower is 0). Infinity: no translation is known to part them.
+  // they are (the search ends there, and lower is 0). Infinity: no translation is known to part
+  // them.
   double lower = 0.0, upper = kInfinity;
-  double value = kInfinity;  // m: best estimate; infinity: none found
+  double value = kInfinity;    // m: best estimate; infinity: none found
   Vec3 normal = Vec3::Zero();  // unit, common frame, from A towards B
 };
 

@@ -27,8 +27,7 @@ bool may_rise(const ConvexPolyhedron& body, const Vec3& n, double margin) noexce
 std::size_t DepthSearch::cell(const Vec3& n) noexcept {
   const double x = std::abs(n.x()), y = std::abs(n.y()), z = std::abs(n.z());
   const int axis = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
-  return static_cast<std::size_t>(axis * 8 + (n.x() < 0.0) * 4 + (n.y() < 0.0) * 2 +
-                                  (n.z() < 0.0));
+  return static_cast<std::size_t>(axis * 8 + (n.x() < 0.0) * 4 + (n.y() < 0.0) * 2 + (n.z() < 0.0));
 }
 
 void DepthSearch::improve(double height, const Vec3& n, Source source,

@@ -41,9 +41,7 @@ class DepthSearch {
   // Directions x u + y w of the plane across an edge of X, and a point of that edge.
   struct Arc {
     Vec3 u, w, on_edge;
-    [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept {
-      return at.x() * u + at.y() * w;
-    }
+    [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept { return at.x() * u + at.y() * w; }
     [[nodiscard]] Vec2 project(const Vec3& v) const noexcept { return {v.dot(u), v.dot(w)}; }
   };
   // What is known in one direction of an arc.

@@ -46,13 +46,13 @@ struct DistanceResult {
 };
 
 // What a pair remembers between calls: the active feature of each body and where the witness lay on
-// it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never a fact: an empty, stale or wrong state costs iterations and leaves the
-// bounds true.
+// it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
+// a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
 struct TrackingState {
   static constexpr std::uint8_t kCold = 255;
   struct Side {
     std::uint8_t dimension =
-        kCold;  // 0 vertex, 1 edge, 2 facet, 3 inside (none active); kCold: no hint
+        kCold;          // 0 vertex, 1 edge, 2 facet, 3 inside (none active); kCold: no hint
     bool deep = false;  // of A only: the bodies overlapped
     std::int32_t feature = kNone;
     Vec3 point = Vec3::Zero();  // in the body's own frame

@@ -40,8 +40,8 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
     return false;
   }
   const Edge& e = a.body().edges[state.a.feature];
-  const Vec3 n = e.direction.cross(
-      b.direction_to_common(b.body().edges[state.b.feature].direction));
+  const Vec3 n =
+      e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
   const double sine = n.norm();
   if (!(sine > kCrossing)) return false;
   const double inwards = n.dot(e.inward[0] + e.inward[1]);
@@ -132,8 +132,8 @@ void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   }
   result.distance = std::max(result.distance, result.lower);
   const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
-  const bool tight = result.upper - result.lower <= 2.0 * (p.slack + p.tight);
-  result.status = !tight                ? DistanceStatus::kIterationLimit
+  const bool tight = result.upper - result.lower <= 2.0 * (p.slack + 2.0 * p.tight);
+  result.status = !tight               ? DistanceStatus::kIterationLimit
                   : result.lower > 0.0 ? DistanceStatus::kConverged
                                        : DistanceStatus::kTouching;
 }

@@ -18,8 +18,11 @@
 #include <variant>
 #include <vector>
 
+#include "core/active_side.hpp"
 #include "core/distance.hpp"
+#include "core/dqp3.hpp"
 #include "core/pose.hpp"
+#include "core/precision.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
@@ -40,8 +43,11 @@ Reads one case a line and writes one answer a line, in the same order. A case is
                two: a segment). "radius": r adds a ball (a point becomes a sphere). Metres.
   pose_a, pose_b   [x, y, z, qw, qx, qy, qz]: a point p of the body is at (x, y, z) + R p in the world
   poses        instead of these: [[pose_a, pose_b], ...], a motion; each query starts where the last ended
-An answer has id, distance, lower, upper, witness_a, witness_b (world), status, iterations; for a motion each is a
-list with one entry a pose. Numbers read back as the same doubles; null is "unknown".
+An answer has id; distance, lower, upper (0 where the bodies overlap); witness_a, witness_b: closest points, where
+the bodies overlap a point of both; penetration, penetration_lower, penetration_upper: the length of the shortest
+translation that parts them (0 where they are apart); normal: its direction for b, as that from a to b otherwise;
+deepest_a, deepest_b: the points that meet when b has been moved by it; status, iterations. All in the world; for a
+motion each is a list with one entry a pose. Numbers read back as the same doubles; null is "unknown".
 A line that cannot be answered gets {"line": n, "error": "..."} and the rest goes on.)";
 
 constexpr const char* kExample =
@@ -161,6 +167,18 @@ OrderedJson world_point(const Pose& world_from_a, const Vec3& point_in_a) {
   return OrderedJson::array({p.x(), p.y(), p.z()});
 }
 
+// Of two bodies that overlap, in frame A: where a search for the closest points ends.
+Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                  const RelativePose& a_from_b) {
+  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  side_a.place_cold(side_b.point_to_common(b.interior));
+  side_b.place_cold(a.interior);
+  (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).tight);
+  const double radii = a.radius + b.radius;
+  const double part_of_a = radii > 0.0 ? a.radius / radii : 0.5;
+  return side_a.common() + part_of_a * (side_b.common() - side_a.common());
+}
+
 struct Options {
   std::string cases, out;
   bool cold = false;
@@ -183,17 +201,18 @@ class Answerer {
       const Pose pose_a = read_pose(member(question, "pose_a", "the case"), "pose_a");
       const Pose pose_b = read_pose(member(question, "pose_b", "the case"), "pose_b");
       const std::vector<DistanceResult> results = run(a, b, {{pose_a, pose_b}});
-      out.update(figures(results[0], pose_a));
+      out.update(figures(a, b, pose_a, pose_b, results[0]));
       return out;
     }
     const std::vector<std::pair<Pose, Pose>> poses = read_motion(question["poses"]);
     const std::vector<DistanceResult> results = run(a, b, poses);
-    for (const char* key :
-         {"distance", "lower", "upper", "witness_a", "witness_b", "status", "iterations"}) {
+    for (const char* key : {"distance", "lower", "upper", "witness_a", "witness_b", "penetration",
+                            "penetration_lower", "penetration_upper", "normal", "deepest_a",
+                            "deepest_b", "status", "iterations"}) {
       out[key] = OrderedJson::array();
     }
     for (std::size_t k = 0; k < results.size(); ++k) {
-      const OrderedJson step = figures(results[k], poses[k].first);
+      const OrderedJson step = figures(a, b, poses[k].first, poses[k].second, results[k]);
       for (const auto& [key, value] : step.items()) out[key].push_back(value);
     }
     return out;
@@ -244,17 +263,28 @@ class Answerer {
     return results;
   }
 
-  static OrderedJson figures(const DistanceResult& r, const Pose& world_from_a) {
+  static OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                             const Pose& world_from_a, const Pose& world_from_b,
+                             const DistanceResult& r) {
+    const bool overlapping = r.upper < 0.0;
+    const Vec3 shared =
+        overlapping ? shared_point(a, b, relative_pose(world_from_a, world_from_b)) : Vec3::Zero();
+    const auto positive = [](double value) { return std::max(0.0, value); };
     OrderedJson out;
-    const auto positive = [](double signed_value) { return std::max(0.0, signed_value); };
-    out["distance"] = r.upper < 0.0 ? 0.0 : positive(r.distance);
+    out["distance"] = overlapping ? 0.0 : positive(r.distance);
     out["lower"] = positive(r.lower);
     out["upper"] = positive(r.upper);
-    out["penetration"] = positive(-r.distance);
+    out["witness_a"] = world_point(world_from_a, overlapping ? shared : r.point_on_a);
+    out["witness_b"] = world_point(world_from_a, overlapping ? shared : r.point_on_b);
+    out["penetration"] = r.lower > 0.0            ? 0.0
+                         : std::isnan(r.distance) ? r.distance
+                                                  : positive(-r.distance);
     out["penetration_lower"] = positive(-r.upper);
     out["penetration_upper"] = positive(-r.lower);
-    out["witness_a"] = world_point(world_from_a, r.point_on_a);
-    out["witness_b"] = world_point(world_from_a, r.point_on_b);
+    const Vec3 normal = transform({Vec3::Zero(), world_from_a.orientation}, r.normal);
+    out["normal"] = OrderedJson::array({normal.x(), normal.y(), normal.z()});
+    out["deepest_a"] = world_point(world_from_a, r.point_on_a);
+    out["deepest_b"] = world_point(world_from_a, r.point_on_b);
     out["status"] = name(r.status);
     out["iterations"] = r.iterations;
     return out;

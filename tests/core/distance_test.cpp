@@ -86,19 +86,7 @@ TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
     const DistanceResult r = ask(cube(), cube(), pose);
     expect_distance(r, 0.0);
     EXPECT_EQ(r.status, DistanceStatus::kTouching);
-    EXPECT_EQ(r.lower, 0.0);
-  }
-}
-
-TEST(Distance, OfOverlappingCubesIsExactlyZeroAndSaysOverlapping) {
-  for (const Pose& pose : {at(0, 0, 0), at(0.9, 0, 0), at(0.5, 0.5, 0.5), at(0, 0, 0.999999)}) {
-    const DistanceResult r = ask(cube(), cube(), pose);
-    EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
-    EXPECT_EQ(r.distance, 0.0);
-    EXPECT_EQ(r.lower, 0.0);
-    EXPECT_EQ(r.upper, 0.0);
-    expect_near(r.point_on_a, r.point_on_b);
-    EXPECT_LE(r.point_on_a.cwiseAbs().maxCoeff(), 0.5 + kRounding);
+    EXPECT_LE(r.lower, 0.0);
   }
 }
 
@@ -133,9 +121,8 @@ TEST(Distance, OfASphereAndABoxIsMeasuredFromTheCore) {
   expect_distance(ask(cube(), ball(0.25), at(2, 0, 0)), 1.25);
   expect_distance(ask(cube(), ball(0.25), at(3.5, 4.5, 0)), 4.75);
   expect_distance(ask(cube(), ball(0.25), at(0.6, 0, 0)), 0.1 - 0.25);
-  // The centre lies within the box: no deeper depth is claimed.
   const DistanceResult inside = ask(cube(), ball(0.25), at(0.1, 0, 0));
-  expect_distance(inside, -0.25);
+  expect_distance(inside, -0.4 - 0.25);
   EXPECT_EQ(inside.status, DistanceStatus::kOverlapping);
 }
 
@@ -155,7 +142,8 @@ TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
   expect_distance(ask(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
   // The last bit of tilt makes them meet, far away.
   const DistanceResult tilted = ask(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
-  EXPECT_EQ(tilted.lower, 0.0);
+  EXPECT_LE(tilted.upper, 2.0 + kRounding);
+  EXPECT_LE(tilted.lower, 0.0);
 }
 
 TEST(Distance, OfPointsIsEuclid) {

@@ -225,7 +225,10 @@ TEST(Monitor, OverlapIsReportedAsSuchAndIsTheMinimum) {
   const Report& report = tick_with(monitor, 0, test::at(0, 0, 0), kStart);
   EXPECT_EQ(report.minimum.pair, 0u);
   EXPECT_EQ(report.minimum.status, PairStatus::kOverlapping);
-  EXPECT_EQ(report.minimum.distance, 0.0);
+  EXPECT_NEAR(report.minimum.distance, -0.1, 1e-14);
+  EXPECT_LE(report.minimum.lower, -0.1);
+  EXPECT_GE(report.minimum.upper, -0.1);
+  EXPECT_NEAR(report.minimum.normal.x(), 1.0, 1e-15);
   EXPECT_TRUE(report.minimum_proved);
 }
 

@@ -24,15 +24,17 @@ class DistanceJudge {
 
   [[nodiscard]] DistanceResult ask(const Pose& pose_a, const Pose& pose_b,
                                    TrackingState& state) const;
+  // The signed distance; of bodies that overlap and have more than 16 rows or points, or that no
+  // translation parts, without the depth.
   [[nodiscard]] oracle::ExactDistance truth(const Pose& pose_a, const Pose& pose_b);
 
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
-  //  - the bounds, compared exactly
+  //  - the bounds, compared exactly; the upper one only where the depth is known
   //  - the status: converged within 1.5e-14 of size(); overlapping and touching only
   //  where it is so;
   //    never at the iteration limit
-  //  - the witness points: on their bodies and `distance` apart; the normal: unit, and it separates
+  //  - the witness points: on their bodies, and `distance` apart along the normal; the normal: unit
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,
                                                 const Pose& pose_a, const Pose& pose_b);
@@ -43,6 +45,7 @@ class DistanceJudge {
                             const Pose& pose_b) const;
 
  private:
+  [[nodiscard]] bool depth_is_asked_for() const;
   // A ball of this radius fits into both (of a point or segment: around one of its points). Says no
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;

@@ -5,47 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/shared/exact_placement.hpp"
+
 namespace clearance::oracle {
 namespace {
-
-using RationalMat = std::array<RationalVec, 3>;
-
-RationalVec operator+(const RationalVec& a, const RationalVec& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-RationalVec operator-(const RationalVec& a, const RationalVec& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-RationalVec operator*(const Rational& s, const RationalVec& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-
-RationalVec operator*(const RationalMat& m, const RationalVec& v) {
-  return {dot(m[0], v), dot(m[1], v), dot(m[2], v)};
-}
-
-RationalMat transposed(const RationalMat& m) {
-  RationalMat out;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) out[i][j] = m[j][i];
-  }
-  return out;
-}
-
-bool is_zero(const RationalVec& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
-
-RationalMat rotation(const Pose& pose) {
-  const Rational w(pose.orientation.w()), x(pose.orientation.x()), y(pose.orientation.y()),
-      z(pose.orientation.z());
-  const Rational n = w * w + x * x + y * y + z * z;
-  if (n == 0) throw std::invalid_argument("a quaternion of length zero");
-  return {
-      {{(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n},
-       {2 * (x * y + w * z) / n, (w * w - x * x + y * y - z * z) / n, 2 * (y * z - w * x) / n},
-       {2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (w * w - x * x - y * y + z * z) / n}}};
-}
 
 // A vertex of {b - a}, or a ray of it, and what of each body it was made of; all in frame A.
 struct Generator {
@@ -143,24 +106,6 @@ class Corral {
   std::vector<Rational> weights_;
 };
 
-// B placed in frame A, exactly.
-struct Placement {
-  RationalMat world_a, a_from_b_rotation;
-  RationalVec a_from_b_translation;
-
-  Placement(const Pose& a, const Pose& b) : world_a(rotation(a)) {
-    const RationalMat a_world = transposed(world_a), world_b = transposed(rotation(b));
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) a_from_b_rotation[i][j] = dot(a_world[i], world_b[j]);
-    }
-    a_from_b_translation = a_world * (exact(b.position) - exact(a.position));
-  }
-
-  [[nodiscard]] RationalVec b_direction(const RationalVec& in_a) const {
-    return transposed(a_from_b_rotation) * in_a;
-  }
-};
-
 // The next generator of {b - a} on the way to the origin as seen from `nearest`.
 Generator next_generator(ExactBody& a, ExactBody& b, const Placement& place,
                          const RationalVec& nearest) {
@@ -193,7 +138,7 @@ void prove_optimal(const ExactBody& a, const ExactBody& b, const Placement& plac
 void enclose(ExactDistance& out) {
   constexpr int kBits = 1024;
   mpf_class root(out.squared, kBits);
-  root = sqrt(root) - mpf_class(out.radii, kBits);
+  root = sqrt(root) - sqrt(mpf_class(out.squared_depth, kBits)) - mpf_class(out.radii, kBits);
   constexpr double kUp = std::numeric_limits<double>::infinity();
   double value = root.get_d();
   while (out.compare(value) < 0) value = std::nextafter(value, -kUp);
@@ -206,6 +151,7 @@ void enclose(ExactDistance& out) {
 
 int ExactDistance::compare(const Rational& value) const {
   const Rational core = value + radii;
+  if (squared_depth != 0) return core >= 0 ? -1 : cmp(Rational(core * core), squared_depth);
   if (core < 0) return 1;
   return cmp(squared, Rational(core * core));
 }
@@ -218,6 +164,11 @@ int ExactDistance::compare(double value) const {
 
 void ExactDistance::add_radii(double of_a, double of_b) {
   radii += Rational(of_a) + Rational(of_b);
+  enclose(*this);
+}
+
+void ExactDistance::set_squared_depth(const Rational& value) {
+  squared_depth = value;
   enclose(*this);
 }
 

@@ -13,11 +13,14 @@
 namespace clearance::oracle {
 
 struct ExactDistance {
-  Rational squared;                    // of the distance between the bodies without their radii
+  Rational squared;  // of the distance between the bodies without their radii
+  // Where they overlap, of their depth (see exact_depth.hpp), if it has been set; else 0 is
+  // assumed.
+  Rational squared_depth;
   Rational radii;                      // the sum of both
   RationalVec point_on_a, point_on_b;  // a closest pair of the bodies without radii, in the world
-  // The distance is sqrt(squared) - radii; these are the doubles next to it: lower <= distance <=
-  // upper.
+  // The distance is sqrt(squared) - sqrt(squared_depth) - radii; these are the doubles next to it:
+  // lower <= distance <= upper.
   double lower = 0.0, upper = 0.0;
   int steps = 0;
 
@@ -27,6 +30,7 @@ struct ExactDistance {
   [[nodiscard]] int compare(double value) const;  // infinities allowed
   // The same pair with balls added to both.
   void add_radii(double of_a, double of_b);
+  void set_squared_depth(const Rational& value);
 };
 
 // Without radii. Throws std::logic_error when the proof of optimality fails: the oracle is wrong,

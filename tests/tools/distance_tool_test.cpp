@@ -89,6 +89,15 @@ TEST_F(DistanceTool, AnswersCasesFromAPipe) {
   EXPECT_GE(r.lines[0]["iterations"].get<int>(), 1);
   EXPECT_EQ(r.lines[1]["status"], "overlapping");
   EXPECT_EQ(r.lines[1]["distance"], 0.0);
+  EXPECT_EQ(r.lines[1]["lower"], 0.0);
+  EXPECT_EQ(r.lines[1]["upper"], 0.0);
+  EXPECT_EQ(r.lines[1]["witness_a"], r.lines[1]["witness_b"]);
+  EXPECT_NEAR(r.lines[1]["penetration"].get<double>(), 0.75, 1e-15);
+  EXPECT_LE(r.lines[1]["penetration_lower"].get<double>(), 0.75);
+  EXPECT_GE(r.lines[1]["penetration_upper"].get<double>(), 0.75);
+  EXPECT_EQ(r.lines[1]["normal"], Json::array({1.0, 0.0, 0.0}));
+  EXPECT_NEAR(r.lines[1]["deepest_a"][0].get<double>(), 0.5, 1e-15);
+  EXPECT_NEAR(r.lines[1]["deepest_b"][0].get<double>(), -0.25, 1e-15);
   EXPECT_NE(r.err.find("2 lines, 0 with errors"), std::string::npos) << r.err;
 }
 
@@ -102,12 +111,21 @@ TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
     DistanceJudge judge(c.a, c.b);
     TrackingState state;
     const DistanceResult expected = judge.ask(c.pose_a, c.pose_b, state);
-    EXPECT_EQ(r.lines[0]["distance"].get<double>(), expected.distance) << family.name;
-    EXPECT_EQ(r.lines[0]["lower"].get<double>(), expected.lower) << family.name;
-    EXPECT_EQ(r.lines[0]["upper"].get<double>(), expected.upper) << family.name;
+    if (expected.lower == -kInfinity) continue;  // no translation parts them: null
+    const bool overlapping = expected.upper < 0.0;
+    const double sign = overlapping ? -1.0 : 1.0;
+    const char* lower = overlapping ? "penetration_upper" : "lower";
+    const char* upper = overlapping ? "penetration_lower" : "upper";
+    EXPECT_EQ(sign * r.lines[0][overlapping ? "penetration" : "distance"].get<double>(),
+              expected.distance)
+        << family.name;
+    EXPECT_EQ(sign * r.lines[0][lower].get<double>(),
+              overlapping ? expected.lower : std::max(0.0, expected.lower))
+        << family.name;
+    EXPECT_EQ(sign * r.lines[0][upper].get<double>(), expected.upper) << family.name;
     EXPECT_EQ(r.lines[0]["status"], name(expected.status)) << family.name;
     const Vec3 on_b = transform(c.pose_a, expected.point_on_b);
-    EXPECT_EQ(r.lines[0]["witness_b"][2].get<double>(), on_b.z()) << family.name;
+    EXPECT_EQ(r.lines[0]["deepest_b"][2].get<double>(), on_b.z()) << family.name;
   }
 }
 

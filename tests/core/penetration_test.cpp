@@ -1,0 +1,270 @@
+// Signed distance of overlapping bodies: closed forms, the exact oracle, laws, and motions through
+// contact.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tests/shared/allocation_count.hpp"
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/exact_depth.hpp"
+#include "tests/shared/hard_bodies.hpp"
+
+namespace clearance {
+namespace {
+
+using oracle::Body;
+
+Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
+
+ConvexPolyhedron made(const Body& body) { return std::get<ConvexPolyhedron>(model(body)); }
+ConvexPolyhedron cube() { return made(hard::box(Vec3::Constant(0.5))); }
+Body half_space(const Vec3& normal, double offset) { return {{{normal, offset}}, {}, 0.0}; }
+
+DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const RelativePose& pose) {
+  TrackingState state;
+  return distance(a, b, pose, state);
+}
+DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
+  return ask(a, b, relative_pose(Pose{}, pose_b));
+}
+
+void expect_depth(const DistanceResult& r, double depth, double size = 1.0) {
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+  EXPECT_NEAR(r.distance, -depth, 1e-14 * size);
+  EXPECT_LE(r.lower, -depth);
+  EXPECT_GE(r.upper, -depth);
+  EXPECT_LE(r.upper - r.lower, 4e-14 * size);
+  EXPECT_NEAR(r.normal.norm(), 1.0, 1e-15);
+  EXPECT_LT((r.point_on_b - r.point_on_a - r.distance * r.normal).norm(), 1e-14 * size);
+}
+
+// Bodies that share some of their inside, from the same families as the hard cases.
+struct Overlap {
+  Body a, b;
+  Pose pose_a, pose_b;
+};
+
+Body small_body(Random& random) {
+  switch (random.integer(0, 5)) {
+    case 0:
+      return hard::box(Vec3::Constant(0.05) + random.in_box(1.0).cwiseAbs());
+    case 1:
+      return hard::random_polytope(random, 8);
+    case 2:
+      return hard::random_hull(random, 7);
+    case 3:
+      return hard::needle(random, random.log_uniform(1.0, 1e4));
+    case 4:
+      return hard::plate(random, random.log_uniform(1e-6, 1.0));
+    default:
+      return hard::lattice(random);
+  }
+}
+
+Overlap random_overlap(Random& random) {
+  Overlap out{small_body(random), small_body(random), {}, {}};
+  out.pose_a = {random.in_box(1.0), random.rotation()};
+  out.pose_b = {out.pose_a.position + random.in_box(random.log_uniform(1e-4, 0.4)),
+                random.chance(0.3) ? out.pose_a.orientation : random.rotation()};
+  return out;
+}
+
+void for_each_overlap(std::uint64_t seeds, const std::function<void(Overlap&, Random&)>& visit) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    Overlap overlap = random_overlap(random);
+    visit(overlap, random);
+  }
+}
+
+TEST(Penetration, OfCubesIsTheShortestWayOutOfAFace) {
+  expect_depth(ask(cube(), cube(), at(0.9, 0, 0)), 0.1);
+  expect_depth(ask(cube(), cube(), at(0.5, 0.5, 0.5)), 0.5);
+  expect_depth(ask(cube(), cube(), at(0, 0, 0.999999)), 1 - 0.999999);
+  expect_depth(ask(cube(), cube(), at(0, 0, 0)), 1.0);
+  const DistanceResult r = ask(cube(), cube(), at(0.25, -0.75, 0.5));
+  expect_depth(r, 0.25);
+  EXPECT_EQ(r.normal, Vec3(0, -1, 0));
+  EXPECT_NEAR(r.point_on_a.y(), -0.5, 1e-15);
+  EXPECT_NEAR(r.point_on_b.y(), -0.25, 1e-15);
+}
+
+TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
+  // Two bars of square section, lying on an edge each and crossing at right angles.
+  const ConvexPolyhedron bar = made(hard::box({0.5, 0.5, 10.0}));
+  const double quarter = std::numbers::pi / 4;
+  const Pose along_x{{0, 0, 0},
+                     Eigen::Quaterniond(Eigen::AngleAxisd(2 * quarter, Vec3::UnitY()) *
+                                        Eigen::AngleAxisd(quarter, Vec3::UnitZ()))};
+  const Pose along_y{{0.3, 0.2, 1.3},
+                     Eigen::Quaterniond(Eigen::AngleAxisd(-2 * quarter, Vec3::UnitX()) *
+                                        Eigen::AngleAxisd(quarter, Vec3::UnitZ()))};
+  TrackingState state;
+  const RelativePose pose = relative_pose(along_x, along_y);
+  const DistanceResult r = distance(bar, bar, pose, state);
+  expect_depth(r, std::numbers::sqrt2 - 1.3, 20.0);
+  EXPECT_EQ(state.a.dimension, 1);
+  EXPECT_EQ(state.b.dimension, 1);
+  const Vec3 in_world = along_x.orientation * r.normal;
+  EXPECT_LT((in_world - Vec3::UnitZ()).norm(), 1e-14);
+}
+
+TEST(Penetration, OfASmallBodyInsideALargeOneIsTheWayToTheNearestFace) {
+  const ConvexPolyhedron room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
+  expect_depth(ask(room, cube(), at(1, 2, 0.5)), 2.0, 10);
+  expect_depth(ask(room, ball, at(4.5, 2, 0)), 0.75, 10);
+  expect_depth(ask(ball, room, at(-4.5, 2, 0)), 0.75, 10);
+  const ConvexPolyhedron capsule = made({{}, {{0, 0, -1}, {0, 0, 1}}, 0.5});
+  expect_depth(ask(room, capsule, at(0, 0, 0.5)), 2.0 - 0.5 + 1.0 + 0.5, 10);
+  expect_depth(ask(capsule, room, at(4.8, 0, 0)), 0.2 + 0.5, 10);
+}
+
+TEST(Penetration, OfAFloorIsHowFarTheLowestPointIsBelowIt) {
+  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
+  const DistanceResult r = ask(floor, cube(), at(3, 4, -2));
+  expect_depth(r, 2.5, 10);
+  EXPECT_EQ(r.normal, Vec3::UnitZ());
+  EXPECT_EQ(ask(cube(), floor, at(0, 0, 0.25)).normal, -Vec3::UnitZ());
+}
+
+TEST(Penetration, OfFacingHalfSpacesIsHowFarTheyReachIntoEachOther) {
+  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
+  const ConvexPolyhedron ceiling = made(half_space({0, 0, -1}, 2.0));
+  expect_depth(ask(floor, ceiling, at(5, 6, 0)), 2.0, 20);
+}
+
+TEST(Penetration, IsUnknownWhereNoTranslationParts) {
+  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
+  const ConvexPolyhedron wall = made(half_space({1, 0, 0}, 0.0));
+  const DistanceResult r = ask(floor, wall, at(0, 0, 0));
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+  EXPECT_TRUE(std::isnan(r.distance));
+  EXPECT_EQ(r.lower, -kInfinity);
+  EXPECT_LT(r.upper, 0.0);
+  EXPECT_FALSE(r.normal.allFinite());
+  EXPECT_TRUE(r.point_on_a.allFinite());
+}
+
+TEST(Penetration, OfSegmentsThatCrossIsNothingButTheirRadii) {
+  const ConvexPolyhedron a = made({{}, {{-1, 0, 0}, {1, 0, 0}}, 0.25});
+  const ConvexPolyhedron b = made({{}, {{0, -1, 0}, {0, 1, 0}}, 0.5});
+  expect_depth(ask(a, b, at(0, 0, 0)), 0.75);
+}
+
+TEST(ExactDepth, GivesTheClosedFormsOfCubes) {
+  const Body box = hard::box(Vec3::Constant(0.5));
+  EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(0.75, 0.25, 0)), 0.0625);
+  EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(1, 0.25, 0)), 0);
+  EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(2, 0, 0)), 0);
+  EXPECT_EQ(oracle::exact_squared_depth(half_space({0, 0, 3}, 0), at(0, 0, 0), box, at(9, 9, -1)),
+            2.25);
+  EXPECT_FALSE(oracle::exact_squared_depth(half_space({0, 0, 1}, 0), at(0, 0, 0),
+                                           half_space({1, 0, 0}, 0), at(0, 0, 0)));
+}
+
+TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
+  int overlapping = 0;
+  for_each_overlap(150, [&](Overlap& o, Random& random) {
+    DistanceJudge judge(o.a, o.b);
+    ASSERT_EQ(judge.refusal(), "");
+    const oracle::ExactDistance truth = judge.truth(o.pose_a, o.pose_b);
+    overlapping += truth.squared_depth != 0;
+    TrackingState state;
+    for (int k = 0; k < 6; ++k) {
+      for (const std::string& fault :
+           judge.faults(judge.ask(o.pose_a, o.pose_b, state), truth, o.pose_a, o.pose_b)) {
+        ADD_FAILURE() << (k == 0 ? "cold: " : k == 1 ? "tracked: " : "nonsense: ") << fault;
+      }
+      if (k == 0) continue;
+      for (TrackingState::Side* side : {&state.a, &state.b}) {
+        side->dimension = static_cast<std::uint8_t>(random.integer(0, 3));
+        side->feature = random.integer(-1, 30);
+        side->deep = random.chance(0.7);
+        side->point = random.in_box(2.0);
+        if (random.chance(0.2)) side->point.x() = std::nan("");
+      }
+    }
+  });
+  EXPECT_GT(overlapping, 100);
+}
+
+TEST(Penetration, SwappingTheBodiesTurnsTheNormal) {
+  for_each_overlap(100, [](Overlap& o, Random&) {
+    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const DistanceResult r = ask(a, b, relative_pose(o.pose_a, o.pose_b));
+    const DistanceResult s = ask(b, a, relative_pose(o.pose_b, o.pose_a));
+    EXPECT_LE(r.lower, s.upper);
+    EXPECT_LE(s.lower, r.upper);
+    EXPECT_EQ(r.status, s.status);
+  });
+}
+
+TEST(Penetration, MovingByItAlongTheNormalMakesTheBodiesTouch) {
+  for_each_overlap(100, [](Overlap& o, Random&) {
+    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    RelativePose pose = relative_pose(o.pose_a, o.pose_b);
+    const DistanceResult r = ask(a, b, pose);
+    if (r.status != DistanceStatus::kOverlapping) return;
+    pose.translation -= r.distance * r.normal;
+    const double size = a.bounding_radius + b.bounding_radius + pose.translation.norm();
+    EXPECT_NEAR(ask(a, b, pose).distance, 0.0, 1e-14 * size);
+    pose.translation += r.normal;
+    EXPECT_NEAR(ask(a, b, pose).distance, 1.0, 1e-14 * size);
+  });
+}
+
+TEST(Penetration, ChangesByNoMoreThanTheBodiesMoveThroughContactToo) {
+  for_each_overlap(20, [](Overlap& o, Random& random) {
+    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const double reach = a.bounding_radius + b.bounding_radius;
+    const int steps = 200;
+    const Vec3 step = random.direction() * 4.0 * reach / steps;
+    Pose pose_b = o.pose_b;
+    pose_b.position -= 0.5 * steps * step;
+    TrackingState state;
+    DistanceResult before = distance(a, b, relative_pose(o.pose_a, pose_b), state);
+    for (int k = 0; k < steps; ++k) {
+      pose_b.position += step;
+      const RelativePose pose = relative_pose(o.pose_a, pose_b);
+      const DistanceResult now = distance(a, b, pose, state), cold = ask(a, b, pose);
+      EXPECT_LE(std::abs(now.distance - before.distance), step.norm() + 1e-13 * reach);
+      EXPECT_LE(now.lower, cold.upper);
+      EXPECT_LE(cold.lower, now.upper);
+      EXPECT_NEAR(now.distance, cold.distance, 2e-14 * 8 * reach);
+      EXPECT_EQ(now.status == DistanceStatus::kOverlapping, now.upper < 0.0);
+      before = now;
+    }
+  });
+}
+
+TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
+  const ConvexPolyhedron a = made(hard::facet_ball(15)), b = made(hard::dual_ball(10));
+  Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const Pose pose_b{random.direction() * random.uniform(0.0, 1.8), random.rotation()};
+    const DistanceResult r = ask(a, b, pose_b);
+    EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+    EXPECT_LE(r.upper - r.lower, 5e-14);
+  }
+}
+
+TEST(Penetration, AllocatesNothingAndGivesTheSameBits) {
+  for_each_overlap(20, [](Overlap& o, Random&) {
+    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const RelativePose pose = relative_pose(o.pose_a, o.pose_b);
+    TrackingState state, again;
+    const std::uint64_t before = allocations();
+    const DistanceResult first = distance(a, b, pose, state), second = distance(a, b, pose, again);
+    (void)distance(a, b, pose, state);
+    EXPECT_EQ(allocations(), before);
+    EXPECT_EQ(first.lower, second.lower);
+    EXPECT_EQ(first.upper, second.upper);
+    EXPECT_EQ(first.point_on_b, second.point_on_b);
+  });
+}
+
+}  // namespace
+}  // namespace clearance
