@@ -7,7 +7,7 @@ namespace clearance {
 namespace {
 
 // Parts of one arc that wait their turn. A split leaves one behind, and the other shrinks by a
-// vertex of Y's outline at least; on the hard cases of tests/ no more than 7 have ever waited.
+// vertex of Y's outline at least; on the hard cases of tests/ no more than 4 have ever waited.
 constexpr std::size_t kWaiting = 48;
 // Samples of one arc; more than the vertices on the outline of any body of some thousand facets.
 constexpr int kSamples = 1024;
