@@ -126,7 +126,7 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
     const Vec2 between = r.corner - l.corner;
     Vec2 m(-between.y(), between.x());
     if (m.dot(l.at + r.at) < 0.0) m = -m;
-    const Sample middle = sample(arc, m.normalized());
+    const Sample middle = sample(arc, m.stableNormalized());  // squares may underflow
     const double crossing = std::min(l.corner.dot(middle.at), r.corner.dot(middle.at));
     if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > kSamples) {
       lower_to(std::min({l.height(), crossing, r.height()}));

@@ -52,8 +52,7 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
 // Where nothing is remembered: from one middle to the other.
 Separator between_middles(const ActiveSide& a, const ActiveSide& b) noexcept {
   const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
-  const double length = between.norm();
-  return {length > 0.0 ? Vec3(between / length) : Vec3::UnitZ()};
+  return {between.isZero(0.0) ? Vec3::UnitZ() : between.stableNormalized()};
 }
 
 Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
