@@ -11,6 +11,8 @@ namespace {
 // Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
 // the exact one next to it on the exact arc (6), a corner in its plane (6).
 constexpr double kOnArc = 12 * 0x1p-53;
+// How near two bounds of h must come, in the same unit.
+constexpr double kTight = 8 * 0x1p-53;
 
 using Source = DepthSearch::Source;
 
@@ -60,7 +62,7 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   const Precision start = precision(a.body(), b.body(), a_from_b, 0.0);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
   const DifferenceBody body(a.body(), b.body(), a_from_b);
-  DepthSearch search(body, start.tight, a_from_b.rotation_error + 0x1p-50);
+  DepthSearch search(body, kTight * start.size, a_from_b.rotation_error + 0x1p-50);
   if (guess != nullptr) {
     const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
     const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
@@ -90,7 +92,9 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
   }
   if (!search.ended_early()) {
-    out.lower = std::max(0.0, std::min(search.lower(), best.height) - kOnArc * p.size - p.slack);
+    // Corners are anchors: of an unbounded body, too, no more than those counts here.
+    const double rounding = kOnArc * start.size + start.slack;
+    out.lower = std::max(0.0, std::min(search.lower(), best.height) - rounding);
   }
   return out;
 }

@@ -114,7 +114,8 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   const bool met = outcome.end == Dqp3End::kContact;
   if (!met && !(bounds.upper - bounds.lower <= p.tight)) prove_from_below(bounds, a, b, p);
   DistanceResult result = conclude(a, b, bounds, p);
-  if (!met && bounds.upper - bounds.lower > p.tight) refine(a, b, a_from_b, p, result);
+  const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
+  if (bounds.upper - above > p.tight) refine(a, b, a_from_b, p, result);
   result.iterations = outcome.iterations;
   return result;
 }

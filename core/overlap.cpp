@@ -131,7 +131,8 @@ void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   }
   result.distance = std::max(result.distance, result.lower);
   const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
-  const bool tight = result.upper - result.lower <= 2.0 * (p.slack + 2.0 * p.tight);
+  // An overlap by less than the slack can be seen from one side only: thrice.
+  const bool tight = result.upper - result.lower <= 3.0 * p.slack + 5.0 * p.tight;
   result.status = !tight               ? DistanceStatus::kIterationLimit
                   : result.lower > 0.0 ? DistanceStatus::kConverged
                                        : DistanceStatus::kTouching;

@@ -124,7 +124,9 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
     if (!holds) out.push_back(fault);
   };
   if (!a_.bounded() && !b_.bounded() && r.lower == -kInfinity) {
-    require(r.upper < 0.0 && truth.cores_meet(), "no lower bound, but they do not overlap");
+    require(truth.cores_meet(), "no lower bound, but they are apart");
+    require(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
+            text("status %s without a lower bound", name(r.status)));
     return out;
   }
   const bool finite = std::isfinite(r.distance) && std::isfinite(r.lower) &&
