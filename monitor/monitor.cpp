@@ -4,12 +4,15 @@
 #include <limits>
 #include <vector>
 
+#include "monitor/closest_pair.hpp"
+#include "monitor/enclosing_ball.hpp"
 #include "monitor/object_state.hpp"
 #include "monitor/pair_summary.hpp"
 #include "monitor/pair_table.hpp"
 #include "monitor/placed_part.hpp"
+#include "monitor/rounding.hpp"
 #include "monitor/triage.hpp"
-#include "monitor/zone_state.hpp"
+#include "monitor/zone_round.hpp"
 
 namespace clearance {
 
@@ -17,9 +20,10 @@ struct Monitor::State {
   const Scene& scene;
   std::vector<ObjectState> objects;
   std::vector<PlacedPart> parts;
+  std::vector<double> reach;  // by object: as EnclosingBall::reach, m
   PairTable table;
   Triage triage;
-  std::vector<PairSummary> summaries;  // by object pair
+  ZoneRound zones;
   Report report;
 
   explicit State(const Scene& the_scene);
@@ -28,14 +32,15 @@ struct Monitor::State {
   void take_in(std::span<const PoseSample> samples) noexcept;
   void move() noexcept;
   void report_inputs() noexcept;
+  void report_counts() noexcept;
   void report_pairs() noexcept;
-  void report_minimum() noexcept;
-  void report_zones() noexcept;
 
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
-  [[nodiscard]] bool may_be_closer(const PairSummary& pair,
-                                   const PairSummary& minimum) const noexcept;
+  [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
+  [[nodiscard]] double most_unseen() const noexcept;
+  [[nodiscard]] double rest_lower() const noexcept;
+  [[nodiscard]] double pending_lower() const noexcept;
 };
 
 Monitor::Monitor(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
@@ -44,14 +49,13 @@ Monitor::~Monitor() = default;
 const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept {
   State& s = *state_;
   s.begin(now_ns);
-  s.take_in(samples);                  // samples  -> objects: the pose in use of each
-  s.move();                            // objects  -> parts: where each is, how far it moved
-  carry(s.objects, s.parts, s.table);  // parts    -> table: every bound true for these poses
+  s.take_in(samples);  // samples  -> objects: the pose in use of each
+  s.move();            // objects  -> parts: where each is, how far it moved
+  // parts    -> table: every bound true for these poses, or provably not worth a look
   s.report.queries = s.triage.evaluate_due(s.objects, s.parts, s.report.cycle, s.table);
   s.report_inputs();  // table    -> report
+  s.report_counts();
   s.report_pairs();
-  s.report_minimum();
-  s.report_zones();
   return s.report;
 }
 
@@ -77,7 +81,10 @@ Monitor::State::State(const Scene& the_scene)
       parts(parts_of(the_scene)),
       table(the_scene, parts),
       triage(the_scene, parts, table),
-      summaries(the_scene.pairs.size()) {
+      zones(the_scene) {
+  for (const EnclosingBall& ball : enclosing_balls(scene.objects.size(), parts)) {
+    reach.push_back(ball.reach);
+  }
   for (const Object& object : scene.objects) objects.push_back(initial_state(object));
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
@@ -86,6 +93,9 @@ Monitor::State::State(const Scene& the_scene)
     if (scene.pairs[p].publish) report.pairs.push_back(report_pair(p));
   }
   report.zones.resize(scene.zones.size());
+  for (std::size_t z = 0; z < scene.zones.size(); ++z) {
+    if (!scene.zones[z].pairs.empty()) report.zones[z].pair = scene.zones[z].pairs.front();
+  }
 }
 
 void Monitor::State::begin(std::int64_t now_ns) noexcept {
@@ -118,6 +128,7 @@ void Monitor::State::refuse(std::uint32_t object, Reject cause) noexcept {
 void Monitor::State::move() noexcept {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     advance(scene.objects[i], report.now_ns, objects[i]);
+    travel(reach[i], objects[i]);
   }
   for (PlacedPart& part : parts) {
     if (objects[part.object].seen) place(objects[part.object], part);
@@ -135,65 +146,69 @@ void Monitor::State::report_inputs() noexcept {
   }
 }
 
-void Monitor::State::report_pairs() noexcept {
-  std::array<std::uint32_t, kPairStatuses> with_status{};
-  double lower_all = kInfinity;
-  std::uint64_t oldest_cycle = report.cycle;
+void Monitor::State::report_counts() noexcept {
+  const auto known = static_cast<std::uint32_t>(triage.counts().known());
+  const auto fresh = static_cast<std::uint32_t>(triage.counts().fresh());
+  report.unknown = report.pairs_total - known;
+  report.stale = known - fresh;
+  report.evaluated = 0;
+  for (const std::uint32_t pair : triage.evaluated()) {
+    report.evaluated += is_evaluated(summary(pair).status);
+  }
+  report.carried = fresh - report.evaluated;
+  const bool all_evaluated = triage.evaluated().size() == known;
+  report.oldest_evaluation_cycles = all_evaluated ? 0 : report.cycle - triage.oldest_evaluation();
   std::size_t published = 0;
-  for (std::uint32_t p = 0; p < summaries.size(); ++p) {
-    PairSummary& pair = summaries[p];
-    summarise(p, objects, report.cycle, table, pair);
-    ++with_status[static_cast<std::size_t>(pair.status)];
-    lower_all = std::min(lower_all, pair.lower);
-    if (pair.status != PairStatus::kUnknown) {
-      oldest_cycle = std::min(oldest_cycle, pair.evaluated_cycle);
-    }
-    if (scene.pairs[p].publish) report.pairs[published++] = report_pair(p);
+  for (const std::uint32_t pair : triage.published()) {
+    report.pairs[published++] = report_pair(pair);
   }
-  const auto having = [&](PairStatus s) { return with_status[static_cast<std::size_t>(s)]; };
-  report.carried = having(PairStatus::kCarried);
-  report.stale = having(PairStatus::kStale);
-  report.unknown = having(PairStatus::kUnknown);
-  report.evaluated = report.pairs_total - report.carried - report.stale - report.unknown;
-  report.lower_all = lower_all;
-  report.oldest_evaluation_cycles = report.cycle - oldest_cycle;
 }
 
-void Monitor::State::report_minimum() noexcept {
-  const PairSummary* minimum = nullptr;
-  for (const PairSummary& pair : summaries) {
-    if (pair.status == PairStatus::kUnknown || pair.evaluated_cycle == 0) continue;
-    const bool closer = minimum == nullptr || pair.upper < minimum->upper ||
-                        (pair.upper == minimum->upper && pair.lower < minimum->lower);
-    if (closer) minimum = &pair;
+void Monitor::State::report_pairs() noexcept {
+  ClosestPair closest;
+  zones.begin(report.zones);
+  for (const std::uint32_t pair : triage.awake()) {
+    const PairSummary state = summary(pair);
+    closest.add(pair, state);
+    zones.add(pair, state);
   }
-  report.minimum_known = minimum != nullptr;
-  report.minimum_proved = report.minimum_known && report.stale == 0 && report.unknown == 0;
-  if (!report.minimum_known) {
-    report.minimum = unknown_report();
-    return;
-  }
-  for (const PairSummary& pair : summaries) {
-    if (may_be_closer(pair, *minimum)) report.minimum_proved = false;
-  }
-  report.minimum = report_pair(static_cast<std::uint32_t>(minimum - summaries.data()));
+  for (const std::uint32_t pair : triage.evaluated()) closest.add(pair, summary(pair));
+  if (triage.awake().size() < triage.counts().known()) closest.add_rest(rest_lower());
+  zones.finish(objects, triage.pending() ? pending_lower() : kInfinity, report.cycle, report.zones);
+
+  report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
+  report.minimum_known = closest.known();
+  report.minimum_proved = closest.proved() && report.stale == 0 && report.unknown == 0;
+  report.minimum = closest.known() ? report_pair(closest.pair()) : unknown_report();
 }
 
-// Beyond what rounding leaves open between two pairs that were both evaluated.
-bool Monitor::State::may_be_closer(const PairSummary& pair,
-                                   const PairSummary& minimum) const noexcept {
-  if (&pair == &minimum || pair.lower >= minimum.upper) return false;
-  return !is_evaluated(pair.status) || pair.status == PairStatus::kLoose;
+// Of the pairs that are asleep, or that wait to be looked at, for where their objects may be.
+double Monitor::State::rest_lower() const noexcept {
+  const double asleep = rounded_down(triage.horizon() - most_unseen());
+  return triage.pending() ? std::min(asleep, pending_lower()) : asleep;
 }
 
-void Monitor::State::report_zones() noexcept {
-  for (std::size_t z = 0; z < report.zones.size(); ++z) {
-    update(scene, scene.zones[z], summaries, report.cycle, report.zones[z]);
+double Monitor::State::pending_lower() const noexcept {
+  return rounded_down(triage.pending_lower() - most_unseen());
+}
+
+// How far any two known objects may have moved since their stamps, both together, m.
+double Monitor::State::most_unseen() const noexcept {
+  double most = 0.0, second = 0.0;
+  for (const ObjectState& object : objects) {
+    if (!object.known() || object.may_have_moved <= second) continue;
+    second = std::min(most, object.may_have_moved);
+    most = std::max(most, object.may_have_moved);
   }
+  return rounded_up(most + second);
+}
+
+PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
+  return summary_of(pair, objects, parts, report.cycle, table);
 }
 
 PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {
-  return report_on(scene, pair, summaries[pair], objects, parts, table);
+  return report_on(scene, pair, summary(pair), objects, parts, table);
 }
 
 }  // namespace clearance

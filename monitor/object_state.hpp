@@ -18,7 +18,10 @@ struct ObjectState {
   bool late = false;            // that pose is older than the object's limit
   bool moved = false;           // it is not that of the last tick
   double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
-  std::int64_t age_ns = -1;     // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
+  // and in all, leaving out the ticks in which nobody could. Both m, set by travel().
+  double travel = 0.0, travelled = 0.0;
+  std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
   // As sent; the orientation is normalised where it is used.
   Pose pose;
@@ -48,5 +51,8 @@ void accept(const PoseSample& sample, ObjectState& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.
 void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept;
+
+// Counts this tick's motion in; no point of the object is farther than `reach` from its origin.
+void travel(double reach, ObjectState& state) noexcept;
 
 }  // namespace clearance

@@ -64,28 +64,33 @@ PairReport unknown_report() noexcept {
   return report;
 }
 
-void summarise(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
-               const PairTable& table, PairSummary& summary) noexcept {
-  const std::uint32_t first = table.first_row[pair];
-  const std::uint32_t end = table.first_row[pair + 1];
+PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                       const std::vector<PlacedPart>& parts, std::uint64_t cycle,
+                       const PairTable& table) noexcept {
   const ObjectState& a = objects[table.object_a[pair]];
   const ObjectState& b = objects[table.object_b[pair]];
-  if (!a.known() || !b.known()) {
-    summary = {};
-    return;
+  PairSummary summary;
+  if (!a.known() || !b.known()) return summary;
+  const std::uint32_t first = table.first_row[pair];
+  const std::uint32_t end = table.first_row[pair + 1];
+  const double travelled = travelled_since(pair, objects, table);
+  summary.lower = kInfinity;
+  for (std::uint32_t row = first; row < end; ++row) {
+    const RowBounds now = bounds_now(row, travelled, parts, table);
+    summary.lower = std::min(summary.lower, now.lower);
+    summary.upper = std::min(summary.upper, now.upper);
   }
   summary.row = closest_row(first, end, table);
   summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
-  summary.lower = table.least_lower[pair];
-  summary.upper = *std::min_element(table.upper.begin() + first, table.upper.begin() + end);
   if (!a.late && !b.late) {
     summary.status = evaluated_status(first, end, summary.row, cycle, table);
-    return;
+    return summary;
   }
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   summary.lower = rounded_down(summary.lower - may_have_moved);
   summary.upper = rounded_up(summary.upper + may_have_moved);
   summary.status = PairStatus::kStale;
+  return summary;
 }
 
 PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& summary,

@@ -16,9 +16,10 @@ struct PairSummary {
   std::uint64_t evaluated_cycle = 0;  // of that row; 0: no row ever was
 };
 
-// In place: the table of a thousand pairs is written once a tick.
-void summarise(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
-               const PairTable& table, PairSummary& summary) noexcept;
+// Of any pair, brought up to date this tick or not.
+[[nodiscard]] PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                     const std::vector<PlacedPart>& parts, std::uint64_t cycle,
+                                     const PairTable& table) noexcept;
 
 // What is published of it.
 [[nodiscard]] PairReport report_on(const Scene& scene, std::uint32_t pair,

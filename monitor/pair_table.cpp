@@ -10,18 +10,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-void carry_row(const PlacedPart& a, const PlacedPart& b, double& lower, double& upper) noexcept {
-  const double moved = a.moved + b.moved;
-  if (moved > 0.0) {
-    lower = rounded_down(lower - rounded_up(moved));
-    upper = rounded_up(upper + rounded_up(moved));
-  }
-  const Ball& ball_a = a.ball_in_world;
-  const Ball& ball_b = b.ball_in_world;
-  const double centres = (ball_a.centre - ball_b.centre).norm();
-  const double radii = rounded_up(ball_a.radius + ball_b.radius);
-  lower = std::max(lower, rounded_down(rounded_down(centres) - radii));
-  upper = std::min(upper, rounded_up(rounded_up(centres) + radii));
+// How far an object has come between two readings. Equal readings mean that it has not moved.
+double between(double before, double now) noexcept {
+  return now == before ? 0.0 : rounded_up(now - before);
 }
 
 }  // namespace
@@ -49,6 +40,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
     }
     first_row.push_back(rows());
   }
+  carried_at.resize(pairs());
   least_lower.assign(pairs(), -kInfinity);
   evaluated_cycle.assign(pairs(), 0);
   lower.assign(rows(), -kInfinity);
@@ -59,18 +51,51 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   closest.resize(rows());
 }
 
-void carry(const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
-           PairTable& table) noexcept {
-  for (std::uint32_t pair = 0; pair < table.pairs(); ++pair) {
-    if (!objects[table.object_a[pair]].seen || !objects[table.object_b[pair]].seen) continue;
-    double least = kInfinity;
-    for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
-      carry_row(parts[table.part_a[row]], parts[table.part_b[row]], table.lower[row],
-                table.upper[row]);
-      least = std::min(least, table.lower[row]);
-    }
-    table.least_lower[pair] = least;
+double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                       const PairTable& table) noexcept {
+  const Travelled& then = table.carried_at[pair];
+  const double sum = between(then.a, objects[table.object_a[pair]].travelled) +
+                     between(then.b, objects[table.object_b[pair]].travelled);
+  return rounded_up(sum);
+}
+
+RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<PlacedPart>& parts,
+                     const PairTable& table) noexcept {
+  RowBounds bounds{table.lower[row], table.upper[row]};
+  if (travelled > 0.0) {
+    bounds.lower = rounded_down(bounds.lower - travelled);
+    bounds.upper = rounded_up(bounds.upper + travelled);
   }
+  const Ball& a = parts[table.part_a[row]].ball_in_world;
+  const Ball& b = parts[table.part_b[row]].ball_in_world;
+  const double centres = (a.centre - b.centre).norm();
+  const double radii = rounded_up(a.radius + b.radius);
+  bounds.lower = std::max(bounds.lower, rounded_down(rounded_down(centres) - radii));
+  bounds.upper = std::min(bounds.upper, rounded_up(rounded_up(centres) + radii));
+  return bounds;
+}
+
+void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
+           const std::vector<PlacedPart>& parts, PairTable& table) noexcept {
+  const double travelled = travelled_since(pair, objects, table);
+  double least = kInfinity;
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    const RowBounds now = bounds_now(row, travelled, parts, table);
+    table.lower[row] = now.lower;
+    table.upper[row] = now.upper;
+    least = std::min(least, now.lower);
+  }
+  table.least_lower[pair] = least;
+  table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
+                            objects[table.object_b[pair]].travelled};
+}
+
+void forget(std::uint32_t pair, PairTable& table) noexcept {
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    table.lower[row] = -kInfinity;
+    table.upper[row] = kInfinity;
+  }
+  table.least_lower[pair] = -kInfinity;
 }
 
 }  // namespace clearance

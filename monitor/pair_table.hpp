@@ -1,7 +1,9 @@
 // What is known about every pair: bounds for the poses in use, and the last evaluation.
 //
 // An object pair owns consecutive rows, one for every part of the first with every part of the
-// second. Bounds are true at the end of carry() and stay so through every evaluation.
+// second. A row's bounds are true for the poses at which the pair was last brought up to date; how
+// far both objects have travelled since makes them true for those in use. So a pair that nobody
+// looks at costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +23,26 @@ struct ClosestPoints {
   ClosestPoints() noexcept;
 };
 
+// ObjectState::travelled of both objects of a pair, m.
+struct Travelled {
+  double a = 0.0, b = 0.0;
+};
+
+struct RowBounds {
+  double lower = -kInfinity, upper = kInfinity;  // m
+};
+
 struct PairTable {
   // By object pair, as in Scene::pairs.
   std::vector<std::uint32_t> object_a, object_b;
   std::vector<std::uint32_t> first_row;        // pair p: rows first_row[p] .. first_row[p + 1]
-  std::vector<double> least_lower;             // over its rows, m
+  std::vector<Travelled> carried_at;           // when its rows were last brought up to date
+  std::vector<double> least_lower;             // over its rows then, m
   std::vector<std::uint64_t> evaluated_cycle;  // when all rows that matter last were; 0: never
 
   // By row.
   std::vector<std::uint32_t> part_a, part_b;       // indices into parts_of(scene)
-  std::vector<double> lower, upper;                // true for the poses in use, m
+  std::vector<double> lower, upper;                // true at carried_at, m
   std::vector<std::uint64_t> row_evaluated_cycle;  // 0: never
   std::vector<DistanceStatus> status;
   std::vector<TrackingState> tracking;
@@ -45,10 +57,22 @@ struct PairTable {
   }
 };
 
-// Takes every bound from the last tick's poses to this tick's: looser by what the parts have moved,
-// but never looser than their bounding balls tell. Pairs of objects never seen keep -infinity and
-// +infinity.
-void carry(const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
-           PairTable& table) noexcept;
+// No point of the two objects has come farther, both together, since the pair was brought up to
+// date, m.
+[[nodiscard]] double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                     const PairTable& table) noexcept;
+
+// A row's bounds for the poses in use, both objects having been seen: looser by what they have
+// travelled, but never looser than the parts' balls tell.
+[[nodiscard]] RowBounds bounds_now(std::uint32_t row, double travelled,
+                                   const std::vector<PlacedPart>& parts,
+                                   const PairTable& table) noexcept;
+
+// Brings a pair's rows up to date. Both objects have been seen.
+void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
+           const std::vector<PlacedPart>& parts, PairTable& table) noexcept;
+
+// Forgets a pair's bounds: nobody can say how far its objects have come.
+void forget(std::uint32_t pair, PairTable& table) noexcept;
 
 }  // namespace clearance

@@ -113,14 +113,11 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
 }
 
 void place(const ObjectState& object, PlacedPart& part) noexcept {
-  if (object.moved || !part.placed) {
-    compose_with_error(object.pose, part);
-    part.world_from_part_rotation =
-        part.world_from_part.orientation.normalized().toRotationMatrix();
-    part.ball_in_world = place_ball(part);
-    part.placed = true;
-  }
-  part.moved = moved_at_most(object.motion, part.reach);
+  if (!object.moved && part.placed) return;
+  compose_with_error(object.pose, part);
+  part.world_from_part_rotation = part.world_from_part.orientation.normalized().toRotationMatrix();
+  part.ball_in_world = place_ball(part);
+  part.placed = true;
 }
 
 double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept {

@@ -25,7 +25,6 @@ struct PlacedPart {
 
   // Of this tick, once the object has been seen.
   bool placed = false;
-  double moved = 0.0;  // no point of it moved farther since the last tick, m
   Ball ball_in_world;
   Pose world_from_part;      // as the queries use it
   double shift_error = 0.0;  // its position is at most this far from the exact one, m

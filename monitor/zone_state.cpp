@@ -1,34 +1,51 @@
 #include "monitor/zone_state.hpp"
 
+#include <cmath>
+
 #include "monitor/rounding.hpp"
 
 namespace clearance {
 
-void update(const Scene& scene, const Zone& zone, const std::vector<PairSummary>& pairs,
-            std::uint64_t cycle, ZoneReport& report) noexcept {
-  // A pair is outside when its clearance could neither enter the zone nor keep it active.
-  const bool was_active = report.active;
-  report.clearance = kInfinity;
-  report.proved = true;
-  bool first = true;
-  for (const std::uint32_t p : zone.pairs) {
-    const PairSummary& pair = pairs[p];
-    const double margins =
-        scene.objects[scene.pairs[p].first].margin + scene.objects[scene.pairs[p].second].margin;
-    const double clearance =
-        margins > 0.0 ? rounded_down(pair.lower - rounded_up(margins)) : pair.lower;
-    const bool outside = was_active ? clearance > zone.leave_above : clearance >= zone.enter_below;
-    if (!outside && !is_evaluated(pair.status)) report.proved = false;
-    if (first || clearance < report.clearance) {
-      report.clearance = clearance;
-      report.pair = p;
-    }
-    first = false;
-  }
+ZoneUpdate::ZoneUpdate(const Scene& scene, const Zone& zone, const ZoneReport& before) noexcept
+    : scene_(&scene), zone_(&zone), was_active_(before.active), pair_(before.pair) {}
+
+void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary) noexcept {
+  const auto& [first, second, publish] = scene_->pairs[pair];
+  const double margins = scene_->objects[first].margin + scene_->objects[second].margin;
+  const double clearance =
+      margins > 0.0 ? rounded_down(summary.lower - rounded_up(margins)) : summary.lower;
+  if (!outside(clearance) && !is_evaluated(summary.status)) proved_ = false;
+  take(clearance, pair);
+}
+
+void ZoneUpdate::add_rest(double clearance, std::uint32_t pair) noexcept {
+  if (!outside(clearance)) proved_ = false;
+  take(clearance, pair);
+}
+
+void ZoneUpdate::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
+  report.clearance = clearance_;
+  report.proved = proved_;
+  report.pair = pair_;
   report.active =
-      was_active ? !(report.clearance > zone.leave_above) : report.clearance < zone.enter_below;
-  report.changed = report.active != was_active;
+      was_active_ ? !(clearance_ > zone_->leave_above) : clearance_ < zone_->enter_below;
+  report.changed = report.active != was_active_;
   if (report.changed) report.since_cycle = cycle;
+}
+
+double ZoneUpdate::well_outside() const noexcept {
+  return std::nextafter(zone_->leave_above, kInfinity);
+}
+
+bool ZoneUpdate::outside(double clearance) const noexcept {
+  return was_active_ ? clearance > zone_->leave_above : clearance >= zone_->enter_below;
+}
+
+void ZoneUpdate::take(double clearance, std::uint32_t pair) noexcept {
+  if (any_ && !(clearance < clearance_)) return;
+  any_ = true;
+  clearance_ = clearance;
+  pair_ = pair;
 }
 
 }  // namespace clearance

@@ -2,15 +2,40 @@
 // margins.
 #pragma once
 
-#include <vector>
-
+#include "config/scene.hpp"
 #include "monitor/pair_summary.hpp"
 
 namespace clearance {
 
-// Takes the zone's report from the last tick to this one. Active when some pair's clearance is
-// below enter_below; no longer when every pair's is above leave_above.
-void update(const Scene& scene, const Zone& zone, const std::vector<PairSummary>& pairs,
-            std::uint64_t cycle, ZoneReport& report) noexcept;
+// Takes a zone's report from the last tick to this one, pair by pair. Active when some pair's
+// clearance is below enter_below; no longer when every pair's is above leave_above.
+class ZoneUpdate {
+ public:
+  ZoneUpdate(const Scene& scene, const Zone& zone, const ZoneReport& before) noexcept;
+
+  // One of the zone's pairs.
+  void add(std::uint32_t pair, const PairSummary& summary) noexcept;
+
+  // Pairs of the zone that need not be named one by one: each at least `clearance`, margins
+  // subtracted. `pair` is one of them.
+  void add_rest(double clearance, std::uint32_t pair) noexcept;
+
+  void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
+
+  // The least that a pair has which is outside whatever the hysteresis says, m.
+  [[nodiscard]] double well_outside() const noexcept;
+
+ private:
+  // The pair could neither enter the zone nor keep it active.
+  [[nodiscard]] bool outside(double clearance) const noexcept;
+  void take(double clearance, std::uint32_t pair) noexcept;
+
+  const Scene* scene_;
+  const Zone* zone_;
+  bool was_active_;
+  bool any_ = false, proved_ = true;
+  double clearance_ = kInfinity;  // m
+  std::uint32_t pair_;
+};
 
 }  // namespace clearance

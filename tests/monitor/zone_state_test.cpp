@@ -20,10 +20,10 @@ class ZoneState : public testing::Test {
 
   // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
   const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
-    std::vector<PairSummary> pairs(2);
-    pairs[0] = {.status = status, .lower = first + 0.03, .upper = kInfinity};
-    pairs[1] = {.status = status, .lower = second + 0.03, .upper = kInfinity};
-    update(scene_, zone_, pairs, ++cycle_, report_);
+    ZoneUpdate update(scene_, zone_, report_);
+    update.add(0, {.status = status, .lower = first + 0.03, .upper = kInfinity});
+    update.add(1, {.status = status, .lower = second + 0.03, .upper = kInfinity});
+    update.finish(++cycle_, report_);
     return report_;
   }
 
@@ -76,8 +76,9 @@ TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
 }
 
 TEST_F(ZoneState, AZoneOfNoPairsIsNeverActive) {
-  zone_.pairs.clear();
-  EXPECT_FALSE(tick(0.0, 0.0).active);
+  const ZoneUpdate update(scene_, zone_, report_);
+  update.finish(1, report_);
+  EXPECT_FALSE(report_.active);
   EXPECT_TRUE(report_.proved);
 }
 

@@ -13,6 +13,7 @@
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
+#include "tools/bench/ticks.hpp"
 #include "tools/bench/variants.hpp"
 
 namespace {
@@ -32,11 +33,13 @@ constexpr const char* kHelp =
     "tracked\n"
     "  cell/cold/NAME     the same without what the last query left\n"
     "  cell/tick/NAME     one Monitor::tick; counters p50, p99.9 and max in ns\n"
+    "  tick/NAME          one Monitor::tick of a generated cell of thousands to millions of pairs\n"
     "\n"
     "Counters: ns a query; max_error in m against a reference in long doubles; failures (flag,\n"
     "NaN, or error above 1e-6 m) among the 4,000 queries; iterations, mean, 0 where not told;\n"
     "truth_gap, how far the reference itself may be off; overlapping, how many pairs are.\n"
     "\n"
+    "  --tick             the ticks alone, as --benchmark_filter=tick/ does\n"
     "  --report DIR       runs all but the cells, which takes a few minutes, and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
     "\n"
@@ -52,6 +55,7 @@ void register_all() {
   register_adjacency();
   register_peers();
   register_cells(CLEARANCE_CELLS);
+  register_ticks();
 }
 
 // What --report asks of Google Benchmark, unless the caller asks for something else.
@@ -69,7 +73,9 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);
-    if (word != "--report") {
+    if (word == "--tick") {
+      others.emplace_back("--benchmark_filter=tick/");
+    } else if (word != "--report") {
       others.emplace_back(word);
     } else if (i + 1 < argc) {
       report = argv[++i];

@@ -1,0 +1,175 @@
+#include "monitor/broad_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// A pair with less slack than this is cheaper awake: it would be back within a few ticks.
+constexpr double kLeastSlack = 16.0 * WakeWheels::kUnit;  // 4 mm
+constexpr double kLeastTicks = 4.0;                       // of both objects' usual travel
+// Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
+// balls' own rounding takes over.
+constexpr double kSumError = 1e-9;
+// The slower object's part of the slack is no less than this, in case it darts.
+constexpr double kLeastShare = 0.125;
+
+double share_of_a(double usual_a, double usual_b) noexcept {
+  const double sum = usual_a + usual_b;
+  return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
+}
+
+}  // namespace
+
+BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
+                       std::size_t most_woken)
+    : most_woken_(most_woken),
+      bodies_(scene.objects.size()),
+      levels_(std::move(levels)),
+      first_pair_(scene.objects.size() + 1, 0),
+      pairs_(2 * scene.pairs.size()),
+      wheels_(scene.objects.size(), scene.pairs.size()) {
+  const std::vector<EnclosingBall> balls = enclosing_balls(scene.objects.size(), parts);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].ball = balls[i];
+    bodies_[i].fixed = scene.objects[i].fixed;
+  }
+  for (const ObjectPair& pair : scene.pairs) {
+    object_a_.push_back(pair.first);
+    object_b_.push_back(pair.second);
+    ++first_pair_[pair.first + 1];
+    ++first_pair_[pair.second + 1];
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) first_pair_[i + 1] += first_pair_[i];
+  std::vector<std::uint32_t> next(first_pair_.begin(), first_pair_.end() - 1);
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    pairs_[next[object_a_[p]]++] = p;
+    pairs_[next[object_b_[p]]++] = p;
+  }
+  woken_.reserve(scene.pairs.size());
+  arrived_.reserve(bodies_.size());
+}
+
+void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table) noexcept {
+  farthest_travel_ = 0.0;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    const ObjectState& object = objects[i];
+    if (!object.seen) continue;
+    Body& body = bodies_[i];
+    if (object.moved || !body.arrival.here()) body.ball_in_world = placed(body.ball, object.pose);
+    if (!body.arrival.here()) arrive(i);
+    double by = object.travel;
+    if (!(by < kInfinity)) {
+      jump(i, table);
+      by = 0.0;
+    }
+    body.usual_travel += 0.125 * (by - body.usual_travel);
+    if (object.may_have_moved < kInfinity) {
+      by += std::max(0.0, object.may_have_moved - body.may_have_moved);
+      body.may_have_moved = object.may_have_moved;
+    }
+    if (!(by > 0.0)) continue;
+    wheels_.advance(i, rounded_up(by));
+    farthest_travel_ = std::max(farthest_travel_, rounded_up(by));
+  }
+  take_due();
+  meet_arrivals();
+}
+
+void BroadPhase::arrive(std::uint32_t object) noexcept {
+  bodies_[object].arrival.rank = static_cast<std::uint32_t>(arrived_.size());
+  arrived_.push_back(object);
+}
+
+void BroadPhase::jump(std::uint32_t object, PairTable& table) noexcept {
+  for (const std::uint32_t pair : pairs_of(object)) {
+    forget(pair, table);
+    if (wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1)) wake(pair);
+  }
+}
+
+void BroadPhase::wake(std::uint32_t pair) noexcept {
+  wheels_.cancel(2 * pair);
+  wheels_.cancel(2 * pair + 1);
+  woken_.push_back(pair);
+}
+
+// Every pair is met once: when the later of its objects has its turn.
+void BroadPhase::meet_arrivals() noexcept {
+  while (!everyone_arrived()) {
+    const std::uint32_t object = arrived_[met_];
+    const std::span<const std::uint32_t> pairs = pairs_of(object);
+    for (; met_pairs_ < pairs.size(); ++met_pairs_) {
+      if (woken_.size() >= most_woken_) return;
+      const std::uint32_t pair = pairs[met_pairs_];
+      const std::uint32_t other = object_a_[pair] == object ? object_b_[pair] : object_a_[pair];
+      if (bodies_[other].arrival.rank < bodies_[object].arrival.rank) woken_.push_back(pair);
+    }
+    met_pairs_ = 0;
+    ++met_;
+  }
+}
+
+void BroadPhase::take_due() noexcept {
+  bool all = true;
+  for (std::uint32_t i = 0; i < bodies_.size() && all; ++i) {
+    all = wheels_.take_due(i, most_woken_, woken_);
+  }
+  // A hook that is due has been so for no longer than its pair has been overdue.
+  const double overtaken = rounded_up(2.0 * farthest_travel_);
+  const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
+  if (!all) overdue_lower_ = rounded_down(lower - overtaken);
+  overdue_ = !all;
+}
+
+double BroadPhase::pending_lower() const noexcept {
+  return everyone_arrived() ? overdue_lower_ : -kInfinity;
+}
+
+bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
+  if (!(horizon_ > -kInfinity)) return false;
+  const std::uint32_t a = object_a_[pair], b = object_b_[pair];
+  const Body& body_a = bodies_[a];
+  const Body& body_b = bodies_[b];
+  const double near = std::max(horizon_, levels_.urgent[a] + levels_.urgent[b]);
+  const double unseen = body_a.may_have_moved + body_b.may_have_moved;
+  const double slack = lower - std::max(near, levels_.zones[pair] + unseen) - kSumError;
+  const double usual = body_a.usual_travel + body_b.usual_travel;
+  if (!(slack >= kLeastSlack + kLeastTicks * usual)) return false;
+  if (body_b.fixed) return wheels_.set(2 * pair, a, slack);  // two fixed ones: the horizon's moves
+  if (body_a.fixed) return wheels_.set(2 * pair + 1, b, slack);
+  const double part_a = rounded_down(slack * share_of_a(body_a.usual_travel, body_b.usual_travel));
+  if (!wheels_.set(2 * pair, a, part_a)) return false;
+  if (wheels_.set(2 * pair + 1, b, rounded_down(slack - part_a))) return true;
+  wheels_.cancel(2 * pair);
+  return false;
+}
+
+RowBounds BroadPhase::by_balls(std::uint32_t pair) const noexcept {
+  const Ball& a = bodies_[object_a_[pair]].ball_in_world;
+  const Ball& b = bodies_[object_b_[pair]].ball_in_world;
+  return {.lower = least_between(a, b), .upper = most_between(a, b)};
+}
+
+// Raising the horizon is every object travelling that far at once.
+void BroadPhase::move_horizon(double to) noexcept {
+  if (to > horizon_ && horizon_ > -kInfinity) {
+    const double by = rounded_up(to - horizon_);
+    for (std::uint32_t i = 0; i < bodies_.size(); ++i) wheels_.advance(i, by);
+    farthest_travel_ = by;
+    horizon_ = to;
+    take_due();
+    return;
+  }
+  horizon_ = to;
+}
+
+std::span<const std::uint32_t> BroadPhase::pairs_of(std::uint32_t object) const noexcept {
+  return std::span(pairs_).subspan(first_pair_[object],
+                                   first_pair_[object + 1] - first_pair_[object]);
+}
+
+}  // namespace clearance

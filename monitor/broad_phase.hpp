@@ -1,0 +1,91 @@
+// Which pairs need no look this tick, provably? README.md here says why it is done like this.
+//
+// A pair is asleep while its lower bound, carried by what its two objects have really travelled,
+// cannot be below the horizon (no smaller than the minimum over all pairs, if that is proved), and,
+// counting what late ones may have moved unseen, cannot be below what a zone watches it for. It has
+// a hook on the wake wheels of both objects; the slack above those levels is divided between the
+// two. All other pairs are awake: looked at in every tick.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "monitor/enclosing_ball.hpp"
+#include "monitor/pair_table.hpp"
+#include "monitor/wake_wheels.hpp"
+
+namespace clearance {
+
+class BroadPhase {
+ public:
+  struct Levels {
+    std::vector<double> zones;   // by pair, m: awake where it may be nearer; -infinity: no zone
+    std::vector<double> urgent;  // by object, m: awake where nearer than this of both together
+  };
+  // `most_woken`: pairs that may be woken a tick; the others wait, and pending() says so.
+  BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
+             std::size_t most_woken);
+
+  // Takes in how the objects have moved. Pairs whose slack may be used up, whose objects were seen
+  // for the first time or have jumped, are in woken() afterwards.
+  void begin(const std::vector<ObjectState>& objects, PairTable& table) noexcept;
+
+  // Woken and not decided about; in this tick's order.
+  [[nodiscard]] std::span<const std::uint32_t> woken() const noexcept { return woken_; }
+  void clear_woken() noexcept { woken_.clear(); }
+
+  // Puts a pair to sleep whose lower bound for the poses in use is `lower`, m. False: that is too
+  // near its levels, or no horizon has been set.
+  bool sleep(std::uint32_t pair, double lower) noexcept;
+
+  // The pair's distance as far as the enclosing balls tell, for the poses in use, m.
+  [[nodiscard]] RowBounds by_balls(std::uint32_t pair) const noexcept;
+
+  [[nodiscard]] double horizon() const noexcept { return horizon_; }
+  // Lowering is free; raising wakes the pairs that it overtakes. m; -infinity: not set.
+  void move_horizon(double to) noexcept;
+
+  // Some pairs had to wait, so that only pending_lower() is known of them, m, for the poses in use.
+  [[nodiscard]] bool pending() const noexcept { return overdue_ || !everyone_arrived(); }
+  [[nodiscard]] double pending_lower() const noexcept;
+
+ private:
+  // An object whose pairs have to be looked at for the first time: with those that came before.
+  struct Arrival {
+    std::uint32_t rank = ~0u;
+    bool here() const noexcept { return rank != ~0u; }
+  };
+  struct Body {
+    EnclosingBall ball;
+    Ball ball_in_world;
+    bool fixed = false;
+    double may_have_moved = 0.0;  // as of the last tick in which that was known, m
+    double usual_travel = 0.0;    // m a tick, smoothed: divides the slack, proves nothing
+    Arrival arrival;
+  };
+
+  void arrive(std::uint32_t object) noexcept;
+  void jump(std::uint32_t object, PairTable& table) noexcept;
+  void meet_arrivals() noexcept;
+  void take_due() noexcept;
+  [[nodiscard]] bool everyone_arrived() const noexcept { return met_ == arrived_.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept;
+  void wake(std::uint32_t pair) noexcept;
+
+  const std::size_t most_woken_;
+  std::vector<Body> bodies_;
+  std::vector<std::uint32_t> object_a_, object_b_;  // by pair
+  Levels levels_;
+  std::vector<std::uint32_t> first_pair_, pairs_;  // pairs by object
+  WakeWheels wheels_;
+  double horizon_ = -kInfinity;
+  std::vector<std::uint32_t> woken_;
+  std::vector<std::uint32_t> arrived_;  // objects, in order; those before met_ have met all others
+  std::size_t met_ = 0, met_pairs_ = 0;
+  double farthest_travel_ = 0.0;  // of any wheel this tick, m
+  bool overdue_ = false;          // hooks that are due are still on the wheels
+  double overdue_lower_ = 0.0;    // their pairs' distance is at least this, m
+};
+
+}  // namespace clearance

@@ -1,0 +1,41 @@
+#include "monitor/pair_counts.hpp"
+
+#include <bit>
+
+namespace clearance {
+
+PairCounts::PairCounts(const Scene& scene)
+    : words_((scene.objects.size() + 63) / 64), neighbours_(scene.objects.size() * words_) {
+  known_.members.resize(words_);
+  fresh_.members.resize(words_);
+  const auto join = [this](std::size_t object, std::size_t other) {
+    neighbours_[object * words_ + other / 64] |= std::uint64_t{1} << other % 64;
+  };
+  for (const ObjectPair& pair : scene.pairs) {
+    join(pair.first, pair.second);
+    join(pair.second, pair.first);
+  }
+}
+
+void PairCounts::update(const std::vector<ObjectState>& objects) noexcept {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const bool known = objects[i].known();
+    set(i, known, known_);
+    set(i, known && !objects[i].late, fresh_);
+  }
+}
+
+void PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
+  std::uint64_t& word = kind.members[object / 64];
+  const std::uint64_t bit = std::uint64_t{1} << object % 64;
+  if (static_cast<bool>(word & bit) == is_member) return;
+  std::uint64_t pairs = 0;
+  for (std::size_t i = 0; i < words_; ++i) {
+    pairs += static_cast<std::uint64_t>(
+        std::popcount(neighbours_[object * words_ + i] & kind.members[i]));
+  }
+  word ^= bit;
+  kind.pairs = is_member ? kind.pairs + pairs : kind.pairs - pairs;
+}
+
+}  // namespace clearance

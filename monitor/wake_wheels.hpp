@@ -1,0 +1,66 @@
+// Alarm clocks that run on motion instead of time: one wheel an object, one hook a pair and side.
+//
+// A hook on an object's wheel is due before the object has travelled farther than the hook was set
+// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing,
+// one that moves costs as much as it has hooks due.
+//
+// A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of travel
+// wide. A hook goes where its bucket is at least three and at most seven ahead, and is never moved
+// from there: what is due early is looked at, and set again, at no more cost than moving it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace clearance {
+
+class WakeWheels {
+ public:
+  static constexpr double kUnit = 0x1p-12;  // m: what a set travel is at least, and rounded to
+
+  WakeWheels(std::size_t objects, std::size_t pairs);
+
+  // Hook `hook` (2 * pair + side, not set) is due by the time `object` has advanced by `travel`
+  // more. False, and nothing is set, when that is less than can be told apart.
+  bool set(std::uint32_t hook, std::uint32_t object, double travel) noexcept;
+
+  // Takes a hook off, set or not.
+  void cancel(std::uint32_t hook) noexcept;
+
+  [[nodiscard]] bool is_set(std::uint32_t hook) const noexcept {
+    return hooks_[hook].before != kLoose;
+  }
+
+  // `object` travels: `by` >= 0, finite.
+  void advance(std::uint32_t object, double by) noexcept;
+
+  // Appends to `pairs` those with a due hook on this wheel and takes both their hooks off. Stops
+  // when `pairs` has `most` elements; false: there may be more.
+  bool take_due(std::uint32_t object, std::size_t most, std::vector<std::uint32_t>& pairs) noexcept;
+
+ private:
+  static constexpr std::uint32_t kRing = 8;
+  static constexpr std::uint32_t kLevels = 20;  // the widest bucket: 128 m
+  static constexpr std::uint32_t kNobody = ~0u;
+  static constexpr std::uint32_t kLoose = ~0u;
+  static constexpr std::uint32_t kHead = 1u << 31;  // `before` is a bucket, not a hook
+
+  struct Hook {
+    std::uint32_t next = kNobody;
+    std::uint32_t before = kLoose;
+  };
+  struct Wheel {
+    double travelled = 0.0;  // m, rounded up
+    std::int64_t done = 0;   // units: buckets up to here are empty
+  };
+
+  bool empty_bucket(std::uint32_t bucket, std::size_t most,
+                    std::vector<std::uint32_t>& pairs) noexcept;
+
+  std::vector<Wheel> wheels_;
+  std::vector<std::uint32_t> first_;  // hook by bucket: object, level, place in the ring
+  std::vector<Hook> hooks_;
+};
+
+}  // namespace clearance

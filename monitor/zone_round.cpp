@@ -1,0 +1,72 @@
+#include "monitor/zone_round.hpp"
+
+#include <algorithm>
+
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+
+ZoneRound::ZoneRound(const Scene& scene)
+    : scene_(scene), members_(scene.zones.size()), most_margins_(scene.zones.size(), 0.0) {
+  updates_.reserve(scene.zones.size());
+  added_.resize(scene.zones.size());
+  if (scene.zones.empty()) return;
+  first_zone_.assign(scene.pairs.size() + 1, 0);
+  for (const Zone& zone : scene.zones) {
+    for (const std::uint32_t pair : zone.pairs) ++first_zone_[pair + 1];
+  }
+  for (std::size_t p = 0; p < scene.pairs.size(); ++p) first_zone_[p + 1] += first_zone_[p];
+  zones_.resize(first_zone_.back());
+  std::vector<std::uint32_t> next(first_zone_.begin(), first_zone_.end() - 1);
+  for (std::uint32_t z = 0; z < scene.zones.size(); ++z) {
+    std::vector<std::uint8_t> is_member(scene.objects.size(), 0);
+    for (const std::uint32_t pair : scene.zones[z].pairs) {
+      zones_[next[pair]++] = z;
+      double margins = 0.0;
+      for (const std::uint32_t object : {scene.pairs[pair].first, scene.pairs[pair].second}) {
+        margins += scene.objects[object].margin;
+        if (!is_member[object]) members_[z].push_back({object, pair});
+        is_member[object] = 1;
+      }
+      most_margins_[z] = std::max(most_margins_[z], rounded_up(margins));
+    }
+  }
+}
+
+void ZoneRound::begin(const std::vector<ZoneReport>& reports) noexcept {
+  updates_.clear();
+  for (std::size_t z = 0; z < scene_.zones.size(); ++z) {
+    updates_.emplace_back(scene_, scene_.zones[z], reports[z]);
+    added_[z] = 0;
+  }
+}
+
+void ZoneRound::add(std::uint32_t pair, const PairSummary& summary) noexcept {
+  for (const std::uint32_t zone : zones_of(pair)) {
+    updates_[zone].add(pair, summary);
+    ++added_[zone];
+  }
+}
+
+void ZoneRound::finish(const std::vector<ObjectState>& objects, double pending_lower,
+                       std::uint64_t cycle, std::vector<ZoneReport>& reports) noexcept {
+  for (std::size_t z = 0; z < updates_.size(); ++z) {
+    ZoneUpdate& update = updates_[z];
+    if (added_[z] < scene_.zones[z].pairs.size()) {
+      const double pending = rounded_down(pending_lower - most_margins_[z]);
+      update.add_rest(std::min(update.well_outside(), pending), reports[z].pair);
+    }
+    const auto unknown =
+        std::find_if(members_[z].begin(), members_[z].end(),
+                     [&](const Member& member) { return !objects[member.object].known(); });
+    if (unknown != members_[z].end()) update.add_rest(-kInfinity, unknown->pair);
+    update.finish(cycle, reports[z]);
+  }
+}
+
+std::span<const std::uint32_t> ZoneRound::zones_of(std::uint32_t pair) const noexcept {
+  if (first_zone_.empty()) return {};
+  return std::span(zones_).subspan(first_zone_[pair], first_zone_[pair + 1] - first_zone_[pair]);
+}
+
+}  // namespace clearance

@@ -1,0 +1,45 @@
+// All zones of a scene in one tick, from the pairs that are awake and what is known of the rest.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "monitor/object_state.hpp"
+#include "monitor/zone_state.hpp"
+
+namespace clearance {
+
+class ZoneRound {
+ public:
+  explicit ZoneRound(const Scene& scene);
+
+  // Before the pairs: takes the last tick's reports.
+  void begin(const std::vector<ZoneReport>& reports) noexcept;
+
+  // A pair that is awake.
+  void add(std::uint32_t pair, const PairSummary& summary) noexcept;
+
+  // What was not added: farther than its zones watch for, at least `pending_lower` apart where that
+  // is less, or unknown.
+  void finish(const std::vector<ObjectState>& objects, double pending_lower, std::uint64_t cycle,
+              std::vector<ZoneReport>& reports) noexcept;
+
+ private:
+  // An object of a zone, and one of its pairs there.
+  struct Member {
+    std::uint32_t object, pair;
+  };
+  [[nodiscard]] std::span<const std::uint32_t> zones_of(std::uint32_t pair) const noexcept;
+
+  const Scene& scene_;
+  std::vector<std::uint32_t> first_zone_, zones_;  // zones by pair; none where there are no zones
+  std::vector<std::vector<Member>> members_;       // by zone
+  std::vector<double> most_margins_;               // by zone: of any of its pairs, m
+  // By zone, of this tick.
+  std::vector<ZoneUpdate> updates_;
+  std::vector<std::uint32_t> added_;
+};
+
+}  // namespace clearance

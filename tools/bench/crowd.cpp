@@ -1,0 +1,181 @@
+#include "tools/bench/crowd.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <variant>
+
+#include "config/simulation.hpp"
+#include "core/shapes.hpp"
+#include "tools/bench/workload.hpp"
+
+namespace clearance::bench {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kOrbit = 0.18;  // m
+constexpr double kSpeed = 1.0;   // m/s
+constexpr double kSpin = 2.0;    // rad/s
+
+// Uniform numbers, the same with every standard library.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : engine_(seed) {}
+  double in(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  Vec3 direction() {
+    const double z = in(-1.0, 1.0), angle = in(0.0, 2.0 * kPi), r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+  Eigen::Quaterniond orientation() {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(in(0.0, 2.0 * kPi), direction()));
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+ConvexPolyhedron made(ShapeResult result) { return std::get<ConvexPolyhedron>(std::move(result)); }
+
+ConvexPolyhedron facet_ball(double radius) {
+  std::vector<HalfSpace> rows;
+  // A facet-ball of this order has its corners within 1.2 of its inscribed radius.
+  for (const Vec3& d : even_directions(6)) rows.push_back({d, radius / 1.2});
+  return made(polyhedron_from_halfspaces(rows));
+}
+
+// One of four kinds, within a ball of `radius`.
+ConvexPolyhedron body(std::uint32_t kind, double radius, Draw& draw) {
+  switch (kind % 4) {
+    case 0: {
+      const Vec3 d(draw.in(0.3, 1.0), draw.in(0.3, 1.0), draw.in(0.3, 1.0));
+      return made(box(radius * d.normalized()));
+    }
+    case 1:
+      return facet_ball(radius);
+    case 2: {
+      const double half = 0.7 * radius;
+      return made(segment(Vec3(-half, 0, 0), Vec3(half, 0, 0), radius - half));
+    }
+    default: {
+      std::array<Vec3, 4> corners;
+      for (Vec3& c : corners) c = radius * draw.direction();
+      const ShapeResult hull = polyhedron_from_vertices(corners);
+      return std::holds_alternative<ConvexPolyhedron>(hull) ? made(hull) : facet_ball(radius);
+    }
+  }
+}
+
+Object object_of(const std::string& name, ConvexPolyhedron shape) {
+  Object object;
+  object.name = name;
+  object.parts.push_back({name, std::move(shape), {}});
+  object.age_limit_ns = 20'000'000;
+  object.max_speed = 2.0;
+  return object;
+}
+
+std::uint32_t grid_side(std::uint32_t count) {
+  auto side = static_cast<std::uint32_t>(std::cbrt(count));
+  while (side * side * side < count) ++side;
+  return side;
+}
+
+}  // namespace
+
+void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const {
+  samples.clear();
+  for (const Orbit& orbit : orbits) {
+    const double angle = orbit.turn_rate * t_s;
+    PoseSample s;
+    s.object = orbit.object;
+    s.stamp_ns = stamp_ns;
+    s.world_from_object.position =
+        orbit.centre + std::cos(angle) * orbit.across + std::sin(angle) * orbit.along;
+    s.world_from_object.orientation =
+        Eigen::Quaterniond(Eigen::AngleAxisd(orbit.spin_rate * t_s, orbit.spin_axis));
+    s.twist.linear =
+        orbit.turn_rate * (std::cos(angle) * orbit.along - std::sin(angle) * orbit.across);
+    s.twist.angular = orbit.spin_rate * orbit.spin_axis;
+    s.has_twist = true;
+    samples.push_back(s);
+  }
+  if (scene.simulation.empty()) return;
+  std::vector<PoseAt> poses;
+  poses_at(scene, t_s, poses);
+  for (const PoseAt& p : poses) {
+    samples.push_back({p.object, stamp_ns, p.world_from_object, p.twist, true});
+  }
+}
+
+Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving) {
+  Draw draw(count);
+  Crowd crowd;
+  crowd.scene.name = crowd.name = std::to_string(count) + "_of_which_" + std::to_string(moving);
+  crowd.scene.revision = count;
+  const std::uint32_t side = grid_side(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    crowd.scene.objects.push_back(
+        object_of("body_" + std::to_string(i), body(i, draw.in(0.15, 0.28), draw)));
+    Crowd::Orbit orbit;
+    orbit.object = i;
+    orbit.centre = Vec3(i % side, i / side % side, i / side / side);
+    const Eigen::Quaterniond plane = draw.orientation();
+    // Movers are spread evenly over the others.
+    const bool moves = static_cast<std::uint64_t>(i) * moving / count !=
+                       (static_cast<std::uint64_t>(i) + 1) * moving / count;
+    orbit.across = kOrbit * (plane * Vec3::UnitX());
+    orbit.along = kOrbit * (plane * Vec3::UnitY());
+    orbit.turn_rate = moves ? kSpeed / kOrbit : 0.0;
+    orbit.spin_axis = draw.direction();
+    orbit.spin_rate = moves ? kSpin : 0.0;
+    crowd.orbits.push_back(orbit);
+  }
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) crowd.scene.pairs.push_back({a, b, false});
+  }
+  return crowd;
+}
+
+Crowd robot_in_crowd(std::uint32_t obstacles) {
+  constexpr std::uint32_t kLinks = 20;
+  constexpr double kLength = 0.14;  // m, of a link
+  Draw draw(obstacles);
+  Crowd crowd;
+  crowd.scene.name = crowd.name = "robot_among_" + std::to_string(obstacles);
+  crowd.scene.revision = obstacles;
+  SimulatedChain chain;
+  chain.name = "arm";
+  for (std::uint32_t i = 0; i < kLinks; ++i) {
+    crowd.scene.objects.push_back(
+        object_of("link_" + std::to_string(i),
+                  made(segment(Vec3(0, 0, 0.02), Vec3(0, 0, kLength - 0.02), 0.05))));
+    SimulatedJoint joint;
+    joint.objects = {i};
+    if (i > 0) joint.parent_from_joint.position = Vec3(0, 0, kLength);
+    joint.axis = i % 2 == 0 ? Vec3::UnitX() : Vec3::UnitY();
+    joint.motion = {.centre = 0.05, .amplitude = 0.15, .frequency_hz = 0.4, .phase = 0.7 * i};
+    chain.joints.push_back(joint);
+  }
+  crowd.scene.simulation.chains.push_back(chain);
+  for (std::uint32_t i = 0; i < obstacles; ++i) {
+    Object object = object_of("obstacle_" + std::to_string(i), body(i, draw.in(0.15, 0.28), draw));
+    object.fixed = true;
+    const double angle = draw.in(0.0, 2.0 * kPi), from_axis = draw.in(1.6, 4.0);
+    object.world_from_object.position =
+        Vec3(from_axis * std::cos(angle), from_axis * std::sin(angle), draw.in(-0.5, 3.5));
+    object.world_from_object.orientation = draw.orientation();
+    crowd.scene.objects.push_back(std::move(object));
+  }
+  const auto count = static_cast<std::uint32_t>(crowd.scene.objects.size());
+  for (std::uint32_t a = 0; a < kLinks; ++a) {
+    for (std::uint32_t b = a + 1; b < count; ++b) {
+      if (b >= kLinks || b > a + 2) crowd.scene.pairs.push_back({a, b, false});
+    }
+  }
+  return crowd;
+}
+
+}  // namespace clearance::bench

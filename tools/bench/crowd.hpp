@@ -1,0 +1,41 @@
+// Generated cells: how does a tick's cost grow with the number of objects and pairs?
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/input.hpp"
+
+namespace clearance::bench {
+
+// A cell and where everything in it is at any time.
+struct Crowd {
+  // Goes round a circle at a constant speed and spins at a constant rate.
+  struct Orbit {
+    std::uint32_t object = 0;
+    Vec3 centre, across, along;  // radii of the circle, orthogonal, m
+    double turn_rate = 0.0;      // round the circle, rad/s
+    Vec3 spin_axis;              // unit
+    double spin_rate = 0.0;      // rad/s
+  };
+  std::string name;
+  Scene scene;
+  std::vector<Orbit> orbits;
+
+  // A sample for everything that moves at `t_s` seconds, stamped `stamp_ns`.
+  void samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const;
+};
+
+// `count` boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of
+// a cubic grid of 1 m, of which `moving` go round in circles of 0.18 m at 1 m/s and 2 rad/s. No two
+// ever meet; neighbours come as near as 0.08 m. All pairs are watched; what does not
+// move sends the same pose in every tick.
+[[nodiscard]] Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving);
+
+// A serial arm of 20 links among `obstacles` fixed bodies around it; all pairs of a link and an
+// obstacle, and all pairs of links that are not neighbours or next neighbours.
+[[nodiscard]] Crowd robot_in_crowd(std::uint32_t obstacles);
+
+}  // namespace clearance::bench
