@@ -25,6 +25,7 @@ constexpr std::int64_t kMaxBudget = 1'000'000'000;
 constexpr std::int64_t kMaxDomain = 232;                 // the last whose ports fit into 16 bits
 constexpr std::size_t kMaxDdsName = 255;                 // bytes
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
+constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 // The sections of a cell, one function each.
 class CellReader {
@@ -68,6 +69,11 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
     const auto queries =
         read_integer(*budget, 1, kMaxBudget, "distance queries a tick", complaints_);
     if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
+  }
+  if (const YamlNode* refresh = map.optional("refresh_s")) {
+    scene.refresh_s = read_number(*refresh, kRefreshes,
+                                  "seconds within which every pair is evaluated", complaints_)
+                          .value_or(scene.refresh_s);
   }
   if (const YamlNode* limit = map.optional("future_limit_ms")) {
     scene.future_limit_ns =

@@ -27,17 +27,24 @@ std::uint32_t RefreshRound::take_turn(std::uint64_t cycle) noexcept {
 
 void RefreshRound::look(const std::vector<ObjectState>& objects) noexcept {
   const std::uint64_t oldest = oldest_turn();
+  constexpr std::uint64_t kNobody = ~std::uint64_t{0};
+  std::uint64_t regained = kNobody;
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const bool known = objects[i].known();
     if (known == static_cast<bool>(known_[i])) continue;
     known_[i] = known;
     if (known) {
-      oldest_regained_ =
-          turns_missed_ > 0 ? std::min(oldest_regained_, lost_sight_[i]) : lost_sight_[i];
-      turns_missed_ = pairs_;
+      regained = std::min(regained, lost_sight_[i]);
     } else {
       lost_sight_[i] = oldest;
     }
+  }
+  if (regained == kNobody) return;
+  oldest_regained_ = turns_missed_ > 0 ? std::min(oldest_regained_, regained) : regained;
+  turns_missed_ = pairs_;
+  // A pair of one of these with one that is still out of sight has been unknown for as long.
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (!known_[i]) lost_sight_[i] = std::min(lost_sight_[i], regained);
   }
 }
 

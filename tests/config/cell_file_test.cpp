@@ -36,8 +36,8 @@ TEST(CellFile, DefaultsAreThoseOfTheReference) {
 
 TEST(CellFile, EverySettingArrives) {
   const Scene scene = scene_of(
-      "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nfuture_limit_ms: "
-      "2.5\n"
+      "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nrefresh_s: 3\n"
+      "future_limit_ms: 2.5\n"
       "dds: {domain: 42, partition: cell_7, topics: {poses: a/poses, zones: b_zones}}\n"
       "defaults: {margin: 4, max_speed: 1500, age_limit_ms: 12}\n"
       "objects:\n"
@@ -52,6 +52,7 @@ TEST(CellFile, EverySettingArrives) {
       "zones: [{name: slow, between: [left, table], enter_below: 120, leave_above: 150}]\n");
   EXPECT_EQ(scene.rate_hz, 250.0);
   EXPECT_EQ(scene.budget, 77u);
+  EXPECT_EQ(scene.refresh_s, 3.0);
   EXPECT_EQ(scene.future_limit_ns, 2'500'000);
   EXPECT_EQ(scene.domain, 42u);
   EXPECT_EQ(scene.partition, "cell_7");
