@@ -37,6 +37,8 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
     bodies_[i].ball = balls[i];
     bodies_[i].fixed = scene.objects[i].fixed;
   }
+  object_a_.reserve(scene.pairs.size());
+  object_b_.reserve(scene.pairs.size());
   for (const ObjectPair& pair : scene.pairs) {
     object_a_.push_back(pair.first);
     object_b_.push_back(pair.second);

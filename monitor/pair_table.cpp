@@ -28,6 +28,12 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     parts_by_object[parts[part].object].push_back(part);
   }
+  std::size_t all_rows = 0;
+  for (const ObjectPair& pair : scene.pairs) {
+    all_rows += parts_by_object[pair.first].size() * parts_by_object[pair.second].size();
+  }
+  for (auto* column : {&object_a, &object_b, &first_row}) column->reserve(scene.pairs.size() + 1);
+  for (auto* column : {&part_a, &part_b}) column->reserve(all_rows);
   first_row.push_back(0);
   for (const ObjectPair& pair : scene.pairs) {
     object_a.push_back(pair.first);

@@ -91,7 +91,8 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     if (scene.pairs[p].publish) published_.push_back(p);
   }
-  for (auto* list : {&awake_, &known_, &scratch_, &evaluated_}) list->reserve(table.pairs());
+  for (auto* list : {&awake_, &known_, &scratch_}) list->reserve(table.pairs());
+  evaluated_.reserve(std::min(table.pairs(), budget_));  // a pair takes one query or more
 }
 
 std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
@@ -128,14 +129,17 @@ bool Triage::is_known(std::uint32_t pair, const std::vector<ObjectState>& object
 
 // The horizon stays a little above the minimum of the last tick.
 void Triage::follow_minimum() noexcept {
+  if (everything_ || !(smallest_upper_ < kInfinity)) return;
   const double horizon = broad_phase_.horizon();
-  if (!(smallest_upper_ < kInfinity) || !(horizon > -kInfinity)) return;
   const double best = smallest_upper_ + kHeadroom;
-  if (best > horizon) broad_phase_.move_horizon(std::min(best, horizon + kHorizonStep));
-  if (best < horizon - kHeadroom) broad_phase_.move_horizon(best);
+  if (!(horizon > -kInfinity) || best < horizon - kHeadroom) {
+    broad_phase_.move_horizon(best);
+  } else if (best > horizon) {
+    broad_phase_.move_horizon(std::min(best, horizon + kHorizonStep));
+  }
 }
 
-// The first: no pair seen so far can be the minimum and beyond it.
+// The first one: the minimum of the pairs seen so far is not beyond it.
 void Triage::find_horizon() noexcept {
   if (broad_phase_.horizon() > -kInfinity) return;
   double smallest_upper = kInfinity;
@@ -187,7 +191,7 @@ void Triage::evaluate_once(std::uint32_t pair, Evaluation& evaluation) noexcept 
   if (evaluation.table.evaluated_cycle[pair] == evaluation.cycle) return;
   if (evaluation.queries_left == 0) return;
   evaluate(pair, evaluation);
-  if (evaluated_.size() < evaluated_.capacity()) evaluated_.push_back(pair);
+  evaluated_.push_back(pair);
 }
 
 void Triage::evaluate_closest(Evaluation& evaluation) noexcept {

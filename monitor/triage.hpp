@@ -91,7 +91,7 @@ class Triage {
   BroadPhase broad_phase_;
   RefreshRound round_;
   double smallest_upper_ = kInfinity;  // of the awake pairs this tick, m
-  // Pairs, each list with room for all.
+  // Pairs, each list with room for all that it can ever hold.
   std::vector<std::uint32_t> awake_, known_, scratch_, evaluated_;
 };
 

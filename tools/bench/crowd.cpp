@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <variant>
 
 #include "config/simulation.hpp"
 #include "core/shapes.hpp"
-#include "tools/bench/workload.hpp"
+#include "tools/bench/bodies.hpp"
+#include "tools/bench/random.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -17,25 +17,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kOrbit = 0.18;  // m
 constexpr double kSpeed = 1.0;   // m/s
 constexpr double kSpin = 2.0;    // rad/s
-
-// Uniform numbers, the same with every standard library.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vec3 direction() {
-    const double z = in(-1.0, 1.0), angle = in(0.0, 2.0 * kPi), r = std::sqrt(1.0 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-  Eigen::Quaterniond orientation() {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(in(0.0, 2.0 * kPi), direction()));
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 ConvexPolyhedron made(ShapeResult result) { return std::get<ConvexPolyhedron>(std::move(result)); }
 
@@ -47,10 +28,10 @@ ConvexPolyhedron facet_ball(double radius) {
 }
 
 // One of four kinds, within a ball of `radius`.
-ConvexPolyhedron body(std::uint32_t kind, double radius, Draw& draw) {
+ConvexPolyhedron body(std::uint32_t kind, double radius, Random& draw) {
   switch (kind % 4) {
     case 0: {
-      const Vec3 d(draw.in(0.3, 1.0), draw.in(0.3, 1.0), draw.in(0.3, 1.0));
+      const Vec3 d(draw.uniform(0.3, 1.0), draw.uniform(0.3, 1.0), draw.uniform(0.3, 1.0));
       return made(box(radius * d.normalized()));
     }
     case 1:
@@ -111,18 +92,18 @@ void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample
 }
 
 Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving) {
-  Draw draw(count);
+  Random draw(count);
   Crowd crowd;
   crowd.scene.name = crowd.name = std::to_string(count) + "_of_which_" + std::to_string(moving);
   crowd.scene.revision = count;
   const std::uint32_t side = grid_side(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     crowd.scene.objects.push_back(
-        object_of("body_" + std::to_string(i), body(i, draw.in(0.15, 0.28), draw)));
+        object_of("body_" + std::to_string(i), body(i, draw.uniform(0.15, 0.28), draw)));
     Crowd::Orbit orbit;
     orbit.object = i;
     orbit.centre = Vec3(i % side, i / side % side, i / side / side);
-    const Eigen::Quaterniond plane = draw.orientation();
+    const Eigen::Quaterniond plane = draw.turn();
     // Movers are spread evenly over the others.
     const bool moves = static_cast<std::uint64_t>(i) * moving / count !=
                        (static_cast<std::uint64_t>(i) + 1) * moving / count;
@@ -142,7 +123,7 @@ Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving) {
 Crowd robot_in_crowd(std::uint32_t obstacles) {
   constexpr std::uint32_t kLinks = 20;
   constexpr double kLength = 0.14;  // m, of a link
-  Draw draw(obstacles);
+  Random draw(obstacles);
   Crowd crowd;
   crowd.scene.name = crowd.name = "robot_among_" + std::to_string(obstacles);
   crowd.scene.revision = obstacles;
@@ -161,12 +142,13 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
   }
   crowd.scene.simulation.chains.push_back(chain);
   for (std::uint32_t i = 0; i < obstacles; ++i) {
-    Object object = object_of("obstacle_" + std::to_string(i), body(i, draw.in(0.15, 0.28), draw));
+    Object object =
+        object_of("obstacle_" + std::to_string(i), body(i, draw.uniform(0.15, 0.28), draw));
     object.fixed = true;
-    const double angle = draw.in(0.0, 2.0 * kPi), from_axis = draw.in(1.6, 4.0);
+    const double angle = draw.uniform(0.0, 2.0 * kPi), from_axis = draw.uniform(1.6, 4.0);
     object.world_from_object.position =
-        Vec3(from_axis * std::cos(angle), from_axis * std::sin(angle), draw.in(-0.5, 3.5));
-    object.world_from_object.orientation = draw.orientation();
+        Vec3(from_axis * std::cos(angle), from_axis * std::sin(angle), draw.uniform(-0.5, 3.5));
+    object.world_from_object.orientation = draw.turn();
     crowd.scene.objects.push_back(std::move(object));
   }
   const auto count = static_cast<std::uint32_t>(crowd.scene.objects.size());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "monitor/monitor.hpp"
@@ -81,7 +82,8 @@ void time_crowd(benchmark::State& state, const std::function<Crowd()>& make) {
   const double construction = cpu_ns() - start;
   const double bytes = allocated_bytes() - bytes_before;
   double start_up_max = 0.0;
-  for (int t = 0; t < kStartUpTicks; ++t) {
+  const bool plain = crowd.scene.budget >= crowd.scene.pairs.size();
+  for (int t = 0; t < (plain ? 10 : kStartUpTicks); ++t) {
     run.prepare();
     start_up_max = std::max(start_up_max, run.tick());
   }
@@ -113,20 +115,37 @@ void time_crowd(benchmark::State& state, const std::function<Crowd()>& make) {
   state.counters["hash"] = hash.value();
 }
 
-void register_crowd(const char* name, int ticks, const std::function<Crowd()>& make) {
-  benchmark::RegisterBenchmark(name, [make](benchmark::State& s) { time_crowd(s, make); })
+void register_crowd(const std::string& name, int ticks, const std::function<Crowd()>& make) {
+  benchmark::RegisterBenchmark(name.c_str(), [make](benchmark::State& s) { time_crowd(s, make); })
       ->Iterations(ticks)
       ->UseManualTime()
       ->Unit(benchmark::kMicrosecond);
 }
 
+// The same with a budget that covers every pair: each is evaluated in every tick.
+void register_plain(const std::string& name, int ticks, const std::function<Crowd()>& make) {
+  register_crowd(name + "/plain", ticks, [make] {
+    Crowd crowd = make();
+    crowd.scene.budget = static_cast<std::uint32_t>(crowd.scene.pairs.size());
+    return crowd;
+  });
+}
+
 }  // namespace
 
 void register_ticks() {
-  register_crowd("tick/robot_2k", 20'000, [] { return robot_in_crowd(100); });
-  register_crowd("tick/100_all_moving_5k", 20'000, [] { return orbiting_crowd(100, 100); });
-  register_crowd("tick/300_all_moving_45k", 10'000, [] { return orbiting_crowd(300, 300); });
-  register_crowd("tick/1000_all_moving_500k", 5'000, [] { return orbiting_crowd(1000, 1000); });
+  const auto robot = [] { return robot_in_crowd(100); };
+  const auto all_moving = [](std::uint32_t count) {
+    return [count] { return orbiting_crowd(count, count); };
+  };
+  register_crowd("tick/robot_2k", 20'000, robot);
+  register_plain("tick/robot_2k", 2'000, robot);
+  register_crowd("tick/100_all_moving_5k", 20'000, all_moving(100));
+  register_plain("tick/100_all_moving_5k", 2'000, all_moving(100));
+  register_crowd("tick/300_all_moving_45k", 10'000, all_moving(300));
+  register_plain("tick/300_all_moving_45k", 200, all_moving(300));
+  register_crowd("tick/1000_all_moving_500k", 5'000, all_moving(1000));
+  register_plain("tick/1000_all_moving_500k", 20, all_moving(1000));
   register_crowd("tick/3000_few_moving_4500k", 5'000, [] { return orbiting_crowd(3000, 150); });
 }
 
