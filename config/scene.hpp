@@ -62,7 +62,7 @@ struct Scene {
                                // scenes that differ have different revisions; never 0
   std::string yaml;            // the text it was read from, for recordings
   double rate_hz = 1000.0;
-  std::uint32_t budget = 2000;               // distance queries a tick, at most: part pairs
+  std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;  // every pair is evaluated this often, even if nothing moves and nobody
                             // asks; as far as the budget allows
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
