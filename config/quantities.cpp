@@ -102,8 +102,8 @@ std::optional<double> Quantities::angle(const YamlNode& node, const std::string&
 }
 
 std::optional<double> Quantities::speed(const YamlNode& node, const std::string& what) const {
-  const auto value =
-      read_number(node, kPositive, what + " in " + word(units_.length) + "/s", complaints_);
+  const auto value = read_number(node, within_cell(kPositive, units_.length),
+                                 what + " in " + word(units_.length) + "/s", complaints_);
   return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
 }
 

@@ -15,7 +15,8 @@ namespace clearance {
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
-// No coordinate of a cell may be larger: what is larger is a mistake of units.
+// No coordinate of a cell may be larger, nor what a speed covers in a second: what is larger is a
+// mistake of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
 struct Units {

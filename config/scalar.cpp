@@ -1,9 +1,9 @@
 #include "config/scalar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 #include <system_error>
 
 #include "config/complaints.hpp"
@@ -45,17 +45,26 @@ Parsed parse_number(const std::string& text) {
   return {text[0] == '-' ? -value : value, true, result.ec == std::errc()};
 }
 
+// 0.001, 10000, 1e+12: as a person would write it.
 std::string shown(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
+  std::array<char, 64> text;
+  const auto format = std::fabs(value) < 1e9 && std::fabs(value) >= 1e-4
+                          ? std::chars_format::fixed
+                          : std::chars_format::general;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, format);
+  return {text.data(), end.ptr};
 }
 
-// The limit that was not kept, or the lower one.
-std::string expectation(const std::string& what, const Range& range, bool too_large) {
-  if (too_large) return what + ", at most " + shown(range.most);
-  if (!std::isfinite(range.least)) return what;
-  return what + (range.above_least ? ", more than " : ", at least ") + shown(range.least);
+// Every limit that there is.
+std::string expectation(const std::string& what, const Range& range) {
+  const bool limited = std::isfinite(range.most);
+  if (!std::isfinite(range.least)) return what + (limited ? ", at most " + shown(range.most) : "");
+  if (range.above_least) {
+    return what + ", more than " + shown(range.least) +
+           (limited ? " and at most " + shown(range.most) : "");
+  }
+  return what + (limited ? ", from " + shown(range.least) + " to " + shown(range.most)
+                         : ", at least " + shown(range.least));
 }
 
 // "12 mm" is a number and then some: say what to do about it.
@@ -85,24 +94,20 @@ ScalarType scalar_type(const YamlNode& scalar) {
 
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
                                   Complaints& complaints) {
-  const auto expected = [&](bool too_large) {
-    return "; expected " + expectation(what, range, too_large);
-  };
+  const std::string expected = "; expected " + expectation(what, range);
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
-    complaints.add(node, "found " + describe(node) + expected(false) + number_hint(node));
+    complaints.add(node, "found " + describe(node) + expected + number_hint(node));
     return std::nullopt;
   }
   const Parsed parsed = parse_number(node.text);
   if (!std::isfinite(parsed.value) || !parsed.in_range) {
-    complaints.add(node,
-                   "found " + describe(node) + ", which is not a finite number" + expected(false));
+    complaints.add(node, "found " + describe(node) + ", which is not a finite number" + expected);
     return std::nullopt;
   }
   const bool too_small =
       range.above_least ? parsed.value <= range.least : parsed.value < range.least;
-  const bool too_large = parsed.value > range.most;
-  if (too_small || too_large) {
-    complaints.add(node, "found " + describe(node) + expected(too_large));
+  if (too_small || parsed.value > range.most) {
+    complaints.add(node, "found " + describe(node) + expected);
     return std::nullopt;
   }
   return parsed.value;

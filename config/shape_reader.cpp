@@ -14,6 +14,21 @@ namespace {
 const std::array<std::string, 7> kKinds = {"box",        "sphere",     "capsule", "prism",
                                            "polyhedron", "half_space", "mesh"};
 
+constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
+
+// What a shape has to be like so that it can be one, beyond what is checked number by number.
+std::string expectation(const std::string& kind) {
+  if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
+  if (kind == "prism") {
+    return "a base of at least three corners, not all in one line, and a lower z below the upper";
+  }
+  if (kind == "polyhedron") {
+    return "at least four vertices, not all in one plane, or half-spaces with a common interior";
+  }
+  if (kind == "mesh") return "a mesh with at least four vertices, not all in one plane";
+  return "a " + kind + " of ordinary size";
+}
+
 // A mesh's own coordinates to metres.
 std::vector<Vec3> scaled(const std::vector<Vec3>& vertices, const Vec3& scale, LengthUnit unit) {
   std::vector<Vec3> placed;
@@ -51,9 +66,9 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   std::optional<ShapeResult> result = read_kind(found.kind, *found.node);
   if (!result) return std::nullopt;
   if (const auto* error = std::get_if<ShapeError>(&*result)) {
-    quantities_.complaints().add(
-        *found.node,
-        "found a " + found.kind + " that is not a solid convex body: " + error->reason);
+    quantities_.complaints().add(*found.node,
+                                 "found a " + found.kind + " that is not a solid convex body (" +
+                                     error->reason + "); expected " + expectation(found.kind));
     return std::nullopt;
   }
   found.shape = std::get<ConvexPolyhedron>(std::move(*result));
@@ -188,7 +203,7 @@ Vec3 ShapeReader::read_scale(const YamlNode* node) const {
   if (node == nullptr) return Vec3::Ones();
   if (node->kind != YamlNode::Kind::kSequence) {
     const auto scale =
-        read_number(*node, kPositive, "a scale, or a list of 3", quantities_.complaints());
+        read_number(*node, kScales, "a scale, or a list of 3", quantities_.complaints());
     return Vec3::Constant(scale.value_or(1.0));
   }
   const Vec3 scale =
@@ -215,7 +230,8 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
     auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
     if (const auto* fault = std::get_if<MeshFault>(&result)) {
       quantities_.complaints().add(file_node, "found a mesh file that cannot be used: '" +
-                                                  path.string() + "': " + fault->reason);
+                                                  path.string() + "': " + fault->reason +
+                                                  "; expected a mesh with faces, in one file");
       return nullptr;
     }
     vertices = std::get<std::vector<Vec3>>(std::move(result));

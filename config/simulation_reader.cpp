@@ -1,6 +1,7 @@
 #include "config/simulation_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 
 namespace clearance {
 namespace {
+
+const std::array<std::string, 2> kKinds = {"revolute", "prismatic"};
+constexpr Range kFrequencies{.least = 0.0, .most = 10'000.0};  // Hz
 
 class SimulationReader {
  public:
@@ -39,7 +43,7 @@ Pose SimulationReader::read_pose(const YamlNode* node) const {
 }
 
 double SimulationReader::read_frequency(const YamlNode& node) const {
-  return read_number(node, kNotNegative, "a frequency in Hz", complaints_).value_or(0.0);
+  return read_number(node, kFrequencies, "a frequency in Hz", complaints_).value_or(0.0);
 }
 
 // A moving object that nothing else of the simulation moves.
@@ -72,7 +76,8 @@ JointKind SimulationReader::read_kind(MapReader& map) const {
   if (node == nullptr) return JointKind::kRevolute;
   const auto text = read_text(*node, "revolute or prismatic", complaints_);
   if (text && *text != "revolute" && *text != "prismatic") {
-    complaints_.add(*node, "found " + describe(*node) + "; expected revolute or prismatic");
+    complaints_.add(*node, "found " + describe(*node) + "; expected revolute or prismatic" +
+                               did_you_mean(*text, kKinds));
   }
   return text == "prismatic" ? JointKind::kPrismatic : JointKind::kRevolute;
 }

@@ -6,9 +6,12 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 namespace clearance {
@@ -16,6 +19,40 @@ namespace {
 
 // Aliases of aliases can make a short file enormous: how many values they may add.
 constexpr std::size_t kMaxCopies = 1'000'000;
+
+// Faults of ours, beside those of the parser.
+constexpr const char* kAliasOfItself = "an alias inside of the value that it stands for";
+constexpr const char* kTooManyCopies = "aliases that stand for more than a million values";
+
+struct Remedy {
+  std::string_view fault;  // how the parser's message begins
+  const char* expected;
+};
+
+// The mistakes that people make; the parser says only what it stumbled over.
+const std::array<Remedy, 13> kRemedies{{
+    {YAML::ErrorMsg::END_OF_MAP_FLOW, "',' or '}' after a value inside of '{'"},
+    {YAML::ErrorMsg::END_OF_MAP, "another key as far to the right as the one before, or the end"},
+    {YAML::ErrorMsg::END_OF_SEQ_FLOW, "',' or ']' after a value inside of '['"},
+    {YAML::ErrorMsg::END_OF_SEQ, "another '- ' as far to the right as the one before, or the end"},
+    {YAML::ErrorMsg::FLOW_END, "a '[' or '{' before it"},
+    {YAML::ErrorMsg::TAB_IN_INDENTATION, "blanks: YAML takes no tabs there"},
+    {YAML::ErrorMsg::EOF_IN_SCALAR, "a closing quote"},
+    {YAML::ErrorMsg::MAP_VALUE,
+     "one 'key: value' a line, no tabs before it, quotes around a text with ': '"},
+    {YAML::ErrorMsg::MAP_KEY, "one 'key: value' a line"},
+    {YAML::ErrorMsg::BLOCK_ENTRY, "'- ' at the start of a line, in a list of its own"},
+    {YAML::ErrorMsg::UNKNOWN_ANCHOR, "an anchor (&name) of this name above"},
+    {kAliasOfItself, "an alias (*name) after the value that its anchor marks"},
+    {kTooManyCopies, "fewer"},
+}};
+
+std::string expectation(const std::string& fault) {
+  const auto remedy = std::ranges::find_if(
+      kRemedies, [&](const Remedy& known) { return fault.starts_with(known.fault); });
+  return remedy != kRemedies.end() ? remedy->expected
+                                   : "valid YAML; see also the end of the line before";
+}
 
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;
@@ -40,11 +77,11 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchored_.find(anchor);
     if (found == anchored_.end()) {
-      throw YAML::ParserException(mark, "an alias inside of the value that it stands for");
+      throw YAML::ParserException(mark, kAliasOfItself);
     }
     copies_ += count_nodes(found->second);
     if (copies_ > kMaxCopies) {
-      throw YAML::ParserException(mark, "aliases stand for more than a million values");
+      throw YAML::ParserException(mark, kTooManyCopies);
     }
     finish(YamlNode(found->second), 0);
   }
@@ -126,11 +163,13 @@ std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
     TreeBuilder second;
     if (parser.HandleNextDocument(second)) {
       return YamlFault{second.root.line, second.root.column,
-                       "a second document begins; expected one document a file"};
+                       "found a second document; expected one a file"};
     }
     return std::move(tree.root);
   } catch (const YAML::Exception& fault) {
-    return YamlFault{fault.mark.line + 1, fault.mark.column + 1, "not valid YAML: " + fault.msg};
+    return YamlFault{
+        std::max(fault.mark.line, 0) + 1, std::max(fault.mark.column, 0) + 1,
+        "found what is not valid YAML (" + fault.msg + "); expected " + expectation(fault.msg)};
   }
 }
 

@@ -27,7 +27,7 @@ struct YamlEntry {
 // The text is not one YAML document.
 struct YamlFault {
   int line = 1, column = 1;
-  std::string reason;
+  std::string reason;  // what was found and what was expected
 };
 
 // Aliases (*name) are replaced by copies of what their anchors hold. Never throws.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "tests/config/cells.hpp"
@@ -40,7 +41,12 @@ TEST_P(CellMistake, IsRefusedWhereItStands) {
       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n');
   const std::string where =
       "cell.yaml:" + std::to_string(line) + ":" + std::to_string(place - line_start + 1) + ": ";
-  EXPECT_THAT(errors_of(text), testing::HasSubstr(where + GetParam().error));
+  const std::string errors = errors_of(text);
+  EXPECT_THAT(errors, testing::HasSubstr(where + GetParam().error));
+  std::istringstream lines(errors);
+  for (std::string error; std::getline(lines, error);) {
+    EXPECT_THAT(error, testing::ContainsRegex("^cell.yaml:[0-9]+:[0-9]+: found .+; expected .+"));
+  }
 }
 
 const Mistake kMistakes[] = {
@@ -56,10 +62,10 @@ const Mistake kMistakes[] = {
     {"TextForNumber", with_shape("sphere: {radius: @big}"),
      "found the text 'big'; expected the radius in m"},
     {"NumberWithUnit", with_shape("sphere: {radius: @12 mm}"),
-     "found the text '12 mm'; expected the radius in m, more than 0 (a bare "
+     "found the text '12 mm'; expected the radius in m, more than 0 and at most 1000000 (a bare "
      "number: units are stated once, under 'units')"},
     {"QuotedNumber", with_shape("sphere: {radius: @\"12\"}"),
-     "found the text '12'; expected the radius in m, more than 0 (without the "
+     "found the text '12'; expected the radius in m, more than 0 and at most 1000000 (without the "
      "quotes)"},
     {"NumberForName", "objects: [{name: @12, sphere: {radius: 1}}]\n",
      "found the number 12; expected an object's name (if it is meant as text, quote it: "
@@ -74,20 +80,24 @@ const Mistake kMistakes[] = {
     {"TooLargeForADouble", with_shape("box: {size: [1, 1, @1e999]}"),
      "found the number 1e999, which is not a finite number"},
     {"FartherThanAnyCell", with_shape("box: {size: [1, 1, @1e7]}"),
-     "found the number 1e7; expected a length in m"},
+     "found the number 1e7; expected a length in m, more than 0 and at most 1000000\n"},
     {"ZeroBox", with_shape("box: {size: [1, @0, 1]}"),
-     "found the number 0; expected a length in m, more than 0"},
+     "found the number 0; expected a length in m, more than 0 and at most 1000000\n"},
     {"NegativeRadius", with_shape("capsule: {from: [0, 0, 0], to: [0, 0, 1], radius: @-0.1}"),
      "found the number -0.1; expected the radius"},
     {"CapsuleWithoutLength", with_shape("capsule: @{from: [0, 0, 1], to: [0, 0, 1], radius: 1}"),
-     "found a capsule that is not a solid convex body"},
+     "found a capsule that is not a solid convex body (the segment's two ends are the same point); "
+     "expected two different ends"},
     {"FlatPrism", with_shape("prism: @{base: [[0, 0], [1, 0], [0, 1]], z: [1, 1]}"),
-     "found a prism that is not a solid convex body"},
+     "found a prism that is not a solid convex body (the prism's low end must be finite and below "
+     "its high end); expected a base of at least three corners"},
     {"PrismOverALine", with_shape("prism: @{base: [[0, 0], [1, 0], [2, 0]], z: [0, 1]}"),
      "found a prism that is not a solid convex body"},
     {"FlatVertices",
      with_shape("polyhedron: @{vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}"),
-     "found a polyhedron that is not a solid convex body"},
+     "found a polyhedron that is not a solid convex body (the points enclose no volume: all 4 lie "
+     "in "
+     "one plane); expected at least four vertices, not all in one plane"},
     {"NoVertices", with_shape("polyhedron: @{vertices: []}"),
      "found a polyhedron that is not a solid convex body"},
     {"EmptyIntersection",
@@ -133,11 +143,18 @@ const Mistake kMistakes[] = {
      with_shape("sphere: {radius: 1}", ", fixed: true, pose: {quaternion: @[0, 0, 0, 2]}"),
      "found a quaternion of length 2.0"},
     {"NegativeMargin", with_shape("sphere: {radius: 1}, margin: @-1"),
-     "found the number -1; expected the margin in m, at least 0"},
+     "found the number -1; expected the margin in m, from 0 to 1000000"},
     {"ZeroAgeLimit", with_shape("sphere: {radius: 1}, age_limit_ms: @0"),
-     "found the number 0; expected the age limit in ms, more than 0"},
+     "found the number 0; expected the age limit in ms, more than 0 and at most 86400000"},
     {"FractionalBudget", "budget: @1.5\n" + kBoxes,
-     "found the number 1.5; expected distance queries a tick, a whole number from 1"},
+     "found the number 1.5; expected distance queries a tick, a whole number from 1 to 1000000000"},
+    {"InfiniteSpeed", with_shape("sphere: {radius: 1}, max_speed: @.inf"),
+     "found the number .inf, which is not a finite number; expected the largest speed of any point "
+     "of the object in m/s, more than 0 and at most 1000000"},
+    {"InfiniteRefresh", "refresh_s: @.inf\n" + kBoxes,
+     "found the number .inf, which is not a finite number; expected seconds within which every "
+     "pair "
+     "is evaluated, from 0.001 to 1000000"},
     {"NumberForFlag", with_shape("sphere: {radius: 1}, fixed: @1"),
      "found the number 1; expected true or false"},
     {"NameTooLong", "objects: [{name: @" + std::string(65, 'x') + ", sphere: {radius: 1}}]\n",
@@ -224,8 +241,29 @@ const Mistake kMistakes[] = {
     {"SimulatedUnknown", kBoxes + "simulation: {movers: [{object: @lefd}]}\n",
      "found the unknown object 'lefd'; expected one of the cell's; did you mean 'left'?"},
     {"JointType", kBoxes + "simulation: {chains: [{name: c, joints: [{type: @ball}]}]}\n",
-     "found the text 'ball'; expected revolute or prismatic"},
-    {"BrokenYaml", "objects: [\n@", "not valid YAML"},
+     "found the text 'ball'; expected revolute or prismatic\n"},
+    {"JointTypeMisspelt",
+     kBoxes + "simulation: {chains: [{name: c, joints: [{type: @revolut}]}]}\n",
+     "found the text 'revolut'; expected revolute or prismatic; did you mean 'revolute'?"},
+    {"ListWithoutEnd", "objects: [\n@",
+     "found what is not valid YAML (end of sequence flow not found); expected ',' or ']'"},
+    {"MapWithoutEnd", "dds: {domain: 1\n@",
+     "found what is not valid YAML (end of map flow not found); expected ',' or '}'"},
+    {"KeyTooFarLeft", "dds:\n  domain: 1\n @partition: x\n",
+     "found what is not valid YAML (end of map not found); expected another key as far to the "
+     "right "
+     "as the one before"},
+    {"TabForBlanks", "dds:\n\tdomain@: 1\n",
+     "found what is not valid YAML (illegal map value); expected one 'key: value' a line, no tabs "
+     "before it"},
+    {"TabForBlanksInAText", "partition: |\n@\tx\n",
+     "found what is not valid YAML (illegal tab when looking for indentation); expected blanks"},
+    {"TwoColonsInALine", "partition: a@: b\n",
+     "found what is not valid YAML (illegal map value); expected one 'key: value' a line"},
+    {"UnknownAnchor", "dds: @*nowhere\n",
+     "found what is not valid YAML (the referenced anchor is "},
+    {"StrayByte", "dds: @%x\n",
+     "found what is not valid YAML (unknown token); expected valid YAML"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, CellMistake, testing::ValuesIn(kMistakes),
@@ -239,6 +277,17 @@ TEST(CellMistakes, UnitsAndNameAreRequired) {
               testing::HasSubstr("cell.yaml:1:1: found no key 'units'; expected it in a cell"));
   EXPECT_THAT(errors, testing::HasSubstr("cell.yaml:1:1: found no key 'objects'"));
   EXPECT_THAT(errors, testing::HasSubstr("cell.yaml:1:1: found no key 'pairs'"));
+}
+
+TEST(CellMistakes, BothLimitsOfTheRateAreNamed) {
+  for (const char* rate : {".inf", "0", "10001", "-.inf", "1e999"}) {
+    const std::string errors =
+        errors_of("name: test\nunits: {length: m, angle: deg}\nrate_hz: " + std::string(rate) +
+                  "\n" + kBoxes);
+    EXPECT_THAT(errors,
+                testing::StartsWith("cell.yaml:3:10: found the number " + std::string(rate)));
+    EXPECT_THAT(errors, testing::EndsWith("; expected the rate in Hz, from 1 to 10000\n"));
+  }
 }
 
 TEST(CellMistakes, OneMistakeGivesOneError) {

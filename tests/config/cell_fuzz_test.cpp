@@ -1,5 +1,6 @@
 // Oracle: whatever the bytes, reading a cell ends in a scene whose indices hold, or in errors that
-// name a line of the file. Seeds are fixed; a failure prints its own.
+// name a line of the file, what was found there and what was expected. Seeds are fixed; a failure
+// prints its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,6 +45,8 @@ void expect_located(const std::vector<CellError>& errors, const std::string& tex
     ASSERT_GE(line, 1) << error.text;
     ASSERT_LE(line, lines + 1) << error.text;
     ASSERT_GE(std::stoi(error.text.substr(10 + used + 1)), 1) << error.text;
+    ASSERT_NE(error.text.find(": found "), std::string::npos) << error.text;
+    ASSERT_NE(error.text.find("; expected "), std::string::npos) << error.text;
   }
 }
 
