@@ -21,7 +21,7 @@ Examples:
   clearance-replay run.mcap --only clearance/poses --restamp --partition lab
   clearance-replay --offline --cell cell.yaml run.mcap --compare
   clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
-  clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv --all-pairs)";
+  clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv)";
 
 void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("FILE", arguments.recording, "The recording (MCAP)")->required();
@@ -44,19 +44,27 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("-o,--output", arguments.out, "Write the reports to this recording")
       ->needs(offline)
       ->group(kOffline);
-  app.add_option("--csv", arguments.csv, "Write a table with one row a tick and published pair")
-      ->needs(offline)
+  CLI::Option* const csv =
+      app.add_option("--csv", arguments.csv, "Write a table with one row a tick and pair")
+          ->needs(offline)
+          ->group(kOffline);
+  app.add_flag("--published", arguments.published,
+               "Only pairs that the cell publishes go into the table")
+      ->needs(csv)
       ->group(kOffline);
-  app.add_flag("--all-pairs", arguments.all_pairs,
-               "Evaluate every pair in every tick, and put all of them into the table")
-      ->needs(offline)
-      ->group(kOffline);
+  CLI::Option* const evaluate_all =
+      app.add_flag("--evaluate-all", arguments.evaluate_all,
+                   "Evaluate every pair in every tick, whatever the cell's budget; otherwise rows "
+                   "of pairs that the monitor left alone say 'carried', with true bounds")
+          ->needs(offline)
+          ->group(kOffline);
   CLI::Option* const compare =
       app.add_flag(
              "--compare", arguments.compare,
              "Compare with the recorded reports and zones, to the bit; name the first tick and "
              "field that differs")
           ->needs(offline)
+          ->excludes(evaluate_all)
           ->group(kOffline);
   app.add_flag("--compare-bounds", arguments.compare_bounds,
                "Compare only what is certain: recorded and replayed bounds of a pair overlap")

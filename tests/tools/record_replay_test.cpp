@@ -77,6 +77,25 @@ TEST_F(RecordReplay, PoseLogBecomesARecordingThatReplaysIntoATable) {
   EXPECT_EQ(1 + 2 * 200, std::ranges::count(read_text(folder / "t.csv"), '\n'));
 }
 
+TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
+  std::string cell = kCell;
+  const std::string rule = "  - {between: [robot, still], publish: true}\n";
+  cell.insert(cell.find(rule), "  - {between: [hand, tool], publish: false}\n");
+  write_text(folder / "cell.yaml", cell.insert(cell.find("objects:"), "budget: 1\n"));
+  ASSERT_EQ(0, record_log()) << output;
+  ASSERT_EQ(0, replay({"--csv", path("all.csv")})) << output;
+  const std::string all = read_text(folder / "all.csv");
+  EXPECT_EQ(1 + 3 * 200, std::ranges::count(all, '\n'));
+  EXPECT_THAT(all, HasSubstr(",hand,tool,"));
+  EXPECT_THAT(all, HasSubstr(",carried,"));
+  ASSERT_EQ(0, replay({"--csv", path("all.csv"), "--evaluate-all"})) << output;
+  EXPECT_THAT(read_text(folder / "all.csv"), testing::Not(HasSubstr(",carried,")));
+  ASSERT_EQ(0, replay({"--csv", path("some.csv"), "--published"})) << output;
+  EXPECT_EQ(1 + 2 * 200, std::ranges::count(read_text(folder / "some.csv"), '\n'));
+  EXPECT_EQ(2, replay({"--published"}));
+  EXPECT_EQ(2, replay({"--compare", "--evaluate-all"}));
+}
+
 TEST_F(RecordReplay, BrokenExpectationGivesStatusOneAndNamesTickPairAndFigure) {
   ASSERT_EQ(0, record_log()) << output;
   EXPECT_EQ(0, replay({"--expect-min-distance", "0.0799"})) << output;

@@ -36,7 +36,8 @@ struct ReplayArguments {
   std::string cell;  // empty: the one in the recording
   std::string out;
   std::string csv;
-  bool all_pairs = false;
+  bool published = false;
+  bool evaluate_all = false;
   bool compare = false;
   bool compare_bounds = false;
   std::optional<double> expect_min_distance;

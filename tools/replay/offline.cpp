@@ -67,11 +67,11 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, double elaps
 }
 
 int replay_in(Scene& scene, const ReplayArguments& arguments) {
-  if (arguments.all_pairs) scene.budget = std::numeric_limits<std::uint32_t>::max();
+  if (arguments.evaluate_all) scene.budget = std::numeric_limits<std::uint32_t>::max();
   std::optional<ReportRecorder> out;
   std::optional<ReportCsv> csv;
   if (!arguments.out.empty()) out.emplace(arguments.out, scene);
-  if (!arguments.csv.empty()) csv.emplace(arguments.csv, scene, arguments.all_pairs);
+  if (!arguments.csv.empty()) csv.emplace(arguments.csv, scene, !arguments.published);
 
   ProgressBar bar(arguments.progress);
   OfflineReplayOptions options = options_of(arguments);
