@@ -13,8 +13,8 @@ namespace clearance {
 [[nodiscard]] double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b,
                                    const Vec3& normal) noexcept;
 
-// s. Infinity when not approaching. In contact (distance <= 0): 0, unless the two are parting; NaN
-// for a distance that is not known.
+// s. Infinity when not approaching. In contact (distance <= 0): 0, unless the two are known to be
+// parting. NaN for a distance, or apart for a closing speed, that is not known.
 [[nodiscard]] double time_to_contact(double distance, double closing_speed) noexcept;
 
 }  // namespace clearance

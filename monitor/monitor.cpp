@@ -114,7 +114,7 @@ void Monitor::State::take_in(std::span<const PoseSample> samples) noexcept {
     if (cause) {
       refuse(sample.object, *cause);
     } else {
-      accept(sample, object);
+      accept(scene.objects[sample.object], sample, object);
     }
   }
 }

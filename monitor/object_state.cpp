@@ -55,6 +55,7 @@ ObjectState initial_state(const Object& object) noexcept {
   state.seen = state.seen_last_tick = true;
   state.pose = state.pose_last_tick = object.world_from_object;
   state.age_ns = 0;
+  state.twist_known = true;  // at rest
   return state;
 }
 
@@ -68,13 +69,16 @@ std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state
   return std::nullopt;
 }
 
-void accept(const PoseSample& sample, ObjectState& state) noexcept {
+void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept {
   const std::int64_t apart_ns = elapsed(state.stamp_ns, sample.stamp_ns);
   if (sample.has_twist) {
     state.twist = sample.twist;
+    state.twist_known = true;
   } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+    state.twist_known = apart_ns <= object.age_limit_ns;
+    const double seconds = static_cast<double>(apart_ns) * 1e-9;
     state.twist =
-        mean_twist(state.pose, sample.world_from_object, static_cast<double>(apart_ns) * 1e-9);
+        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
   state.pose = sample.world_from_object;
   state.stamp_ns = sample.stamp_ns;

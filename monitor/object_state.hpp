@@ -26,7 +26,10 @@ struct ObjectState {
   // As sent; the orientation is normalised where it is used.
   Pose pose;
   std::int64_t stamp_ns = 0;
-  Twist twist;    // as sent with the pose, else from the last two poses; zero after the first
+  // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
+  // after a gap longer than the age limit: over that a difference says nothing about now.
+  Twist twist;
+  bool twist_known = false;
   Motion motion;  // since the last tick; none when first seen
   std::array<std::uint64_t, kRejects> rejected{};
 
@@ -35,6 +38,8 @@ struct ObjectState {
 
   // Whether anything can be said about where it is now.
   [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
+  // Whether `twist` is how it moves now: a late object may do anything since its stamp.
+  [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
 };
 
 // Before any input: a fixed object stands where the scene says.
@@ -47,7 +52,7 @@ struct ObjectState {
                                             std::int64_t future_limit_ns) noexcept;
 
 // Takes an unrefused sample into use.
-void accept(const PoseSample& sample, ObjectState& state) noexcept;
+void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.
 void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept;

@@ -114,9 +114,11 @@ PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& 
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;
   report.normal = closest.normal;
-  report.closing_speed =
-      closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
-                    velocity_at(closest.witness_b, b.pose, b.twist), closest.normal);
+  if (a.velocity_known() && b.velocity_known()) {
+    report.closing_speed =
+        closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
+                      velocity_at(closest.witness_b, b.pose, b.twist), closest.normal);
+  }
   report.time_to_contact = time_to_contact(report.distance, report.closing_speed);
   report.evaluated_cycle = summary.evaluated_cycle;
   return report;

@@ -37,9 +37,12 @@ struct PairReport {
   double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where there is none
-  // Positive when approaching, rotation at the witness points counted; NaN without a normal.
+  // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
+  // when either velocity is not known: after a first pose without twist, or one that follows a gap
+  // longer than the age limit, and while a pose is late. Fixed objects are at rest.
   double closing_speed = 0.0;
-  // max(0, distance) / closing speed; infinity when not approaching. In contact: 0, unless parting.
+  // max(0, distance) / closing speed; infinity when not approaching, NaN when the closing speed is
+  // not known. In contact: 0, unless known to be parting.
   double time_to_contact = 0.0;
   // now - stamp of the pose in use; 0 for a fixed object; -1: never seen.
   std::int64_t age_a_ns = 0, age_b_ns = 0;

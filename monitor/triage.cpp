@@ -304,6 +304,8 @@ void Triage::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evalua
   for (const std::uint32_t pair : pairs) evaluate_once(pair, evaluation);
 }
 
+// A velocity that is not known counts as zero: the stated speed is what is left then, and a pair
+// that has just been seen is evaluated anyway.
 double Triage::speed_of(std::uint32_t object, const ObjectState& state) const noexcept {
   const double turning = state.twist.angular.norm();
   const double measured =

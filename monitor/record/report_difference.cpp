@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdio>
 
 #include "monitor/report.hpp"
@@ -38,9 +39,9 @@ class Comparer {
   void field(const std::string& name, const T& recorded, const T& replayed) {
     if (!difference_ && !(recorded == replayed)) tell(name, text(recorded), text(replayed));
   }
-  // To the bit: NaN is itself, and -0 is not 0.
+  // To the bit: -0 is not 0. Any NaN is any other: what is not known has no bits worth comparing.
   void field(const std::string& name, double recorded, double replayed) {
-    if (difference_) return;
+    if (difference_ || (std::isnan(recorded) && std::isnan(replayed))) return;
     if (std::bit_cast<std::uint64_t>(recorded) != std::bit_cast<std::uint64_t>(replayed)) {
       tell(name, text(recorded), text(replayed));
     }

@@ -62,6 +62,36 @@ TEST(Monitor, TimeToContactFollowsFromFiniteDifferencesOfPoses) {
   EXPECT_NEAR(report.minimum.time_to_contact, 0.399, 1e-9);
 }
 
+TEST(Monitor, ClosingSpeedIsUnknownWhileAVelocityIs) {
+  Scene scene = two_balls();
+  scene.objects[0].max_speed = 2.0;
+  Monitor monitor(scene);
+  const auto unknown = [](const Report& report) {
+    EXPECT_TRUE(report.minimum_known);
+    EXPECT_EQ(std::isnan(report.minimum.closing_speed), std::isnan(report.minimum.time_to_contact));
+    EXPECT_EQ(std::isnan(report.minimum.closing_speed), std::isnan(report.pairs[0].closing_speed));
+    return std::isnan(report.minimum.closing_speed);
+  };
+  EXPECT_TRUE(unknown(tick_with(monitor, 0, test::at(0, 0, 0), kStart)));
+  EXPECT_TRUE(unknown(monitor.tick({}, kStart + kTick)));
+  EXPECT_FALSE(unknown(tick_with(monitor, 0, test::at(0, 0, 0), kStart + 2 * kTick)));
+  EXPECT_TRUE(unknown(monitor.tick({}, kStart + 50 * kTick))) << "the pose is late";
+  EXPECT_TRUE(unknown(tick_with(monitor, 0, test::at(0.1, 0, 0), kStart + 60 * kTick)))
+      << "what it did in the gap says nothing";
+  EXPECT_FALSE(unknown(tick_with(monitor, 0, test::at(0.1, 0, 0), kStart + 61 * kTick)));
+}
+
+TEST(Monitor, VelocitySentWithTheFirstPoseIsKnownAtOnce) {
+  const Scene scene = two_balls();
+  Monitor monitor(scene);
+  PoseSample sample = test::sample(0, test::at(0, 0, 0), kStart);
+  sample.has_twist = true;
+  sample.twist.linear = Vec3(2, 0, 0);
+  const Report& report = monitor.tick(std::span(&sample, 1), kStart);
+  EXPECT_NEAR(report.minimum.closing_speed, 2.0, 1e-12);
+  EXPECT_NEAR(report.minimum.time_to_contact, 0.4, 1e-12);
+}
+
 TEST(Monitor, NothingIsKnownBeforeTheFirstPose) {
   const Scene scene = two_balls();
   Monitor monitor(scene);

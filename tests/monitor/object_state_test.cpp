@@ -29,6 +29,8 @@ Object late_after(std::int64_t limit_ns, double max_speed) {
   return object;
 }
 
+const Object kInTime = late_after(20 * kTick, kInfinity);
+
 TEST(ObjectState, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
 
 TEST(ObjectState, RefusesEveryNonFiniteFigure) {
@@ -80,7 +82,7 @@ TEST(ObjectState, RefusesAStampFartherAheadThanTheLimit) {
 
 TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
   ObjectState state;
-  accept(good(), state);
+  accept(kInTime, good(), state);
   PoseSample sample = good();
   EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), std::nullopt);
   sample.stamp_ns -= 1;
@@ -89,41 +91,70 @@ TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
 
 TEST(ObjectState, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   ObjectState state;
-  accept(good(), state);
-  EXPECT_EQ(state.twist.linear, Vec3::Zero());
+  accept(kInTime, good(), state);
+  EXPECT_FALSE(state.velocity_known());
 
   PoseSample next = good();
   next.stamp_ns += 4 * kTick;
   next.world_from_object.position += Vec3(0.004, 0, 0);
   next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
   next.world_from_object.orientation.coeffs() *= -1.0;  // the same, the short way round
-  accept(next, state);
+  accept(kInTime, next, state);
+  EXPECT_TRUE(state.velocity_known());
   EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((state.twist.angular - Vec3(0, 0.5, 0)).norm(), 0.0, 1e-9);
 
-  accept(next, state);  // again, with the same stamp: nothing new about its speed
+  accept(kInTime, next, state);  // again, with the same stamp: nothing new about its speed
   EXPECT_NEAR(state.twist.linear.x(), 1.0, 1e-9);
 
   next.has_twist = true;
   next.twist.linear = Vec3(7, 8, 9);
   next.stamp_ns += kTick;
-  accept(next, state);
+  accept(kInTime, next, state);
   EXPECT_EQ(state.twist.linear, Vec3(7, 8, 9));
+}
+
+TEST(ObjectState, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
+  ObjectState state;
+  PoseSample next = good();
+  const auto take = [&](std::int64_t after_ns, bool has_twist) {
+    next.stamp_ns += after_ns;
+    next.has_twist = has_twist;
+    accept(kInTime, next, state);
+    advance(kInTime, next.stamp_ns, state);
+    return state.velocity_known();
+  };
+  EXPECT_FALSE(take(0, false));
+  EXPECT_FALSE(take(0, false));  // the same stamp once more
+  EXPECT_TRUE(take(20 * kTick, false));
+  EXPECT_FALSE(take(20 * kTick + 1, false));
+  EXPECT_TRUE(take(kTick, false));
+  EXPECT_TRUE(take(500 * kTick, true));
+  advance(kInTime, next.stamp_ns + 20 * kTick + 1, state);  // late
+  EXPECT_FALSE(state.velocity_known());
+  EXPECT_FALSE(take(30 * kTick, false));
+}
+
+TEST(ObjectState, FixedObjectsAreKnownToBeAtRest) {
+  const ObjectState state = initial_state(test::fixed("wall", {}, test::at(1, 2, 3)));
+  EXPECT_TRUE(state.velocity_known());
+  EXPECT_EQ(state.twist.linear, Vec3::Zero());
+  EXPECT_EQ(state.twist.angular, Vec3::Zero());
 }
 
 TEST(ObjectState, MotionIsTheNetOneOfATick) {
   const Object object = late_after(kTick, kInfinity);
   ObjectState state;
-  accept(good(), state);
+  accept(kInTime, good(), state);
   advance(object, kStart, state);
   EXPECT_EQ(state.motion.shift, 0.0);
   PoseSample there = good(), back = good();
   there.world_from_object.position += Vec3(5, 0, 0);
-  accept(there, state);
-  accept(back, state);
+  accept(kInTime, there, state);
+  accept(kInTime, back, state);
   advance(object, kStart, state);
   EXPECT_EQ(state.motion.shift, 0.0);
-  accept(there, state);
+  accept(kInTime, there, state);
   advance(object, kStart, state);
   EXPECT_NEAR(state.motion.shift, 5.0, 1e-12);
   advance(object, kStart, state);
@@ -133,7 +164,7 @@ TEST(ObjectState, MotionIsTheNetOneOfATick) {
 TEST(ObjectState, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   const Object stated = late_after(20 * kTick, 2.0);
   ObjectState state;
-  accept(good(), state);
+  accept(kInTime, good(), state);
   advance(stated, kStart + 20 * kTick, state);
   EXPECT_FALSE(state.late);
   EXPECT_EQ(state.may_have_moved, 0.0);
@@ -152,11 +183,11 @@ TEST(ObjectState, AgesOfExtremeStampsDoNotOverflow) {
   PoseSample sample = good();
   sample.stamp_ns = kEarliest;
   ObjectState state;
-  accept(sample, state);
+  accept(kInTime, sample, state);
   advance(late_after(0, 1.0), kLatest, state);
   EXPECT_EQ(state.age_ns, kLatest);
   sample.stamp_ns = kLatest;
-  accept(sample, state);
+  accept(kInTime, sample, state);
   advance(late_after(0, 1.0), kEarliest, state);
   EXPECT_EQ(state.age_ns, 0);
 }

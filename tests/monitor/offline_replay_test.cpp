@@ -52,6 +52,20 @@ TEST_F(OfflineReplayTest, GivesTheRecordedReportsBitForBit) {
   EXPECT_GT(result.batches, 200u);
 }
 
+TEST_F(OfflineReplayTest, WhatIsUnknownIsTheSameWhateverItsBits) {
+  record_run(scene, run);
+  int unknown = 0;
+  rewrite([&](std::vector<Kept>& messages) {
+    Kept& first = messages[report_of(messages, 1)];
+    first = altered<clearance_msg_Distances>(first, [&](clearance_msg_Distances& report) {
+      unknown = std::isnan(report.minimum.closing_speed);
+      report.minimum.closing_speed = -report.minimum.closing_speed;
+    });
+  });
+  ASSERT_EQ(1, unknown);
+  EXPECT_EQ("", replay({.compare = Comparison::kBits}).text());
+}
+
 TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
   record_run(scene, run);
   for (const char* name : {"a.mcap", "b.mcap"}) {

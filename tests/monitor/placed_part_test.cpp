@@ -12,7 +12,7 @@ using test::Random;
 PlacedPart placed(const Scene& scene, const Pose& world_from_object) {
   PlacedPart part = parts_of(scene).front();
   ObjectState object;
-  accept(test::sample(0, world_from_object, 1), object);
+  accept(scene.objects.front(), test::sample(0, world_from_object, 1), object);
   advance(scene.objects.front(), 1, object);
   place(object, part);
   return part;

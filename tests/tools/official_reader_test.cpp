@@ -81,6 +81,12 @@ TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
   EXPECT_EQ(report->pairs._buffer[1].status, theirs["pairs"][1]["status"]);
   EXPECT_EQ(report->pairs._buffer[1].evaluated_cycle, theirs["pairs"][1]["evaluated_cycle"]);
 
+  // One pose of each object so far: nobody knows how fast they close.
+  const json& first = read["streamed"]["topics"]["clearance/distances"]["first"];
+  EXPECT_EQ("NaN", first["minimum"]["closing_speed"]);
+  EXPECT_EQ("NaN", first["minimum"]["time_to_contact"]);
+  EXPECT_EQ(report->minimum.closing_speed, theirs["minimum"]["closing_speed"]);
+
   const auto batch = decoded<clearance_msg_PoseBatch>(
       *std::ranges::find(messages, TopicKind::kPoses, &Kept::kind));
   const json& poses = read["streamed"]["topics"]["clearance/poses"]["first"];

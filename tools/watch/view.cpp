@@ -41,7 +41,20 @@ std::string point(const clearance_msg_Vector3& p) {
 
 // Seven columns; what is more than a quarter of an hour away is no news.
 std::string contact_time(double seconds) {
+  if (std::isnan(seconds)) return "unknown";
   return seconds < 1000.0 ? fmt::format("{:7.2f}", seconds) : "      -";
+}
+
+// Seven columns, with its sign.
+std::string speed(double metres_per_second) {
+  return std::isnan(metres_per_second) ? "unknown" : fmt::format("{:+7.3f}", metres_per_second);
+}
+
+// "closing +0.512 m/s  contact in    0.98 s".
+std::string approach(const clearance_msg_PairDistance& pair) {
+  if (std::isnan(pair.closing_speed)) return "closing at an unknown speed";
+  return fmt::format("closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
+                     contact_time(pair.time_to_contact));
 }
 
 bool silent(const Feed& feed, std::int64_t now_ns) { return now_ns - feed.last_ns() > kSilentNs; }
@@ -82,10 +95,9 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add(fmt::format("in [{:.6f}, {:.6f}] m  ", pair.lower, pair.upper))
       .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
            report.minimum_proved ? Style::kGood : Style::kWarning);
-  lines.emplace_back(width).add(
-      fmt::format("          closing {:+.3f} m/s  contact in {} s  normal ({:.2f} {:.2f} {:.2f})",
-                  pair.closing_speed, contact_time(pair.time_to_contact), pair.normal.x,
-                  pair.normal.y, pair.normal.z));
+  lines.emplace_back(width).add(fmt::format("          {}  normal ({:.2f} {:.2f} {:.2f})",
+                                            approach(pair), pair.normal.x, pair.normal.y,
+                                            pair.normal.z));
   lines.emplace_back(width).add(
       fmt::format("          from {} to {}", point(pair.witness_a), point(pair.witness_b)));
 }
@@ -184,7 +196,7 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   Line line(width);
   line.add(metres(pair.distance), Style::kBold)
       .add(metres(pair.lower) + metres(pair.upper))
-      .add(fmt::format("  {:+7.3f}  {}  ", pair.closing_speed, contact_time(pair.time_to_contact)))
+      .add("  " + speed(pair.closing_speed) + "  " + contact_time(pair.time_to_contact) + "  ")
       .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status));
   if (width >= kWideColumns) line.add(point(pair.witness_a) + "  " + point(pair.witness_b) + "  ");
   return line.add(feed.pair_name(pair));
@@ -244,10 +256,8 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   std::string text = fmt::format("cycle {}", report.cycle);
   if (report.minimum_known) {
     const clearance_msg_PairDistance& pair = report.minimum;
-    text +=
-        fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  closing {:+.3f} m/s  contact in {} s",
-                    pair.distance, pair.lower, pair.upper, feed.pair_name(pair), pair.closing_speed,
-                    contact_time(pair.time_to_contact));
+    text += fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  {}", pair.distance, pair.lower,
+                        pair.upper, feed.pair_name(pair), approach(pair));
   } else {
     text += "  no pair known";
   }
