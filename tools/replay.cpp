@@ -10,7 +10,8 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  done; with --offline: every expectation held, nothing differed
-  1  an expectation did not hold, the replay differs, or a file cannot be read or written
+  1  an expectation did not hold, the replay differs (from the recording or the reference), or a file cannot be
+     read or written
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
@@ -21,7 +22,8 @@ Examples:
   clearance-replay run.mcap --only clearance/poses --restamp --partition lab
   clearance-replay --offline --cell cell.yaml run.mcap --compare
   clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
-  clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv)";
+  clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv
+  clearance-replay --offline --cell cell.yaml run.mcap --reference distances.csv.gz --tolerance 1e-6)";
 
 void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("FILE", arguments.recording, "The recording (MCAP)")->required();
@@ -70,6 +72,19 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
                "Compare only what is certain: recorded and replayed bounds of a pair overlap")
       ->needs(offline)
       ->excludes(compare)
+      ->group(kOffline);
+  CLI::Option* const reference =
+      app.add_option("--reference", arguments.reference,
+                     "Hold every pair's distance against this table (CSV, plain or gzip: "
+                     "t_ns,object_a,object_b,distance in m), and its bounds; 0 is contact or "
+                     "overlap. Evaluates all pairs")
+          ->needs(offline)
+          ->excludes(compare)
+          ->group(kOffline);
+  app.add_option("--tolerance", arguments.tolerance, "How far off a reference may be, m")
+      ->needs(reference)
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
       ->group(kOffline);
   app.add_option("--expect-min-distance", arguments.expect_min_distance,
                  "Every pair is proved to be at least this far apart (m) in every tick")

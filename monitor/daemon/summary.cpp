@@ -2,22 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "monitor/pair_name.hpp"
+
 namespace clearance {
-namespace {
-
-std::string part_name(const Object& object, std::uint32_t part) {
-  if (object.parts.size() < 2 || part >= object.parts.size()) return object.name;
-  return object.name + "." + object.parts[part].name;
-}
-
-}  // namespace
-
-std::string pair_name(const Scene& scene, const PairReport& pair) {
-  const ObjectPair& objects = scene.pairs[pair.pair];
-  return part_name(scene.objects[objects.first], pair.part_a) + " to " +
-         part_name(scene.objects[objects.second], pair.part_b);
-}
-
 std::string percentiles(const Histogram& histogram) {
   constexpr double kUsPerNs = 1e-3;
   return fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us",

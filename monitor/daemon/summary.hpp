@@ -1,4 +1,4 @@
-// What a person reads: names for pairs, figures of a run.
+// What a person reads: figures of a run.
 #pragma once
 
 #include <string>
@@ -7,9 +7,6 @@
 #include "monitor/daemon/vitals.hpp"
 
 namespace clearance {
-
-// "left_link7 to shelf", with the part where an object has several: "left_hand.finger to shelf".
-[[nodiscard]] std::string pair_name(const Scene& scene, const PairReport& pair);
 
 // "p50 12.3 us  p99.9 45.6 us  max 78.9 us"
 [[nodiscard]] std::string percentiles(const Histogram& histogram);

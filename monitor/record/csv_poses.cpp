@@ -1,11 +1,9 @@
 #include "monitor/record/csv_poses.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <array>
 #include <map>
+#include <string_view>
 
 #include "config/spelling.hpp"
 #include "monitor/batch.hpp"
@@ -20,13 +18,6 @@ constexpr std::array<std::string_view, 9> kColumnNames = {"t_ns", "object", "px"
 enum Column : std::size_t { kTime, kObject, kX, kY, kZ, kW, kQx, kQy, kQz };
 
 constexpr std::string_view kSource = "csv";
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n\"";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
 
 // Ids for the objects of a log.
 class Ids {
@@ -124,112 +115,17 @@ class BatchWriter {
 
 }  // namespace
 
-void CsvPoseLog::CloseGzip::operator()(void* file) const { gzclose(static_cast<gzFile>(file)); }
-
-CsvPoseLog::CsvPoseLog(const std::filesystem::path& file)
-    : path_(file), file_(gzopen(file.c_str(), "rb")) {
-  if (!file_) {
-    error_ = "cannot read " + file.string();
-    return;
-  }
-  gzbuffer(static_cast<gzFile>(file_.get()), 1 << 18);
-  read_header();
-}
-
-std::string CsvPoseLog::located(const std::string& what) const {
-  return path_.string() + ":" + std::to_string(line_) + ": " + what;
-}
-
-bool CsvPoseLog::fail(const std::string& what) {
-  error_ = located(what);
-  return false;
-}
-
-bool CsvPoseLog::read_line(std::string& line) {
-  line.clear();
-  auto* const file = static_cast<gzFile>(file_.get());
-  std::array<char, 512> piece;
-  while (gzgets(file, piece.data(), static_cast<int>(piece.size())) != nullptr) {
-    line += piece.data();
-    if (line.back() == '\n') break;
-  }
-  int status = Z_OK;
-  const char* const what = gzerror(file, &status);
-  if (status != Z_OK && status != Z_STREAM_END) {
-    ++line_;
-    return fail(std::string("cannot be read any further: ") + what);
-  }
-  if (line.empty()) return false;
-  ++line_;
-  return true;
-}
-
-bool CsvPoseLog::split(const std::string& line) {
-  fields_.clear();
-  std::string_view rest = line;
-  for (;;) {
-    const std::size_t comma = rest.find(',');
-    fields_.push_back(trimmed(rest.substr(0, comma)));
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
-  }
-  return fields_.size() > 1 || !fields_.front().empty();  // false: a blank line
-}
-
-bool CsvPoseLog::read_header() {
-  if (!read_line(text_)) return error_.empty() ? fail("is empty") : false;
-  if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // byte order mark
-  split(text_);
-  width_ = fields_.size();
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    const auto found = std::ranges::find(fields_, kColumnNames[column]);
-    if (found == fields_.end()) {
-      return fail("no column '" + std::string(kColumnNames[column]) +
-                  "'; the first line must name t_ns,object,px,py,pz,qw,qx,qy,qz in any order");
-    }
-    place_[column] = static_cast<std::size_t>(found - fields_.begin());
-  }
-  return true;
-}
-
-bool CsvPoseLog::read_number(std::size_t column, double& value) {
-  const std::string_view field = fields_[place_[column]];
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error == std::errc{} && end == field.data() + field.size() && std::isfinite(value))
-    return true;
-  return fail(std::string(kColumnNames[column]) + " is '" + std::string(field) +
-              "', which is not a finite number");
-}
+CsvPoseLog::CsvPoseLog(const std::filesystem::path& file) : table_(file, kColumnNames) {}
 
 bool CsvPoseLog::next(CsvPose& pose) {
-  if (!error_.empty()) return false;
-  do {
-    if (!read_line(text_)) return false;
-  } while (!split(text_));
-  if (fields_.size() != width_) {
-    return fail("has " + std::to_string(fields_.size()) + " fields, the header names " +
-                std::to_string(width_));
-  }
-  const std::string_view time = fields_[place_[kTime]];
-  const auto [end, error] = std::from_chars(time.data(), time.data() + time.size(), pose.t_ns);
-  if (error != std::errc{} || end != time.data() + time.size() || pose.t_ns < 0) {
-    return fail("t_ns is '" + std::string(time) + "', which is not a whole number of nanoseconds");
-  }
-  if (pose.t_ns < last_t_ns_) {
-    return fail("t_ns goes back from " + std::to_string(last_t_ns_) + " to " + std::string(time) +
-                "; sort the log by t_ns");
-  }
-  last_t_ns_ = pose.t_ns;
-  pose.object = fields_[place_[kObject]];
-  if (pose.object.empty()) return fail("names no object");
-  for (int i = 0; i < 3; ++i) {
-    if (!read_number(kX + static_cast<std::size_t>(i), pose.world_from_object.position[i])) {
-      return false;
-    }
-  }
+  if (!table_.next() || !table_.time_ns(kTime, pose.t_ns)) return false;
+  pose.object = table_.text(kObject);
+  if (pose.object.empty()) return table_.fail("names no object; expected its name in the cell");
+  Vec3& p = pose.world_from_object.position;
   Eigen::Quaterniond& q = pose.world_from_object.orientation;
-  return read_number(kW, q.w()) && read_number(kQx, q.x()) && read_number(kQy, q.y()) &&
-         read_number(kQz, q.z());
+  return table_.number(kX, p.x()) && table_.number(kY, p.y()) && table_.number(kZ, p.z()) &&
+         table_.number(kW, q.w()) && table_.number(kQx, q.x()) && table_.number(kQy, q.y()) &&
+         table_.number(kQz, q.z());
 }
 
 CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::filesystem::path& out,

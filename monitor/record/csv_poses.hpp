@@ -5,17 +5,15 @@
 // not going back; rows of equal time are one sample. Plain or gzip.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "config/scene.hpp"
 #include "core/pose.hpp"
+#include "monitor/record/csv_table.hpp"
 
 namespace clearance {
 
@@ -31,32 +29,12 @@ class CsvPoseLog {
 
   // False at the end, and at the first thing wrong: then error() reads "FILE:LINE: ...".
   [[nodiscard]] bool next(CsvPose& pose);
-  [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  [[nodiscard]] std::size_t line() const noexcept { return line_; }
+  [[nodiscard]] const std::string& error() const noexcept { return table_.error(); }
   // "FILE:LINE: what", for what a caller finds wrong with the row just read.
-  [[nodiscard]] std::string located(const std::string& what) const;
+  [[nodiscard]] std::string located(const std::string& what) const { return table_.located(what); }
 
  private:
-  static constexpr std::size_t kColumns = 9;
-  struct CloseGzip {
-    void operator()(void* file) const;
-  };
-
-  bool read_line(std::string& line);
-  bool read_header();
-  bool split(const std::string& line);
-  bool read_number(std::size_t column, double& value);
-  bool fail(const std::string& what);
-
-  std::filesystem::path path_;
-  std::unique_ptr<void, CloseGzip> file_;  // a gzFile
-  std::string error_;
-  std::size_t line_ = 0;
-  std::int64_t last_t_ns_ = 0;
-  std::vector<std::string_view> fields_;
-  std::string text_;  // of the line
-  std::array<std::size_t, kColumns> place_{};
-  std::size_t width_ = 0;  // columns of the header
+  CsvTable table_;
 };
 
 struct CsvRecordingResult {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "config/spelling.hpp"
+#include "monitor/pair_name.hpp"
 
 namespace clearance {
 namespace {
@@ -22,11 +23,6 @@ std::string zone_names(const Scene& scene) {
 }
 
 }  // namespace
-
-std::string pair_name(const Scene& scene, std::uint32_t pair) {
-  const ObjectPair& objects = scene.pairs[pair];
-  return scene.objects[objects.first].name + " - " + scene.objects[objects.second].name;
-}
 
 Expectations::Expectations(const Scene& scene, std::optional<double> min_distance,
                            const std::vector<std::string>& no_zone)

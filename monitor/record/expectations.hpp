@@ -46,7 +46,4 @@ class Expectations {
   std::string error_;
 };
 
-// "hand - box", by id of the pair.
-[[nodiscard]] std::string pair_name(const Scene& scene, std::uint32_t pair);
-
 }  // namespace clearance

@@ -23,6 +23,12 @@ std::int64_t whole_ns(double seconds) {
   return std::llround(std::min(seconds, kCentury) * 1e9);
 }
 
+std::optional<ReferenceCheck> reference_of(const Scene& scene,
+                                           const OfflineReplayOptions& options) {
+  if (options.reference.empty()) return std::nullopt;
+  return ReferenceCheck(scene, options.reference, options.tolerance);
+}
+
 class Replay {
  public:
   Replay(const Scene& scene, const std::filesystem::path& recording,
@@ -32,6 +38,7 @@ class Replay {
         has_reports_(outline.has_reports),
         feed_(recording, scene, outline),
         expectations_(scene, options.expect_min_distance, options.expect_no_zone),
+        reference_(reference_of(scene, options)),
         zones_(scene),
         replayed_(make_distances(scene)),
         monitor_(std::make_unique<Monitor>(scene)) {}
@@ -45,6 +52,7 @@ class Replay {
                 const std::function<void(const ReplayedTick&)>& on_tick);
   void compare(const TickInput& input, const Report& report);
   void compare_zones();
+  void finish_reference();
   void note_counts();
   void show_progress();
   void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
@@ -57,6 +65,7 @@ class Replay {
   bool has_reports_;
   TickFeed feed_;
   Expectations expectations_;
+  std::optional<ReferenceCheck> reference_;
   ZoneDifference zones_;
   Sample<clearance_msg_Distances> replayed_;
   std::unique_ptr<Monitor> monitor_;
@@ -72,6 +81,7 @@ class Replay {
 
 std::string Replay::refusal() const {
   if (!expectations_.error().empty()) return expectations_.error();
+  if (reference_ && !reference_->error().empty()) return reference_->error();
   if (!options_.compare) return {};
   if (!has_reports_) return "nothing to compare with: the recording holds no reports";
   if (*options_.compare == Comparison::kBits && !feed_.objects().same_scene()) {
@@ -99,6 +109,7 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   if (options_.compare && result_.compared == 0) {
     fail(0, result_.last_ns, "no report could be compared");
   }
+  finish_reference();
   if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
   note_counts();
   return std::move(result_);
@@ -149,6 +160,11 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
+  if (reference_) {
+    for (const std::string& what : reference_->check(report, *monitor_)) {
+      fail(report.cycle, report.now_ns, what);
+    }
+  }
   const bool closer = report.minimum_known &&
                       (!result_.closest || report.minimum.distance < result_.closest->distance);
   if (closer) {
@@ -176,6 +192,15 @@ void Replay::compare_zones() {
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
   if (const auto found = zones_.first(feed_.zones())) {
     fail(found->cycle, found->now_ns, "the replay differs in " + found->what);
+  }
+}
+
+void Replay::finish_reference() {
+  if (!reference_) return;
+  result_.reference = reference_->totals();
+  for (const std::string& note : reference_->notes()) result_.notes.push_back(note);
+  if (result_.reference->compared == 0) {
+    fail(0, result_.last_ns, "no reference value could be compared");
   }
 }
 

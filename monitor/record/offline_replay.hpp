@@ -21,6 +21,7 @@
 #include "config/scene.hpp"
 #include "monitor/batch.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/record/reference_check.hpp"
 #include "monitor/record/report_difference.hpp"
 
 namespace clearance {
@@ -38,6 +39,12 @@ struct OfflineReplayOptions {
   std::optional<double> expect_min_distance = {};
   // Names of zones that are never active.
   std::vector<std::string> expect_no_zone = {};
+
+  // Distances that something else computed (monitor/record/reference_check.hpp): every one of a
+  // pair and tick of the replay is met within the tolerance, m, and lies within the bounds. A pair
+  // that the budget left out of a tick does not meet it: give the scene a budget for all.
+  std::filesystem::path reference = {};  // empty: none
+  double tolerance = 1e-6;
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
 };
@@ -67,6 +74,7 @@ struct OfflineReplay {
   std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
   std::uint64_t closest_cycle = 0;
   std::array<std::uint64_t, kRejects> rejected{};
+  std::optional<ReferenceTotals> reference;
 
   [[nodiscard]] bool ok() const noexcept { return error.empty() && failures.empty(); }
   // Everything that went wrong or is worth knowing, a line each.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "monitor/pair_name.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {
@@ -19,12 +20,6 @@ std::string text(bool value) { return value ? "true" : "false"; }
 template <class Integer>
 std::string text(Integer value) {
   return std::to_string(value);
-}
-
-std::string pair_text(const Scene& scene, std::uint32_t pair) {
-  if (pair >= scene.pairs.size()) return std::to_string(pair);
-  return scene.objects[scene.pairs[pair].first].name + " - " +
-         scene.objects[scene.pairs[pair].second].name;
 }
 
 // Compares field by field until the first difference.
@@ -61,9 +56,9 @@ class Comparer {
             const clearance_msg_PairDistance& replayed) {
     if (difference_) return;
     if (recorded.pair != replayed.pair) {
-      tell(where + ".pair", pair_text(scene_, recorded.pair), pair_text(scene_, replayed.pair));
+      tell(where + ".pair", pair_name(scene_, recorded.pair), pair_name(scene_, replayed.pair));
     }
-    const std::string pair = where + " (" + pair_text(scene_, recorded.pair) + ").";
+    const std::string pair = where + " (" + pair_name(scene_, recorded.pair) + ").";
     field(pair + "status", std::string(name(static_cast<PairStatus>(recorded.status))),
           std::string(name(static_cast<PairStatus>(replayed.status))));
     field(pair + "part_a", recorded.part_a, replayed.part_a);
@@ -85,7 +80,7 @@ class Comparer {
               const clearance_msg_PairDistance& replayed) {
     if (difference_ || recorded.pair != replayed.pair) return;
     if (recorded.lower <= replayed.upper && replayed.lower <= recorded.upper) return;
-    tell(where + " (" + pair_text(scene_, recorded.pair) + ") bounds",
+    tell(where + " (" + pair_name(scene_, recorded.pair) + ") bounds",
          text(recorded.lower) + " to " + text(recorded.upper),
          text(replayed.lower) + " to " + text(replayed.upper));
   }

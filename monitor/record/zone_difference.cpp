@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdio>
 
-#include "monitor/record/expectations.hpp"
+#include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -33,7 +33,7 @@ std::string described(const Scene& scene, const clearance_msg_ZoneState& state) 
   std::array<char, 64> clearance;
   std::snprintf(clearance.data(), clearance.size(), " at tick %llu, clearance %.17g m",
                 static_cast<unsigned long long>(state.cycle), state.clearance);
-  const std::string pair = state.pair < scene.pairs.size() ? pair_name(scene, state.pair) : "?";
+  const std::string pair = pair_name(scene, state.pair);
   return std::string(state.active ? "active" : "inactive") + clearance.data() + " (" + pair + ")";
 }
 

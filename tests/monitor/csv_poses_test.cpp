@@ -84,12 +84,13 @@ TEST_F(CsvPoses, EveryErrorNamesItsLine) {
     const char* rows;
     const char* error;
   } cases[] = {
-      {"1,hand,1,2,3,1,0,0,0\n1,hand,1,2,3,1,0,0\n", "log.csv:3: has 8 fields, the header names 9"},
-      {"1,hand,1,2,3,1,0,0,zero\n", "log.csv:2: qz is 'zero', which is not a finite number"},
-      {"1,hand,nan,2,3,1,0,0,0\n", "log.csv:2: px is 'nan', which is not a finite number"},
+      {"1,hand,1,2,3,1,0,0,0\n1,hand,1,2,3,1,0,0\n",
+       "log.csv:3: has 8 fields; expected 9, as the header names"},
+      {"1,hand,1,2,3,1,0,0,zero\n", "log.csv:2: qz is 'zero'; expected a finite number"},
+      {"1,hand,nan,2,3,1,0,0,0\n", "log.csv:2: px is 'nan'; expected a finite number"},
       {"1,hand,1,2,3,1,0,0,0x\n", "log.csv:2: qz is '0x'"},
       {"1.5,hand,1,2,3,1,0,0,0\n", "log.csv:2: t_ns is '1.5'"},
-      {"-1,hand,1,2,3,1,0,0,0\n", "log.csv:2: t_ns is '-1'"},
+      {"-1,hand,1,2,3,1,0,0,0\n", "log.csv:2: t_ns is '-1'; expected whole nanoseconds, 0 or more"},
       {"2,hand,1,2,3,1,0,0,0\n1,hand,1,2,3,1,0,0,0\n", "log.csv:3: t_ns goes back from 2 to 1"},
       {"1,,1,2,3,1,0,0,0\n", "log.csv:2: names no object"},
   };
@@ -100,7 +101,10 @@ TEST_F(CsvPoses, EveryErrorNamesItsLine) {
   read("t_ns,object,px,py,pz,qx,qy,qz\n");
   EXPECT_THAT(error, HasSubstr("log.csv:1: no column 'qw'"));
   read("");
-  EXPECT_THAT(error, HasSubstr("is empty"));
+  EXPECT_THAT(error,
+              HasSubstr("log.csv:1: is empty; expected a first line that names t_ns,object,"));
+  read("t_ns,object,px,py,px,pz,qw,qx,qy,qz\n");
+  EXPECT_THAT(error, HasSubstr("log.csv:1: two columns are named 'px'; expected a first line"));
 }
 
 TEST_F(CsvPoses, RecordingHoldsOneBatchATimeWithTheIdsOfTheCell) {

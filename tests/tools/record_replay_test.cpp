@@ -96,6 +96,25 @@ TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
   EXPECT_EQ(2, replay({"--compare", "--evaluate-all"}));
 }
 
+TEST_F(RecordReplay, ReferenceDistancesAreMetOrNamedWithTickPairAndFigure) {
+  ASSERT_EQ(0, record_log()) << output;
+  std::string reference = "distance,object_b,object_a,t_ns\n";
+  for (int tick = 0; tick < 200; tick += 10) {
+    const double above = hand_at(tick, 200, 0.08).position.z() - 0.15;
+    reference += std::to_string(above) + ",box,hand," + std::to_string(tick * kTick) + "\n";
+  }
+  write_text(folder / "ref.csv", reference);
+  EXPECT_EQ(0, replay({"--reference", path("ref.csv")})) << output;
+  EXPECT_THAT(output, HasSubstr("20 reference distances compared, largest difference "));
+  EXPECT_THAT(output, HasSubstr("0 off by more than 1e-06 m, 0 outside of the bounds"));
+  reference.replace(reference.find("0.080000"), 8, "0.080100");
+  write_text(folder / "ref.csv", reference);
+  EXPECT_EQ(1, replay({"--reference", path("ref.csv"), "--tolerance", "5e-5"}));
+  EXPECT_THAT(output, HasSubstr("tick 101 (0.100000 s): hand - box: converged, distance 0.08 m, "
+                                "reference 0.0801 m: not within the tolerance of 5e-05 m"));
+  EXPECT_THAT(output, HasSubstr("bounds 0.08 m to 0.08 m, reference 0.0801 m: outside"));
+}
+
 TEST_F(RecordReplay, BrokenExpectationGivesStatusOneAndNamesTickPairAndFigure) {
   ASSERT_EQ(0, record_log()) << output;
   EXPECT_EQ(0, replay({"--expect-min-distance", "0.0799"})) << output;

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "config/cell_file.hpp"
-#include "monitor/record/expectations.hpp"
+#include "monitor/pair_name.hpp"
 #include "monitor/record/offline_replay.hpp"
 #include "monitor/record/recording_reader.hpp"
 #include "monitor/record/report_csv.hpp"
@@ -45,29 +45,43 @@ OfflineReplayOptions options_of(const ReplayArguments& arguments) {
   options.end_s = arguments.end_s;
   if (arguments.compare) options.compare = Comparison::kBits;
   if (arguments.compare_bounds) options.compare = Comparison::kBounds;
+  options.reference = arguments.reference;
+  options.tolerance = arguments.tolerance;
   options.expect_min_distance = arguments.expect_min_distance;
   options.expect_no_zone = arguments.expect_no_zone;
   return options;
 }
 
-void print_summary(const Scene& scene, const OfflineReplay& replay, double elapsed_s) {
+void print_summary(const Scene& scene, const OfflineReplay& replay, double tolerance,
+                   double elapsed_s) {
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
   std::printf("%llu ticks, %.3f s recorded, replayed in %.3f s (%.0f times as fast)\n",
               static_cast<unsigned long long>(replay.ticks), recorded_s, elapsed_s,
               elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
-    std::printf("closest: %s, %.9g m (%.9g to %.9g) at tick %llu\n",
-                pair_name(scene, pair.pair).c_str(), pair.distance, pair.lower, pair.upper,
+    std::printf("closest: %s, %.9g m (%.9g to %.9g) at tick %llu\n", pair_name(scene, pair).c_str(),
+                pair.distance, pair.lower, pair.upper,
                 static_cast<unsigned long long>(replay.closest_cycle));
   }
   if (replay.compared > 0) {
     std::printf("%llu reports compared\n", static_cast<unsigned long long>(replay.compared));
   }
+  if (replay.reference) {
+    const ReferenceTotals& totals = *replay.reference;
+    std::printf(
+        "%llu reference distances compared, largest difference %.2g m; %llu off by more than "
+        "%g m, %llu outside of the bounds\n",
+        static_cast<unsigned long long>(totals.compared), totals.largest,
+        static_cast<unsigned long long>(totals.off), tolerance,
+        static_cast<unsigned long long>(totals.outside));
+  }
 }
 
 int replay_in(Scene& scene, const ReplayArguments& arguments) {
-  if (arguments.evaluate_all) scene.budget = std::numeric_limits<std::uint32_t>::max();
+  if (arguments.evaluate_all || !arguments.reference.empty()) {
+    scene.budget = std::numeric_limits<std::uint32_t>::max();
+  }
   std::optional<ReportRecorder> out;
   std::optional<ReportCsv> csv;
   if (!arguments.out.empty()) out.emplace(arguments.out, scene);
@@ -86,7 +100,7 @@ int replay_in(Scene& scene, const ReplayArguments& arguments) {
   bar.finish();
   std::fputs(replay.text().c_str(), stderr);
   if (!replay.error.empty()) return kFailed;
-  print_summary(scene, replay, elapsed.count());
+  print_summary(scene, replay, arguments.tolerance, elapsed.count());
 
   bool written = true;
   if (out && !out->close()) {

@@ -1,5 +1,7 @@
 #include "tools/watch/feed.hpp"
 
+#include "monitor/pair_name.hpp"
+
 namespace clearance::watch {
 namespace {
 
@@ -92,8 +94,8 @@ std::string Feed::pair_name(const clearance_msg_PairDistance& pair) const {
     return "pair " + std::to_string(pair.pair);
   }
   const clearance_msg_CataloguePair& objects = catalogue_->pairs._buffer[pair.pair];
-  return part_name(objects.object_a, pair.part_a) + " - " +
-         part_name(objects.object_b, pair.part_b);
+  return clearance::pair_name(part_name(objects.object_a, pair.part_a),
+                              part_name(objects.object_b, pair.part_b));
 }
 
 }  // namespace clearance::watch

@@ -1,0 +1,61 @@
+// Distances that something else computed, held against those of a replay.
+//
+// A CSV table, plain or gzip: t_ns, object_a, object_b, distance (m), found by name in any order,
+// times not going back. Either object may come first. Where the reference is 0 the bodies touch or
+// overlap, and a depth of ours counts as 0. It is taken to be rounded to the digits written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance {
+
+struct ReferenceTotals {
+  std::uint64_t compared = 0;
+  std::uint64_t off = 0;      // farther from our distance than the tolerance, or ours is not known
+  std::uint64_t outside = 0;  // not within our bounds, its rounding allowed for
+  std::uint64_t other_pairs = 0;  // not compared: the cell does not watch them
+  std::uint64_t other_times = 0;  // not compared: no tick was then
+  double largest = 0.0;           // difference, m
+};
+
+class ReferenceCheck {
+ public:
+  // Reads the whole table; what is wrong with it is in error(). The scene must outlive this.
+  ReferenceCheck(const Scene& scene, const std::filesystem::path& file, double tolerance);
+
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+  // To be called for every tick, in order of time. The first value that is off, and the first that
+  // is outside of the bounds, a sentence each with pair and figures.
+  [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor);
+
+  // After the last tick.
+  [[nodiscard]] ReferenceTotals totals() const;
+  [[nodiscard]] std::vector<std::string> notes() const;
+
+ private:
+  struct Value {
+    std::int64_t t_ns = 0;
+    std::uint32_t pair = 0;
+    double distance = 0.0, rounding = 0.0;  // m
+  };
+
+  void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
+
+  const Scene& scene_;
+  double tolerance_;
+  std::string error_;
+  std::vector<Value> values_;
+  std::size_t next_ = 0;
+  ReferenceTotals totals_;
+  std::string other_pair_;  // the first
+};
+
+}  // namespace clearance
