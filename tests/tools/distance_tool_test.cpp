@@ -154,6 +154,65 @@ TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {
   EXPECT_LT(tracked_iterations, cold_iterations);
 }
 
+// The cubes are 0.5 m apart, then 0.25 m deep.
+std::string with_exact(std::string line, const std::string& exact) {
+  return line.insert(1, exact + ",");
+}
+
+TEST_F(DistanceTool, ChecksItsAnswersAgainstExactOnes) {
+  const std::string apart = with_exact(cubes("apart", 1.5), R"("distance":"0.5","family":"cubes")");
+  const std::string deep = with_exact(
+      cubes("deep", 0.75), R"("distance":"0","penetration":"2.5e-1","scale":1,"family":"deep")");
+  const Outcome good = run("--cases - --out - --check", apart + deep);
+  EXPECT_EQ(good.status, 0) << good.err;
+  EXPECT_NE(good.err.find("every bound holds"), std::string::npos) << good.err;
+  EXPECT_NE(good.err.find("\ncubes "), std::string::npos) << good.err;
+
+  struct Wrong {
+    const char* exact;
+    const char* fault;
+  };
+  for (const Wrong& wrong : {
+           Wrong{R"("distance":"0.500001")", "-:1: distance 0.5, exactly 0.500001"},
+           Wrong{R"("distance":"0.500001")", "-:1: upper bound 0.5"},
+           Wrong{R"("distance":"0.499999")", "-:1: lower bound 0.49999999999999"},
+           Wrong{R"("distance":"0.5","penetration":"0.1")", "-:1: penetration 0, exactly 0.1"},
+       }) {
+    const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), wrong.exact));
+    EXPECT_EQ(r.status, 1) << wrong.exact;
+    EXPECT_NE(r.err.find(wrong.fault), std::string::npos) << r.err;
+  }
+  const Outcome overlap = run("--cases - --out - --check --tolerance 1",
+                              with_exact(cubes("x", 0.75), R"("distance":"0.1")"));
+  EXPECT_EQ(overlap.status, 1) << "it says overlapping, the tolerance notwithstanding";
+  EXPECT_NE(overlap.err.find("status overlapping, exactly 0.1"), std::string::npos) << overlap.err;
+}
+
+TEST_F(DistanceTool, ChecksEveryPoseOfAMotion) {
+  std::string line = cubes("motion", 0.0);
+  const std::string start = R"([0,0,0,1,0,0,0])";
+  line.erase(line.find(R"(,"pose_a")"));
+  line += R"(,"poses":[[)" + start + R"(,[1.5,0,0,1,0,0,0]],[)" + start +
+          R"(,[0,0,3,1,0,0,0]]],"penetrations":[null,null],"distances":["0.5",)";
+  EXPECT_EQ(run("--cases - --out - --check", line + "\"2\"]}\n").status, 0);
+  const Outcome wrong = run("--cases - --out - --check", line + "\"2.0000001\"]}\n");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("-:1: pose 1: distance 2, exactly 2.0000001"), std::string::npos)
+      << wrong.err;
+}
+
+TEST_F(DistanceTool, ACheckOfNothingFails) {
+  const Outcome none = run("--cases - --out - --check", cubes("x", 1.5));
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("1 lines carry no exact answer\nnothing was checked"), std::string::npos)
+      << none.err;
+  for (const char* bad : {R"("distance":0.5)", R"("distance":"0.5 m")", R"("distances":[])"}) {
+    const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), bad));
+    EXPECT_EQ(r.status, 1) << bad;
+  }
+  EXPECT_EQ(run("--cases - --out - --tolerance 1e-9", cubes("x", 1.5)).status, 2);
+}
+
 TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
   const std::string bad[] = {
       "{\"id\": 3",

@@ -1,0 +1,141 @@
+#include "tools/distance/case.hpp"
+
+#include <array>
+#include <cmath>
+#include <variant>
+
+#include "core/shapes.hpp"
+
+namespace clearance {
+namespace {
+
+using Json = nlohmann::json;
+
+// As much of a value as a message can carry.
+std::string shown(const Json& value) {
+  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() <= 80 ? text : text.substr(0, 77) + "...";
+}
+
+const Json& member(const Json& object, const char* key, const std::string& where) {
+  if (!object.is_object()) throw BadLine(where + " is not a JSON object");
+  const auto found = object.find(key);
+  if (found == object.end()) throw BadLine(where + " has no \"" + key + "\"");
+  return *found;
+}
+
+template <std::size_t N>
+std::array<double, N> numbers(const Json& list, const std::string& where, const char* expected) {
+  if (!list.is_array() || list.size() != N) {
+    throw BadLine(where + ": expected " + expected + ", found " + shown(list));
+  }
+  std::array<double, N> out{};
+  for (std::size_t k = 0; k < N; ++k) {
+    if (!list[k].is_number()) throw BadLine(where + ": " + shown(list[k]) + " is not a number");
+    out[k] = list[k].get<double>();
+  }
+  return out;
+}
+
+// As far as the core's shapes may reach: squares of such lengths are far from overflowing.
+constexpr double kFarthest = 1e100;  // m
+
+Pose read_pose(const Json& list, const std::string& where) {
+  const auto v = numbers<7>(list, where, "[x, y, z, qw, qx, qy, qz]");
+  const Pose pose{{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
+  const double norm = pose.orientation.norm();
+  if (!pose.position.allFinite() || !std::isfinite(norm)) {
+    throw BadLine(where + " is not finite");
+  }
+  if (!(pose.position.cwiseAbs().maxCoeff() <= kFarthest)) {
+    throw BadLine(where + " lies more than 1e100 m from the origin");
+  }
+  if (norm == 0.0) throw BadLine(where + ": the quaternion has length zero");
+  return pose;
+}
+
+ShapeResult shape_of_rows(const Json& list, const std::string& where) {
+  std::vector<HalfSpace> rows;
+  for (const Json& entry : list) {
+    const std::string row = where + ".halfspaces[" + std::to_string(rows.size()) + "]";
+    const auto v = numbers<4>(entry, row, "[nx, ny, nz, d]");
+    rows.push_back({{v[0], v[1], v[2]}, v[3]});
+  }
+  return polyhedron_from_halfspaces(rows);
+}
+
+ShapeResult shape_of_vertices(const Json& list, const std::string& where, double radius) {
+  std::vector<Vec3> points;
+  for (const Json& entry : list) {
+    const std::string row = where + ".vertices[" + std::to_string(points.size()) + "]";
+    const auto v = numbers<3>(entry, row, "[x, y, z]");
+    points.emplace_back(v[0], v[1], v[2]);
+  }
+  if (points.size() == 1) return point(points[0], radius);
+  if (points.size() == 2) return segment(points[0], points[1], radius);
+  return polyhedron_from_vertices(points);
+}
+
+ConvexPolyhedron read_body(const Json& body, const std::string& where) {
+  if (!body.is_object()) throw BadLine(where + " is not a JSON object");
+  double radius = 0.0;
+  if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
+    if (!found->is_number() || !(found->get<double>() >= 0.0) ||
+        !(found->get<double>() <= kFarthest)) {
+      throw BadLine(where + ".radius: expected a length in metres, at most 1e100, found " +
+                    shown(*found));
+    }
+    radius = found->get<double>();
+  }
+  const auto list_named = [&](const char* key) -> const Json* {
+    const auto found = body.find(key);
+    if (found == body.end() || found->is_null()) return nullptr;
+    if (!found->is_array()) throw BadLine(where + "." + key + " is not a list");
+    return &*found;
+  };
+  const Json* rows = list_named("halfspaces");
+  const Json* vertices = list_named("vertices");
+  if (rows == nullptr && vertices == nullptr) {
+    throw BadLine(where + " has neither \"halfspaces\" nor \"vertices\"");
+  }
+  ShapeResult shape =
+      rows != nullptr ? shape_of_rows(*rows, where) : shape_of_vertices(*vertices, where, radius);
+  if (const auto* error = std::get_if<ShapeError>(&shape)) {
+    throw BadLine(where + ": " + error->reason);
+  }
+  ConvexPolyhedron& polyhedron = std::get<ConvexPolyhedron>(shape);
+  polyhedron.radius = radius;
+  return std::move(polyhedron);
+}
+
+std::vector<std::pair<Pose, Pose>> read_motion(const Json& list) {
+  if (!list.is_array()) throw BadLine("poses is not a list");
+  std::vector<std::pair<Pose, Pose>> out;
+  for (const Json& step : list) {
+    const std::string where = "poses[" + std::to_string(out.size()) + "]";
+    if (!step.is_array() || step.size() != 2) {
+      throw BadLine(where + ": expected [pose_a, pose_b], found " + shown(step));
+    }
+    out.emplace_back(read_pose(step[0], where + "[0]"), read_pose(step[1], where + "[1]"));
+  }
+  return out;
+}
+
+}  // namespace
+
+DistanceCase read_case(const Json& line) {
+  DistanceCase found;
+  found.id = member(line, "id", "the case");
+  found.a = read_body(member(line, "a", "the case"), "a");
+  found.b = read_body(member(line, "b", "the case"), "b");
+  found.motion = line.contains("poses");
+  if (found.motion) {
+    found.poses = read_motion(line["poses"]);
+  } else {
+    const Pose pose_a = read_pose(member(line, "pose_a", "the case"), "pose_a");
+    found.poses = {{pose_a, read_pose(member(line, "pose_b", "the case"), "pose_b")}};
+  }
+  return found;
+}
+
+}  // namespace clearance

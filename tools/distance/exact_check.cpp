@@ -1,0 +1,257 @@
+#include "tools/distance/exact_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "core/distance.hpp"
+#include "tools/distance/rational.hpp"
+
+namespace clearance {
+namespace {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+// Exact answers are right to 30 digits.
+const Rational& digits_left_out() {
+  static const Rational share = *rational_from("1e-29");
+  return share;
+}
+
+struct Exact {
+  Rational value;
+  std::string text;  // as the case has it
+};
+
+Exact exact_number(const Json& value, const char* key) {
+  const std::string text = value.is_string() ? value.get<std::string>() : "";
+  const auto number = rational_from(text);
+  if (!number)
+    throw BadLine(std::string(key) + ": expected an exact number as text, as \"0.0625\"");
+  return {*number, text};
+}
+
+RationalPoint exact_point(const OrderedJson& list) {
+  return {Rational(list[0].get<double>()), Rational(list[1].get<double>()),
+          Rational(list[2].get<double>())};
+}
+
+// How far a point is outside of the worst of a body's half-spaces, m; 0: inside.
+double outside(const Json& rows, const RationalPoint& in_body_frame) {
+  double worst = 0.0;
+  for (const Json& row : rows) {
+    Rational over = -Rational(row[3].get<double>()), square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Rational n(row[i].get<double>());
+      over += n * in_body_frame[i];
+      square += n * n;
+    }
+    if (over > 0) worst = std::max(worst, over.get_d() / root_of(square));
+  }
+  return worst;
+}
+
+// World coordinates are doubles: a point cannot be told better than this, m.
+double rounding_of(const RationalPoint& point) {
+  return 0x1p-53 * root_of(squared_distance(point, {0, 0, 0}));
+}
+
+// Bodies without half-spaces, or with a ball added, are not judged.
+bool has_rows(const Json& body) {
+  return body.contains("halfspaces") && body["halfspaces"].is_array() &&
+         body.value("radius", 0.0) == 0.0;
+}
+
+// In as few digits as read back as the same double.
+std::string shown(double value) {
+  std::array<char, 40> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+// The entry of a motion, or the value itself.
+const OrderedJson& entry(const OrderedJson& answer, const char* key, std::size_t k, bool motion) {
+  return motion ? answer[key][k] : answer[key];
+}
+
+}  // namespace
+
+// One pose of a case.
+struct ExactCheck::Question {
+  const Json& line;
+  const Pose& pose_a;
+  const Pose& pose_b;
+  Exact distance;
+  std::optional<Exact> penetration;
+  double scale;
+};
+
+// What was answered to it, and what is wrong with that.
+class ExactCheck::Judge {
+ public:
+  Judge(const Question& question, double tolerance)
+      : question_(question),
+        tolerance_(tolerance),
+        measure_(std::max(question.distance.value.get_d(), question.scale)) {}
+
+  void judge_distance(const Json& distance, const Json& lower, const Json& upper,
+                      const std::string& status) {
+    const Rational& truth = question_.distance.value;
+    const Rational slack = truth * digits_left_out();
+    const std::string exact = ", exactly " + question_.distance.text;
+    if (!distance.is_number() || !lower.is_number() || !upper.is_number()) {
+      faults.push_back("has no number for distance, lower and upper");
+      return;
+    }
+    const double d = distance.get<double>();
+    const Rational off = abs(Rational(d) - truth);
+    figures.error = off.get_d() / measure_;
+    figures.gap = (upper.get<double>() - lower.get<double>()) / measure_;
+    if (figures.error > tolerance_) faults.push_back("distance " + shown(d) + exact);
+    if (Rational(lower.get<double>()) > truth + slack) {
+      faults.push_back("lower bound " + shown(lower.get<double>()) + exact);
+    }
+    if (Rational(upper.get<double>()) < truth - slack) {
+      faults.push_back("upper bound " + shown(upper.get<double>()) + exact);
+    }
+    if (status == name(DistanceStatus::kIterationLimit) ||
+        (status == name(DistanceStatus::kOverlapping) && truth > 0)) {
+      faults.push_back("status " + status + exact);
+    }
+  }
+
+  void judge_depth(const Json& depth, const Json& lower, const Json& upper) {
+    if (!question_.penetration) return;
+    const Rational& exact = question_.penetration->value;
+    const std::string text = ", exactly " + question_.penetration->text;
+    if (!depth.is_number() || !lower.is_number() || !upper.is_number()) {
+      faults.push_back("has no number for penetration and its bounds" + text);
+      return;
+    }
+    const Rational slack = exact * digits_left_out();
+    figures.depth = Rational(abs(Rational(depth.get<double>()) - exact)).get_d() / question_.scale;
+    if (figures.depth > tolerance_) {
+      faults.push_back("penetration " + shown(depth.get<double>()) + text);
+    }
+    if (Rational(lower.get<double>()) > exact + slack ||
+        Rational(upper.get<double>()) < exact - slack) {
+      faults.push_back("penetration from " + shown(lower.get<double>()) + " to " +
+                       shown(upper.get<double>()) + text);
+    }
+  }
+
+  void judge_witnesses(const OrderedJson& witness_a, const OrderedJson& witness_b,
+                       double distance) {
+    const RationalPoint a = exact_point(witness_a), b = exact_point(witness_b);
+    judge_inside("a", a, question_.pose_a);
+    judge_inside("b", b, question_.pose_b);
+    const double apart = std::abs(root_of(squared_distance(a, b)) - distance);
+    const double over = std::max(0.0, apart - rounding_of(a) - rounding_of(b)) / measure_;
+    figures.witness = std::max(figures.witness, over);
+    if (over > tolerance_) {
+      faults.push_back("the witness points are not " + shown(distance) + " apart, but off by " +
+                       shown(apart));
+    }
+  }
+
+  Figures figures{.answers = 1};
+  std::vector<std::string> faults;
+
+ private:
+  void judge_inside(const char* which, const RationalPoint& point, const Pose& world_from_body) {
+    const Json& body = question_.line[which];
+    if (!has_rows(body)) return;
+    const double out = outside(body["halfspaces"], in_body(world_from_body, point));
+    const double over = std::max(0.0, out - rounding_of(point)) / measure_;
+    figures.witness = std::max(figures.witness, over);
+    if (over > tolerance_) {
+      faults.push_back(std::string("witness_") + which + " is " + shown(out) + " outside of " +
+                       which);
+    }
+  }
+
+  const Question& question_;
+  double tolerance_;
+  double measure_;  // what errors of distance and points are relative to, m
+};
+
+void ExactCheck::Figures::add(const Figures& other) {
+  answers += other.answers;
+  wrong += other.wrong;
+  error = std::max(error, other.error);
+  gap = std::max(gap, other.gap);
+  witness = std::max(witness, other.witness);
+  depth = std::max(depth, other.depth);
+}
+
+std::vector<std::string> ExactCheck::faults(const Json& line, const DistanceCase& asked,
+                                            const OrderedJson& answer) {
+  const char* const key = asked.motion ? "distances" : "distance";
+  if (!line.contains(key)) {
+    ++without_;
+    return {};
+  }
+  const Json& exact = line[key];
+  const Json& depths = line.value(asked.motion ? "penetrations" : "penetration", Json());
+  if (asked.motion && (!exact.is_array() || exact.size() != asked.poses.size())) {
+    throw BadLine("distances: expected one a pose");
+  }
+  const double reach = std::max(asked.a.bounding_radius, asked.b.bounding_radius);
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < asked.poses.size(); ++k) {
+    const Json& depth = asked.motion && depths.is_array() ? depths.at(k) : depths;
+    const Question question{
+        line,
+        asked.poses[k].first,
+        asked.poses[k].second,
+        exact_number(asked.motion ? exact[k] : exact, key),
+        depth.is_null() ? std::optional<Exact>() : exact_number(depth, "penetration"),
+        line.value("scale", reach)};
+    const auto given = [&](const char* name) { return entry(answer, name, k, asked.motion); };
+    Judge judge(question, tolerance_);
+    judge.judge_distance(given("distance"), given("lower"), given("upper"), given("status"));
+    judge.judge_depth(given("penetration"), given("penetration_lower"), given("penetration_upper"));
+    if (judge.faults.empty()) {
+      judge.judge_witnesses(given("witness_a"), given("witness_b"), given("distance"));
+    }
+    judge.figures.wrong = judge.faults.empty() ? 0 : 1;
+    families_[line.value("family", "cases")].add(judge.figures);
+    for (const std::string& fault : judge.faults) {
+      all.push_back((asked.motion ? "pose " + std::to_string(k) + ": " : "") + fault);
+    }
+  }
+  return all;
+}
+
+ExactCheck::Figures ExactCheck::total() const {
+  Figures sum;
+  for (const auto& [family, figures] : families_) sum.add(figures);
+  return sum;
+}
+
+void ExactCheck::print_row(const std::string& name, const Figures& figures) {
+  std::fprintf(stderr, "%-20s %8zu %9.1e %9.1e %9.1e %9.1e %6zu\n", name.c_str(), figures.answers,
+               figures.error, figures.gap, figures.witness, figures.depth, figures.wrong);
+}
+
+void ExactCheck::print_summary() const {
+  std::fprintf(stderr, "%-20s %8s %9s %9s %9s %9s %6s   largest, over the scale\n", "family",
+               "answers", "error", "gap", "witness", "depth", "wrong");
+  for (const auto& [family, figures] : families_) print_row(family, figures);
+  const Figures sum = total();
+  print_row("all", sum);
+  if (without_ > 0) std::fprintf(stderr, "%zu lines carry no exact answer\n", without_);
+  std::fprintf(stderr, "%s\n",
+               sum.answers == 0 ? "nothing was checked"
+               : sum.wrong == 0 ? "every bound holds, every answer is within the tolerance"
+                                : "some answers are wrong");
+}
+
+bool ExactCheck::good() const {
+  const Figures sum = total();
+  return sum.answers > 0 && sum.wrong == 0;
+}
+
+}  // namespace clearance

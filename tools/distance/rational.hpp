@@ -1,0 +1,28 @@
+// Exact arithmetic for judging: every double is a fraction.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "core/pose.hpp"
+
+namespace clearance {
+
+using Rational = mpq_class;
+using RationalPoint = std::array<Rational, 3>;
+
+// "0.125", "-3e-7"; nothing where the text is no such number.
+[[nodiscard]] std::optional<Rational> rational_from(const std::string& decimal);
+
+// The double nearest to its root, within a few ulps. `square` >= 0.
+[[nodiscard]] double root_of(const Rational& square);
+
+// Where a point of the world is in a body's frame; the orientation is normalised exactly.
+[[nodiscard]] RationalPoint in_body(const Pose& world_from_body, const RationalPoint& in_world);
+
+[[nodiscard]] Rational squared_distance(const RationalPoint& a, const RationalPoint& b);
+
+}  // namespace clearance
