@@ -68,7 +68,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   const std::string online = run(kReplay, {"--offline", path("heard.mcap"), "--compare-bounds"});
   EXPECT_EQ(closest(offline), "closest: left - right, 0.2 m (0.2 to 0.2)");
   EXPECT_EQ(closest(online), closest(offline));
-  EXPECT_TRUE(daemon.wrote("minimum  0.200000 m in [0.200000, 0.200000], left to right"))
+  EXPECT_TRUE(daemon.wrote("minimum  0.200000 m in [0.200000, 0.200000], left - right"))
       << daemon.output();
   EXPECT_THAT(online, HasSubstr("reports compared"));
   EXPECT_THAT(online, Not(HasSubstr("reports are missing"))) << "a tick was lost";
