@@ -4,14 +4,13 @@
 // It is how anyone checks the core against anything: every figure the core gives is in the answer,
 // and doubles are printed so that they read back as the same doubles.
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <system_error>
 #include <vector>
 
+#include "monitor/daemon/program.hpp"
 #include "tools/distance/answerer.hpp"
 #include "tools/distance/exact_check.hpp"
 
@@ -94,36 +93,31 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   if (options.check) check.print_summary();
   if (in.bad()) {
     std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
-    return 2;
+    return kUsage;
   }
   if (!out) {
     std::cerr << "clearance-distance: could not write all answers to " << options.out << '\n';
-    return 2;
+    return kUsage;
   }
-  return bad == 0 && (!options.check || check.good()) ? 0 : 1;
+  return bad == 0 && (!options.check || check.good()) ? kOk : kFailed;
 }
 
 int run(const Options& options) {
-  std::error_code not_there;
-  if (std::filesystem::equivalent(options.cases, options.out, not_there)) {
-    std::cerr << "clearance-distance: " << options.out
-              << " is the file of cases itself; give another one for the answers\n";
-    return 2;
-  }
+  if (!spares_input("clearance-distance", options.out, options.cases)) return kUsage;
   std::ifstream file_in;
   std::ofstream file_out;
   if (options.cases != "-") {
     file_in.open(options.cases);
     if (!file_in) {
       std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
-      return 2;
+      return kUsage;
     }
   }
   if (options.out != "-") {
     file_out.open(options.out);
     if (!file_out) {
       std::cerr << "clearance-distance: cannot write " << options.out << '\n';
-      return 2;
+      return kUsage;
     }
   }
   return answer_all(options, options.cases == "-" ? std::cin : file_in,
@@ -150,10 +144,6 @@ int main(int argc, char** argv) {
       ->needs(check)
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto done = clearance::parse(app, argc, argv)) return *done;
   return clearance::run(options);
 }

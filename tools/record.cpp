@@ -2,11 +2,8 @@
 // file.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
-#include "config/cell_file.hpp"
-#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/program.hpp"
 #include "tools/record/arguments.hpp"
 
 namespace clearance {
@@ -39,48 +36,26 @@ int run(int argc, char** argv) {
   app.add_option("--seconds", arguments.seconds, "Stop after this long; otherwise on Ctrl-C")
       ->check(CLI::PositiveNumber)
       ->excludes(csv);
-  app.add_flag("--overwrite", arguments.overwrite, "Replace the recording if there is one");
+  add_force(app, arguments.force);
   arguments.dds.add_to(app);
   app.footer(kFooter);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
+  if (const auto done = parse(app, argc, argv)) return *done;
+  if (!spares_input("clearance-record", arguments.out, arguments.from_csv)) return kUsage;
+  if (!may_write("clearance-record", arguments.out, arguments.force)) return kFailed;
+  std::optional<StopSignal> stop;  // before anything that takes time
+  if (arguments.from_csv.empty()) stop.emplace();
+  std::optional<Scene> scene;
+  if (!arguments.cell.empty()) {
+    scene = scene_or_errors(read_cell(arguments.cell));
+    if (!scene) return kBadCell;
   }
-  std::error_code not_there;
-  if (std::filesystem::equivalent(arguments.from_csv, arguments.out, not_there)) {
-    std::fprintf(stderr,
-                 "clearance-record: %s is the pose log itself; give another file to write\n",
-                 arguments.out.c_str());
-    return kUsage;
-  }
-  if (!arguments.overwrite && std::filesystem::exists(arguments.out)) {
-    std::fprintf(stderr, "clearance-record: %s exists; --overwrite replaces it\n",
-                 arguments.out.c_str());
-    return kFailed;
-  }
-  CellResult cell = Scene{};
-  if (!arguments.cell.empty()) cell = read_cell(arguments.cell);
-  if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-    return kBadCell;
-  }
-  const Scene* const scene = arguments.cell.empty() ? nullptr : &std::get<Scene>(cell);
-  return arguments.from_csv.empty() ? record_from_dds(arguments, scene)
-                                    : record_from_csv(arguments, scene);
+  const Scene* const known = scene ? &*scene : nullptr;
+  return stop ? record_from_dds(arguments, known, *stop) : record_from_csv(arguments, known);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  try {
-    return clearance::run(argc, argv);
-  } catch (const clearance::DdsError& error) {
-    std::fprintf(stderr, "clearance-record: %s\n", error.what());
-    return clearance::kDdsFailed;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "clearance-record: %s\n", error.what());
-    return clearance::kFailed;
-  }
+  return clearance::run_program("clearance-record", [=] { return clearance::run(argc, argv); });
 }

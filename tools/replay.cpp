@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/program.hpp"
 #include "tools/replay/arguments.hpp"
 
 namespace clearance {
@@ -95,6 +95,10 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
       ->needs(offline)
       ->group(kOffline);
 
+  app.add_flag("--force", arguments.force, "Write over files that are there already")
+      ->needs(offline)
+      ->group(kOffline);
+
   const char* const kDds = "Over DDS";
   app.add_option("--rate", arguments.rate, "Times as fast as recorded")
       ->check(CLI::PositiveNumber)
@@ -124,11 +128,7 @@ int run(int argc, char** argv) {
       "monitor and checks what comes out.");
   ReplayArguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   return arguments.offline ? replay_without_dds(arguments) : replay_over_dds(arguments);
 }
 
@@ -136,13 +136,5 @@ int run(int argc, char** argv) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  try {
-    return clearance::run(argc, argv);
-  } catch (const clearance::DdsError& error) {
-    std::fprintf(stderr, "clearance-replay: %s\n", error.what());
-    return clearance::kDdsFailed;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "clearance-replay: %s\n", error.what());
-    return clearance::kFailed;
-  }
+  return clearance::run_program("clearance-replay", [=] { return clearance::run(argc, argv); });
 }

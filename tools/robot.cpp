@@ -9,12 +9,12 @@
 #include <mutex>
 #include <thread>
 
-#include "config/cell_file.hpp"
 #include "config/simulation.hpp"
 #include "monitor/daemon/dds.hpp"
 #include "monitor/daemon/dds_arguments.hpp"
 #include "monitor/daemon/histogram.hpp"
 #include "monitor/daemon/log.hpp"
+#include "monitor/daemon/program.hpp"
 #include "monitor/daemon/realtime.hpp"
 #include "monitor/daemon/seams.hpp"
 #include "monitor/daemon/stop_signal.hpp"
@@ -23,8 +23,6 @@
 
 namespace clearance {
 namespace {
-
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3, kDdsFailed = 4 };
 
 constexpr const char* kFooter = R"(Exit status:
   0  stopped by SIGINT, SIGTERM or --seconds
@@ -190,8 +188,7 @@ Histogram send_all(Robot& robot, const Arguments& arguments, const std::atomic<b
   return lateness;
 }
 
-int run_robot(const Scene& scene, const Arguments& arguments) {
-  StopSignal signal;
+int run_robot(const Scene& scene, const Arguments& arguments, StopSignal& signal) {
   use_precise_timers();
   // Inherited by every thread made from here on, Cyclone's as well.
   if (arguments.priority > 0) {
@@ -229,37 +226,22 @@ int run(int argc, char** argv) {
   CLI::App app("Publishes simulated poses of a cell over DDS.");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-robot", arguments.log_level);
-  const CellResult cell = read_cell(arguments.cell);
-  if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-    return kBadCell;
-  }
-  const Scene& scene = std::get<Scene>(cell);
-  if (scene.simulation.empty()) {
+  StopSignal signal;  // before anything that takes time
+  const auto scene = scene_or_errors(read_cell(arguments.cell));
+  if (!scene) return kBadCell;
+  if (scene->simulation.empty()) {
     std::fprintf(stderr, "%s has no `simulation:` section: nothing says how its objects move\n",
                  arguments.cell.c_str());
     return kBadCell;
   }
-  return run_robot(scene, arguments);
+  return run_robot(*scene, arguments, signal);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  try {
-    return clearance::run(argc, argv);
-  } catch (const clearance::DdsError& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kDdsFailed;
-  } catch (const std::exception& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kFailed;
-  }
+  return clearance::run_program("clearance-robot", [=] { return clearance::run(argc, argv); });
 }

@@ -6,13 +6,11 @@
 #include <variant>
 #include <vector>
 
-#include "config/cell_file.hpp"
 #include "config/robot_cell.hpp"
+#include "monitor/daemon/program.hpp"
 
 namespace clearance {
 namespace {
-
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3 };
 
 constexpr const char* kFooter = R"(Exit status:
   0  the cell was written, and is a good one
@@ -32,12 +30,9 @@ bool add_package(const std::string& argument, RobotCellOptions& options) {
 }
 
 int check(const std::string& output) {
-  const CellResult result = read_cell(output);
-  if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
-    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-    return kBadCell;
-  }
-  std::printf("%s: %s\n", output.c_str(), summary(std::get<Scene>(result)).c_str());
+  const auto scene = scene_or_errors(read_cell(output));
+  if (!scene) return kBadCell;
+  std::printf("%s: %s\n", output.c_str(), summary(*scene).c_str());
   return kOk;
 }
 
@@ -68,6 +63,7 @@ int main(int argc, char** argv) {
   RobotCellOptions options;
   std::string output;
   std::vector<std::string> packages;
+  bool force = false;
   CLI::App app{
       "Makes the cell file of a robot from its URDF (collision shapes) and SRDF (disabled pairs)."};
   app.footer(kFooter);
@@ -90,15 +86,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--fixed-base", options.fixed_base,
                "The root link stands at the world's origin, and no pose arrives for it");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
-  }
+  add_force(app, force);
+  if (const auto done = parse(app, argc, argv)) return *done;
   for (const std::string& package : packages) {
     if (add_package(package, options)) continue;
     std::fprintf(stderr, "--package %s: expected NAME=DIRECTORY\n", package.c_str());
     return kUsage;
   }
+  if (!may_write("clearance-scene", output, force)) return kFailed;
   return run(std::move(options), output);
 }

@@ -1,12 +1,10 @@
 // clearance-watch: what the daemon says, live in a terminal.
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "config/cell_file.hpp"
 #include "monitor/daemon/dds_arguments.hpp"
 #include "monitor/daemon/log.hpp"
+#include "monitor/daemon/program.hpp"
 #include "monitor/daemon/seams.hpp"
 #include "monitor/daemon/stop_signal.hpp"
 #include "tools/watch/feed.hpp"
@@ -14,8 +12,6 @@
 
 namespace clearance {
 namespace {
-
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kDdsFailed = 4, kNothingCame = 5 };
 
 constexpr std::int64_t kFrameMs = 100;
 constexpr std::int64_t kPlainNs = 1'000'000'000;
@@ -106,18 +102,14 @@ int run_watch(const Arguments& arguments) {
            !signal.wait(kFrameMs));
   display.close();
   std::fputs(watch::final_summary(feed, seconds).c_str(), stdout);
-  return feed.any() ? kOk : kNothingCame;
+  return feed.any() ? kOk : kIncomplete;
 }
 
 int run(int argc, char** argv) {
   CLI::App app("Shows live how far apart the objects of a cell are, as clearanced publishes it.");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-watch", "error");
   return run_watch(arguments);
 }
@@ -126,13 +118,5 @@ int run(int argc, char** argv) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  try {
-    return clearance::run(argc, argv);
-  } catch (const clearance::DdsError& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kDdsFailed;
-  } catch (const std::exception& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kFailed;
-  }
+  return clearance::run_program("clearance-watch", [=] { return clearance::run(argc, argv); });
 }

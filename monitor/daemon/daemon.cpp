@@ -31,7 +31,7 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
 std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
                                           const DdsPoses& poses) {
   if (options.record_file.empty()) return nullptr;
-  return std::make_unique<Recording>(options.record_file, scene, poses);
+  return std::make_unique<Recording>(options.record_file, options.record_over, scene, poses);
 }
 
 }  // namespace

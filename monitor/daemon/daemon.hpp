@@ -25,6 +25,7 @@ struct DaemonOptions {
   std::uint64_t max_ticks = 0;  // 0: until a signal comes
   int fifo_priority = 0;  // of the tick thread; the threads around it get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
+  bool record_over = false;           // a file that is there already
   std::optional<int> cpu;             // that the tick thread is pinned to
 };
 

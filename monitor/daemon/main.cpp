@@ -1,25 +1,14 @@
 // clearanced: reads a cell, then publishes its distances at a fixed rate until it is told to stop.
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "config/cell_file.hpp"
 #include "monitor/daemon/daemon.hpp"
 #include "monitor/daemon/dds_arguments.hpp"
 #include "monitor/daemon/log.hpp"
+#include "monitor/daemon/program.hpp"
 
 namespace clearance {
 namespace {
-
-enum ExitCode : int {
-  kOk = 0,
-  kFailed = 1,
-  kUsage = 2,
-  kBadCell = 3,
-  kDdsFailed = 4,
-  kRecordFailed = 5
-};
 
 constexpr const char* kFooter = R"(Exit status:
   0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong
@@ -46,7 +35,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                "Only check the cell: print every error in it, or a summary");
   arguments.dds.add_to(app);
   app.add_option("--record", arguments.daemon.record_file,
-                 "Record inputs and reports to this new MCAP file");
+                 "Record inputs and reports to this MCAP file");
+  add_force(app, arguments.daemon.record_over);
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks");
   app.add_option(
          "--priority", arguments.daemon.fifo_priority,
@@ -58,19 +48,20 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-int check_only(const Scene& scene) {
-  std::printf("%s\n", summary(scene).c_str());
+int check_only(const std::string& cell) {
+  const auto scene = scene_or_errors(read_cell(cell));
+  if (!scene) return kBadCell;
+  std::printf("%s\n", summary(*scene).c_str());
   return kOk;
 }
 
-int run_daemon(const Scene& scene, Arguments& arguments) {
-  StopSignal signal;
+int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   arguments.daemon.dds = arguments.dds.resolve(scene.domain, scene.partition);
   route_dds_log();
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
   std::fputs(daemon.summary().c_str(), stdout);
-  return daemon.recording_complete() ? kOk : kRecordFailed;
+  return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
 int run(int argc, char** argv) {
@@ -78,37 +69,22 @@ int run(int argc, char** argv) {
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearanced", arguments.log_level);
 
-  const CellResult cell = read_cell(arguments.cell);
-  if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-    std::fprintf(stderr, "%zu error%s\n", errors->size(), errors->size() == 1 ? "" : "s");
-    return kBadCell;
+  if (arguments.check) return check_only(arguments.cell);
+  StopSignal signal;  // before anything that takes time
+  const auto scene = scene_or_errors(read_cell(arguments.cell));
+  if (!scene) return kBadCell;
+  if (!may_write("clearanced", arguments.daemon.record_file, arguments.daemon.record_over)) {
+    return kIncomplete;
   }
-  const Scene& scene = std::get<Scene>(cell);
-  return arguments.check ? check_only(scene) : run_daemon(scene, arguments);
+  return run_daemon(*scene, arguments, signal);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  try {
-    return clearance::run(argc, argv);
-  } catch (const clearance::DdsError& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kDdsFailed;
-  } catch (const clearance::RecordError& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kRecordFailed;
-  } catch (const std::exception& error) {
-    spdlog::critical("{}", error.what());
-    return clearance::kFailed;
-  }
+  return clearance::run_program("clearanced", [=] { return clearance::run(argc, argv); });
 }

@@ -28,12 +28,13 @@ ReportQueueOptions queue_options(const Scene& scene) {
 
 }  // namespace
 
-Recording::Recording(const std::filesystem::path& file, const Scene& scene, const DdsPoses& poses)
+Recording::Recording(const std::filesystem::path& file, bool over, const Scene& scene,
+                     const DdsPoses& poses)
     : scene_(scene),
       file_(file.string()),
       poses_(poses),
       queue_(scene, queue_options(scene)),
-      recorder_(file, scene, SystemClock().realtime_ns()) {
+      recorder_(file, scene, SystemClock().realtime_ns(), over) {
   if (!recorder_.ok()) throw RecordError("recording: " + recorder_.error());
   thread_ = std::thread([this] { run(); });
 }

@@ -23,8 +23,10 @@ class RecordError : public std::runtime_error {
 // finds the queue full is missing from the file, is counted, and makes complete() false.
 class Recording {
  public:
-  // Throws RecordError when the file cannot be made, or is there already.
-  Recording(const std::filesystem::path& file, const Scene& scene, const DdsPoses& poses);
+  // Throws RecordError when the file cannot be made, or is there already and not to be written
+  // over.
+  Recording(const std::filesystem::path& file, bool over, const Scene& scene,
+            const DdsPoses& poses);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;

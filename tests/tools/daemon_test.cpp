@@ -244,6 +244,7 @@ TEST(DaemonCommand, NeverOverwritesARecording) {
   ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path()},
                                                 test::dds_arguments(test::own_dds())));
   EXPECT_EQ(daemon.wait(), 5);
+  EXPECT_TRUE(daemon.wrote("is there already; --force writes over it")) << daemon.output();
   EXPECT_EQ(cell.scene().name, "small") << "the file is as it was";
 }
 

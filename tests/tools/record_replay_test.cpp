@@ -88,7 +88,7 @@ TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
   EXPECT_EQ(1 + 3 * 200, std::ranges::count(all, '\n'));
   EXPECT_THAT(all, HasSubstr(",hand,tool,"));
   EXPECT_THAT(all, HasSubstr(",carried,"));
-  ASSERT_EQ(0, replay({"--csv", path("all.csv"), "--evaluate-all"})) << output;
+  ASSERT_EQ(0, replay({"--csv", path("all.csv"), "--evaluate-all", "--force"})) << output;
   EXPECT_THAT(read_text(folder / "all.csv"), testing::Not(HasSubstr(",carried,")));
   ASSERT_EQ(0, replay({"--csv", path("some.csv"), "--published"})) << output;
   EXPECT_EQ(1 + 2 * 200, std::ranges::count(read_text(folder / "some.csv"), '\n'));
@@ -169,7 +169,7 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
   ASSERT_EQ(0, record_log());
   EXPECT_EQ(1, record_log());
-  EXPECT_THAT(output, HasSubstr("exists; --overwrite replaces it"));
+  EXPECT_THAT(output, HasSubstr("run.mcap is there already; --force writes over it"));
   write_text(folder / "cell.yaml", "nmae: x\n");
   EXPECT_EQ(3, replay({}));
   EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));
@@ -179,13 +179,25 @@ TEST_F(RecordReplay, NeverWritesOverTheFileThatItReads) {
   ASSERT_EQ(0, record_log()) << output;
   const std::string before = read_text(folder / "run.mcap");
   for (const char* option : {"-o", "--csv"}) {
-    EXPECT_EQ(2, replay({option, path("run.mcap")}));
-    EXPECT_THAT(output, HasSubstr("is the recording itself"));
+    EXPECT_EQ(2, replay({option, path("run.mcap"), "--force"}));
+    EXPECT_THAT(output, HasSubstr("is the file that is read; expected another one to write"));
     EXPECT_EQ(before, read_text(folder / "run.mcap"));
   }
   const std::string log = read_text(folder / "log.csv");
-  EXPECT_EQ(2, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("log.csv"), "--overwrite"}));
+  EXPECT_EQ(2, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("log.csv"), "--force"}));
   EXPECT_EQ(log, read_text(folder / "log.csv"));
+}
+
+TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {
+  ASSERT_EQ(0, record_log()) << output;
+  for (const char* option : {"-o", "--csv"}) {
+    write_text(folder / "old", "precious");
+    EXPECT_EQ(1, replay({option, path("old")}));
+    EXPECT_THAT(output, HasSubstr("old is there already; --force writes over it"));
+    EXPECT_EQ("precious", read_text(folder / "old"));
+    EXPECT_EQ(0, replay({option, path("old"), "--force"})) << output;
+    EXPECT_NE("precious", read_text(folder / "old"));
+  }
 }
 
 TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {

@@ -47,6 +47,15 @@ TEST_F(SceneProgram, WritesACellThatIsGood) {
   EXPECT_TRUE(std::filesystem::exists(file("cell.yaml")));
 }
 
+TEST_F(SceneProgram, WritesOverAFileOnlyWhenForced) {
+  std::ofstream(file("cell.yaml")) << "precious";
+  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml")}), 1);
+  EXPECT_NE(output_.find("is there already; --force writes over it"), std::string::npos) << output_;
+  EXPECT_EQ(std::filesystem::file_size(file("cell.yaml")), 8u);
+  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--force"}), 0)
+      << output_;
+}
+
 TEST_F(SceneProgram, ACellThatIsNoGoodIsWrittenAndExplained) {
   std::ofstream(directory_ / "alone.urdf")
       << "<robot name=\"alone\"><link name=\"a\"><collision><geometry><sphere "

@@ -5,23 +5,23 @@
 
 #include "config/scene.hpp"
 #include "monitor/daemon/dds_arguments.hpp"
+#include "monitor/daemon/stop_signal.hpp"
 
 namespace clearance {
-
-enum ExitCode : int { kOk = 0, kFailed = 1, kUsage = 2, kBadCell = 3, kDdsFailed = 4 };
 
 struct RecordArguments {
   std::string out;
   std::string cell;      // empty: none
   std::string from_csv;  // empty: record from DDS
   double seconds = 0.0;  // 0: until stopped
-  bool overwrite = false;
+  bool force = false;
   DdsArguments dds;
 };
 
 // tools/record/from_csv.cpp, tools/record/subscribe.cpp. The exit code. `scene`: the cell; null:
 // none given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene);
-[[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene);
+[[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene,
+                                  StopSignal& stop);
 
 }  // namespace clearance

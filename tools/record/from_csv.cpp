@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include "monitor/daemon/program.hpp"
 #include "monitor/record/csv_poses.hpp"
 #include "tools/record/arguments.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "monitor/daemon/dds.hpp"
-#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/daemon/program.hpp"
 #include "monitor/record/recording_writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
@@ -144,8 +144,7 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
 
 }  // namespace
 
-int record_from_dds(const RecordArguments& arguments, const Scene* scene) {
-  StopSignal stop;
+int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
   Participant participant(scene == nullptr
                               ? arguments.dds.resolve(0, "")
                               : arguments.dds.resolve(scene->domain, scene->partition));

@@ -9,15 +9,6 @@
 
 namespace clearance {
 
-enum ExitCode : int {
-  kOk = 0,
-  kFailed = 1,
-  kUsage = 2,
-  kBadCell = 3,
-  kDdsFailed = 4,
-  kDamaged = 5
-};
-
 struct ReplayArguments {
   std::string recording;
   double start_s = 0.0;
@@ -36,6 +27,7 @@ struct ReplayArguments {
   std::string cell;  // empty: the one in the recording
   std::string out;
   std::string csv;
+  bool force = false;
   bool published = false;
   bool evaluate_all = false;
   bool compare = false;

@@ -1,10 +1,8 @@
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
-#include <system_error>
 
-#include "config/cell_file.hpp"
+#include "monitor/daemon/program.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/record/offline_replay.hpp"
 #include "monitor/record/recording_reader.hpp"
@@ -17,11 +15,6 @@ namespace clearance {
 namespace {
 
 void say(const std::string& text) { std::fprintf(stderr, "clearance-replay: %s\n", text.c_str()); }
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code neither_is_there;
-  return std::filesystem::equivalent(a, b, neither_is_there);
-}
 
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
@@ -112,26 +105,25 @@ int replay_in(Scene& scene, const ReplayArguments& arguments) {
     written = false;
   }
   if (!replay.ok() || !written) return kFailed;
-  return replay.damage.empty() ? kOk : kDamaged;
+  return replay.damage.empty() ? kOk : kIncomplete;
 }
 
 }  // namespace
 
 int replay_without_dds(const ReplayArguments& arguments) {
   for (const std::string& output : {arguments.out, arguments.csv}) {
-    if (!same_file(output, arguments.recording)) continue;
-    say(output + " is the recording itself: it would be destroyed; give another file to write");
-    return kUsage;
+    if (!spares_input("clearance-replay", output, arguments.recording)) return kUsage;
+    if (!may_write("clearance-replay", output, arguments.force)) return kFailed;
   }
   std::optional<CellResult> cell = find_cell(arguments);
   if (!cell) return kFailed;
-  if (const auto* errors = std::get_if<std::vector<CellError>>(&*cell)) {
-    for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
+  std::optional<Scene> scene = scene_or_errors(std::move(*cell));
+  if (!scene) {
     if (arguments.cell.empty())
       say("this is the cell kept in the recording; --cell takes the file");
     return kBadCell;
   }
-  return replay_in(std::get<Scene>(*cell), arguments);
+  return replay_in(*scene, arguments);
 }
 
 }  // namespace clearance

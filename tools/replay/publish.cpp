@@ -5,8 +5,8 @@
 #include <map>
 #include <variant>
 
-#include "config/cell_file.hpp"
 #include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/program.hpp"
 #include "monitor/daemon/realtime.hpp"
 #include "monitor/daemon/stop_signal.hpp"
 #include "monitor/record/recording_reader.hpp"
@@ -245,7 +245,7 @@ int Publishing::finish(const RecordingReader& reader) {
   }
   if (!reader.error().empty()) {
     std::fprintf(stderr, "clearance-replay: %s\n", reader.error().c_str());
-    return reader.readable() ? kDamaged : kFailed;
+    return reader.readable() ? kIncomplete : kFailed;
   }
   return kOk;
 }
@@ -253,6 +253,7 @@ int Publishing::finish(const RecordingReader& reader) {
 }  // namespace
 
 int replay_over_dds(const ReplayArguments& arguments) {
+  StopSignal stop;  // before anything that takes time
   const RecordingOutline found = outline(arguments.recording);
   if (!found.error.empty()) {
     std::fprintf(stderr, "clearance-replay: %s\n", found.error.c_str());
@@ -260,15 +261,10 @@ int replay_over_dds(const ReplayArguments& arguments) {
   }
   DdsOptions dds = arguments.dds.resolve(0, "");
   if (!arguments.cell.empty()) {
-    const CellResult cell = read_cell(arguments.cell);
-    if (const auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-      for (const CellError& error : *errors) std::fprintf(stderr, "%s\n", error.text.c_str());
-      return kBadCell;
-    }
-    const Scene& scene = std::get<Scene>(cell);
-    dds = arguments.dds.resolve(scene.domain, scene.partition);
+    const auto scene = scene_or_errors(read_cell(arguments.cell));
+    if (!scene) return kBadCell;
+    dds = arguments.dds.resolve(scene->domain, scene->partition);
   }
-  StopSignal stop;
   use_precise_timers();
   return Publishing(arguments, dds, found.first_ns, stop).run();
 }

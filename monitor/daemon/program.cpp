@@ -1,0 +1,72 @@
+#include "monitor/daemon/program.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <system_error>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "monitor/daemon/dds.hpp"
+#include "monitor/daemon/recording.hpp"
+
+namespace clearance {
+namespace {
+
+int last_words(const char* name, const std::exception& error, ExitCode code) {
+  std::fprintf(stderr, "%s: %s\n", name, error.what());
+  return code;
+}
+
+}  // namespace
+
+int run_program(const char* name, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const DdsError& error) {
+    return last_words(name, error, kDdsFailed);
+  } catch (const RecordError& error) {
+    return last_words(name, error, kIncomplete);
+  } catch (const std::exception& error) {
+    return last_words(name, error, kFailed);
+  }
+}
+
+std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  return std::nullopt;
+}
+
+std::optional<Scene> scene_or_errors(CellResult cell) {
+  if (Scene* const scene = std::get_if<Scene>(&cell)) return std::move(*scene);
+  const auto& errors = std::get<std::vector<CellError>>(cell);
+  for (const CellError& error : errors) std::fprintf(stderr, "%s\n", error.text.c_str());
+  std::fprintf(stderr, "%zu error%s\n", errors.size(), errors.size() == 1 ? "" : "s");
+  return std::nullopt;
+}
+
+bool spares_input(const char* program, const std::filesystem::path& output,
+                  const std::filesystem::path& input) {
+  std::error_code not_there;
+  if (!std::filesystem::equivalent(output, input, not_there)) return true;
+  std::fprintf(stderr, "%s: %s is the file that is read; expected another one to write\n", program,
+               output.c_str());
+  return false;
+}
+
+void add_force(CLI::App& app, bool& force) {
+  app.add_flag("--force", force, "Write over files that are there already");
+}
+
+bool may_write(const char* program, const std::filesystem::path& file, bool force) {
+  std::error_code unknown;
+  if (force || file.empty() || !std::filesystem::exists(file, unknown)) return true;
+  std::fprintf(stderr, "%s: %s is there already; --force writes over it\n", program, file.c_str());
+  return false;
+}
+
+}  // namespace clearance

@@ -1,0 +1,44 @@
+// What every program does in the same way: its exit status, its command line, the cell that it
+// reads, the files that it writes, and its last words.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "config/cell_file.hpp"
+
+namespace clearance {
+
+enum ExitCode : int {
+  kOk = 0,
+  kFailed = 1,
+  kUsage = 2,
+  kBadCell = 3,
+  kDdsFailed = 4,
+  kIncomplete = 5,  // what was to be recorded, read or heard is not all there: --help says more
+};
+
+// Calls `body` and returns its exit code; what it throws goes to stderr as "NAME: what".
+[[nodiscard]] int run_program(const char* name, const std::function<int()>& body);
+
+// The exit code when there is nothing more to do: --help, or wrong usage.
+[[nodiscard]] std::optional<int> parse(CLI::App& app, int argc, char** argv);
+
+// The scene, or nothing after every error in the cell has gone to stderr, a line each.
+[[nodiscard]] std::optional<Scene> scene_or_errors(CellResult cell);
+
+// False, after saying so on stderr, when `output` is the file that is read: it would be destroyed.
+[[nodiscard]] bool spares_input(const char* program, const std::filesystem::path& output,
+                                const std::filesystem::path& input);
+
+// "--force", without which no program writes over a file.
+void add_force(CLI::App& app, bool& force);
+
+// False, after saying so on stderr, when the file is there and `force` is not given. An empty name
+// is no file.
+[[nodiscard]] bool may_write(const char* program, const std::filesystem::path& file, bool force);
+
+}  // namespace clearance
