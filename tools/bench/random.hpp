@@ -1,18 +1,17 @@
-// SplitMix64 (Steele, Lea, Flood 2014): the same numbers with every standard library.
+// Seeded directions and rotations.
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
+#include "config/seeded_draw.hpp"
 #include "core/vec.hpp"
 
 namespace clearance::bench {
 
-class Random {
+class Random : public SeededDraw {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * unit(); }
+  using SeededDraw::SeededDraw;
   Vec3 direction() {
     const double z = uniform(-1.0, 1.0), angle = uniform(0.0, 2.0 * std::numbers::pi);
     const double r = std::sqrt(1.0 - z * z);
@@ -22,15 +21,6 @@ class Random {
     const double angle = uniform(0.0, 2.0 * std::numbers::pi);
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle, direction()));
   }
-
- private:
-  double unit() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-  std::uint64_t state_;
 };
 
 }  // namespace clearance::bench

@@ -1,0 +1,67 @@
+#include "config/warehouse_cell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <variant>
+#include <vector>
+
+#include "config/cell_file.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance {
+namespace {
+
+Scene scene_of(const WarehouseOptions& options) {
+  CellResult result = parse_cell(warehouse_cell(options), "warehouse.yaml");
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
+    ADD_FAILURE() << options.objects << " objects: " << errors->front().text;
+    return {};
+  }
+  return std::get<Scene>(std::move(result));
+}
+
+TEST(WarehouseCell, HasAsManyObjectsAsAskedForAndIsAGoodCell) {
+  for (const std::uint32_t objects : {kLeastWarehouse, 61u, 127u, 300u, 1000u}) {
+    const Scene scene = scene_of({.objects = objects});
+    EXPECT_EQ(scene.objects.size(), objects);
+    std::vector<PoseAt> poses;
+    poses_at(scene, 0.0, poses);
+    std::size_t moving = 0;
+    for (const Object& object : scene.objects) moving += !object.fixed;
+    EXPECT_EQ(poses.size(), moving) << "whatever moves is in the simulation, once";
+  }
+}
+
+TEST(WarehouseCell, IsTheSameForTheSameSeedOnly) {
+  EXPECT_EQ(warehouse_cell({.objects = 200, .seed = 7}),
+            warehouse_cell({.objects = 200, .seed = 7}));
+  EXPECT_NE(warehouse_cell({.objects = 200, .seed = 7}),
+            warehouse_cell({.objects = 200, .seed = 8}));
+}
+
+TEST(WarehouseCell, NothingTouches) {
+  for (const std::uint32_t objects : {100u, 400u}) {
+    Scene scene = scene_of({.objects = objects});
+    scene.budget = 1'000'000;  // everything, in every tick
+    Monitor monitor(scene);
+    std::vector<PoseAt> poses;
+    std::vector<PoseSample> samples;
+    for (int step = 0; step < 300; ++step) {
+      const std::int64_t now = 1'000'000'000 + 100'000'000 * static_cast<std::int64_t>(step);
+      poses_at(scene, 0.1 * step, poses);
+      samples.clear();
+      for (const PoseAt& at : poses) {
+        samples.push_back({at.object, now, at.world_from_object, at.twist, true});
+      }
+      const Report& report = monitor.tick(samples, now);
+      ASSERT_TRUE(report.minimum_proved);
+      ASSERT_GT(report.minimum.lower, 0.01)
+          << objects << " objects, " << 0.1 * step
+          << " s: " << scene.objects[scene.pairs[report.minimum.pair].first].name << " and "
+          << scene.objects[scene.pairs[report.minimum.pair].second].name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance
