@@ -7,9 +7,6 @@
 namespace clearance {
 namespace {
 
-// As for parts: normalising, rotating and shifting one point in doubles.
-constexpr double kPlacingError = 0x1p-47;
-
 // A part's ball in its object's frame.
 Ball in_object(const PlacedPart& part) noexcept {
   const Vec3& centre = part.ball_in_part.centre;

@@ -7,12 +7,6 @@
 namespace clearance {
 namespace {
 
-// A rotated and shifted point in doubles: normalising the quaternion leaves it within 2^-51, the
-// nine entries of its matrix within 2^-49 of the exact matrix, and the product and sum add three
-// roundings of numbers no larger than |position| + |point|. The same covers the product of two unit
-// quaternions.
-constexpr double kPlacingError = 0x1p-47;
-
 bool is_identity(const Eigen::Quaterniond& q) noexcept {
   return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
 }

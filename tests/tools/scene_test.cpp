@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -71,8 +72,56 @@ TEST_F(SceneProgram, WhatCannotBeReadOrWrittenEndsWithOne) {
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("nowhere/cell.yaml")}), 1);
 }
 
+TEST_F(SceneProgram, WritesAWarehouseOfAsManyObjectsAsAskedFor) {
+  EXPECT_EQ(run({"--warehouse", "61", "-o", file("warehouse.yaml")}), 0) << output_;
+  EXPECT_NE(output_.find("warehouse_61: 61 objects (12 moving, 49 fixed)"), std::string::npos)
+      << output_;
+}
+
+// A cell of a block of two parts, 1 m apart, and a floor.
+constexpr const char* kTwoParts = R"(name: two_parts
+units: {length: m, angle: rad}
+objects:
+  - name: block
+    parts:
+      - box: {size: [1, 1, 1]}
+      - {box: {size: [1, 1, 1]}, pose: {xyz: [2, 0, 0]}}
+  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: -5}}
+pairs: [{between: [block, floor]}]
+)";
+
+TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
+  std::ofstream(directory_ / "cell.yaml") << kTwoParts;
+  ASSERT_EQ(run({"--report", file("cell.yaml"), "--json"}), 0) << output_;
+  const auto objects = nlohmann::json::parse(output_);
+  ASSERT_EQ(objects.size(), 2u);
+  const auto& block = objects[0];
+  EXPECT_EQ(block["object"], "block");
+  EXPECT_EQ(block["full"]["parts"], 2);
+  EXPECT_EQ(block["full"]["facets"], 12);
+  EXPECT_EQ(block["hull"]["facets"], 6);
+  EXPECT_GE(block["hull"]["error"], 0.5);  // halfway between the two
+  EXPECT_LE(block["hull"]["error"], 0.5 / 0.98);
+  EXPECT_GE(block["ball"]["radius"], 1.5);
+  EXPECT_FALSE(objects[1].contains("ball"));
+  EXPECT_FALSE(objects[1].contains("hull"));
+
+  ASSERT_EQ(run({"--report", file("cell.yaml")}), 0) << output_;
+  EXPECT_NE(output_.find("block "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("2 objects, 1 with a hull"), std::string::npos) << output_;
+}
+
+TEST_F(SceneProgram, ReportsTheErrorsOfACellThatIsNoGood) {
+  std::ofstream(directory_ / "cell.yaml") << "name: empty\n";
+  EXPECT_EQ(run({"--report", file("cell.yaml")}), 3);
+  EXPECT_NE(output_.find("cell.yaml:"), std::string::npos) << output_;
+}
+
 TEST_F(SceneProgram, WrongUsageEndsWithTwo) {
   EXPECT_EQ(run({}), 2);
+  EXPECT_EQ(run({"--warehouse", "100"}), 2);
+  EXPECT_EQ(run({"--warehouse", "10", "-o", file("cell.yaml")}), 2);
+  EXPECT_EQ(run({"--report", "x.yaml", "--warehouse", "100"}), 2);
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--package", "x"}), 2);
 }
 

@@ -1,0 +1,25 @@
+// The reduced model of an object of several parts: one convex polyhedron around all of them.
+//
+// Between the ball, which tells least and costs least, and the parts, every one of which has to be
+// asked about. An object of one part has none: asking that part costs about the same however many
+// facets it has (monitor/README.md).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "core/enclosing_polyhedron.hpp"
+
+namespace clearance {
+
+using EnclosingHull = std::shared_ptr<const ConvexPolyhedron>;
+
+// The object's parts in its frame. The object must stay where it is.
+[[nodiscard]] std::vector<PlacedShape> shapes_of(const Object& object);
+
+// One an object, in its frame; null for an object of one part, or with an unbounded one. Objects
+// of the same parts share theirs.
+[[nodiscard]] std::vector<EnclosingHull> enclosing_hulls(const Scene& scene);
+
+}  // namespace clearance

@@ -1,0 +1,170 @@
+#include "tools/scene/model_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/enclosing_polyhedron.hpp"
+#include "monitor/enclosing_ball.hpp"
+#include "monitor/enclosing_hull.hpp"
+
+namespace clearance {
+namespace {
+
+struct Size {
+  std::size_t facets = 0, vertices = 0, bytes = 0;
+};
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& values) {
+  return values.size() * sizeof(T);
+}
+
+Size size_of(const ConvexPolyhedron& p) {
+  const std::size_t tables = bytes_of(p.facets) + bytes_of(p.edges) + bytes_of(p.vertices) +
+                             bytes_of(p.facet_edges) + bytes_of(p.vertex_edges) +
+                             bytes_of(p.anchors) + bytes_of(p.rays) + bytes_of(p.outgoing) +
+                             bytes_of(p.facet_sides);
+  return {p.facets.size(), p.vertices.size(), sizeof p + tables};
+}
+
+struct Hull {
+  Size size;
+  double error = 0.0;  // m
+};
+
+struct Models {
+  const Object* object = nullptr;
+  double ball_radius = kInfinity, ball_error = kInfinity;  // m
+  std::optional<Hull> hull;
+  Size full;
+  double full_error = 0.0;  // rounding of its numbers, m
+};
+
+// Objects of the same parts share their hull, and its error.
+class Judge {
+ public:
+  explicit Judge(const Scene& scene)
+      : hulls_(enclosing_hulls(scene)),
+        balls_(enclosing_balls(scene.objects.size(), parts_of(scene))) {}
+
+  Models models(const Scene& scene, std::size_t i) {
+    const Object& object = scene.objects[i];
+    Models all;
+    all.object = &object;
+    const std::vector<PlacedShape> shapes = shapes_of(object);
+    const Ball& ball = balls_[i].in_object;
+    if (ball.radius < kInfinity) {
+      all.ball_radius = ball.radius;
+      all.ball_error = excess_of_ball(ball.centre, ball.radius, shapes);
+    }
+    if (hulls_[i]) all.hull = {size_of(*hulls_[i]), hull_error(i, shapes)};
+    for (const Part& part : object.parts) {
+      const Size size = size_of(part.shape);
+      all.full.facets += size.facets;
+      all.full.vertices += size.vertices;
+      all.full.bytes += size.bytes;
+      all.full_error = std::max(all.full_error, part.shape.position_error);
+    }
+    return all;
+  }
+
+ private:
+  double hull_error(std::size_t i, const std::vector<PlacedShape>& shapes) {
+    for (const auto& [hull, error] : errors_) {
+      if (hull == hulls_[i].get()) return error;
+    }
+    errors_.emplace_back(hulls_[i].get(), excess(*hulls_[i], shapes));
+    return errors_.back().second;
+  }
+
+  std::vector<EnclosingHull> hulls_;
+  std::vector<EnclosingBall> balls_;
+  std::vector<std::pair<const ConvexPolyhedron*, double>> errors_;
+};
+
+std::vector<Models> all_models(const Scene& scene) {
+  Judge judge(scene);
+  std::vector<Models> all;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) all.push_back(judge.models(scene, i));
+  return all;
+}
+
+std::string kib(std::size_t bytes) {
+  return fmt::format("{:.1f}", static_cast<double>(bytes) / 1024.0);
+}
+
+// Upwards: what is printed is still a bound.
+std::string metres(double length) {
+  return length < kInfinity ? fmt::format("{:.4f}", 1e-4 * std::ceil(1e4 * length))
+                            : std::string("-");
+}
+
+std::string line(const Models& m, std::size_t width) {
+  std::string hull = fmt::format("{:>6} {:>6} {:>8} {:>6}", "-", "-", "-", "-");
+  if (m.hull) {
+    hull = fmt::format("{:>6} {:>6} {:>8} {:>6}", m.hull->size.facets, m.hull->size.vertices,
+                       metres(m.hull->error), kib(m.hull->size.bytes));
+  }
+  return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>8.1e} {:>6}\n",
+                     m.object->name, width, metres(m.ball_radius), metres(m.ball_error), hull,
+                     m.object->parts.size(), m.full.facets, m.full.vertices, m.full_error,
+                     kib(m.full.bytes));
+}
+
+}  // namespace
+
+std::string model_table(const Scene& scene) {
+  std::size_t width = 6;
+  for (const Object& object : scene.objects) width = std::max(width, object.name.size());
+  std::string text =
+      fmt::format("{:<{}} | {:^17} | {:^29} | {:^35}\n", "", width, "ball", "hull", "full") +
+      fmt::format(
+          "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>8} {:>6}\n",
+          "object", width, "radius m", "error m", "facets", "verts", "error m", "KiB", "parts",
+          "facets", "verts", "error m", "KiB");
+  std::size_t hull_bytes = 0, full_bytes = 0, hulls = 0;
+  for (const Models& m : all_models(scene)) {
+    text += line(m, width);
+    full_bytes += m.full.bytes;
+    if (!m.hull) continue;
+    ++hulls;
+    hull_bytes += m.hull->size.bytes;
+  }
+  return text + fmt::format(
+                    "{} objects, {} with a hull: {} KiB if none were shared, beside {} KiB of full "
+                    "models\n"
+                    "error: no point of a model is farther than this from the object's nearest "
+                    "part; of full ones, the rounding of their numbers\n"
+                    "-: unbounded, or one part, which is asked at once\n",
+                    scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
+}
+
+std::string model_json(const Scene& scene) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  const auto size = [](const Size& s) {
+    return nlohmann::ordered_json{
+        {"facets", s.facets}, {"vertices", s.vertices}, {"bytes", s.bytes}};
+  };
+  for (const Models& m : all_models(scene)) {
+    nlohmann::ordered_json object{{"object", m.object->name}};
+    if (m.ball_radius < kInfinity) {
+      object["ball"] = {{"radius", m.ball_radius}, {"error", m.ball_error}};
+    }
+    if (m.hull) {
+      object["hull"] = size(m.hull->size);
+      object["hull"]["error"] = m.hull->error;
+    }
+    object["full"] = size(m.full);
+    object["full"]["parts"] = m.object->parts.size();
+    object["full"]["error"] = m.full_error;
+    all.push_back(std::move(object));
+  }
+  return all.dump(1) + "\n";
+}
+
+}  // namespace clearance
