@@ -25,9 +25,10 @@ double share_of_a(double usual_a, double usual_b) noexcept {
 }  // namespace
 
 BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
-                       std::size_t most_woken)
+                       std::span<const std::uint32_t> left_out, std::size_t most_woken)
     : most_woken_(most_woken),
       bodies_(scene.objects.size()),
+      left_out_(scene.pairs.size(), 0),
       levels_(std::move(levels)),
       first_pair_(scene.objects.size() + 1, 0),
       pairs_(2 * scene.pairs.size()),
@@ -37,6 +38,7 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
     bodies_[i].ball = balls[i];
     bodies_[i].fixed = scene.objects[i].fixed;
   }
+  for (const std::uint32_t pair : left_out) left_out_[pair] = 1;
   object_a_.reserve(scene.pairs.size());
   object_b_.reserve(scene.pairs.size());
   for (const ObjectPair& pair : scene.pairs) {
@@ -50,6 +52,7 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     pairs_[next[object_a_[p]]++] = p;
     pairs_[next[object_b_[p]]++] = p;
+    if (!left_out_[p]) bodies_[object_a_[p]].idle = bodies_[object_b_[p]].idle = false;
   }
   woken_.reserve(scene.pairs.size());
   arrived_.reserve(bodies_.size());
@@ -61,13 +64,11 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table
     const ObjectState& object = objects[i];
     if (!object.seen) continue;
     Body& body = bodies_[i];
-    if (object.moved || !body.arrival.here()) body.ball_in_world = placed(body.ball, object.pose);
-    if (!body.arrival.here()) arrive(i);
-    double by = object.travel;
-    if (!(by < kInfinity)) {
-      jump(i, table);
-      by = 0.0;
-    }
+    if (!(object.travel < kInfinity)) jump(i, table);
+    if (body.idle) continue;
+    if (object.moved) body.placed = false;
+    if (!body.arrival.here()) arrive(i, object);
+    double by = object.travel < kInfinity ? object.travel : 0.0;
     body.usual_travel += 0.125 * (by - body.usual_travel);
     if (object.may_have_moved < kInfinity) {
       by += std::max(0.0, object.may_have_moved - body.may_have_moved);
@@ -81,7 +82,8 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table
   meet_arrivals();
 }
 
-void BroadPhase::arrive(std::uint32_t object) noexcept {
+void BroadPhase::arrive(std::uint32_t object, const ObjectState& state) noexcept {
+  bodies_[object].pose = &state.pose;
   bodies_[object].arrival.rank = static_cast<std::uint32_t>(arrived_.size());
   arrived_.push_back(object);
 }
@@ -107,6 +109,7 @@ void BroadPhase::meet_arrivals() noexcept {
     for (; met_pairs_ < pairs.size(); ++met_pairs_) {
       if (woken_.size() >= most_woken_) return;
       const std::uint32_t pair = pairs[met_pairs_];
+      if (left_out_[pair]) continue;
       const std::uint32_t other = object_a_[pair] == object ? object_b_[pair] : object_a_[pair];
       if (bodies_[other].arrival.rank < bodies_[object].arrival.rank) woken_.push_back(pair);
     }
@@ -150,9 +153,15 @@ bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
   return false;
 }
 
-RowBounds BroadPhase::by_balls(std::uint32_t pair) const noexcept {
-  const Ball& a = bodies_[object_a_[pair]].ball_in_world;
-  const Ball& b = bodies_[object_b_[pair]].ball_in_world;
+const Ball& BroadPhase::ball_of(Body& body) noexcept {
+  if (!body.placed) body.ball_in_world = placed(body.ball, *body.pose);
+  body.placed = true;
+  return body.ball_in_world;
+}
+
+RowBounds BroadPhase::by_balls(std::uint32_t pair) noexcept {
+  const Ball& a = ball_of(bodies_[object_a_[pair]]);
+  const Ball& b = ball_of(bodies_[object_b_[pair]]);
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 

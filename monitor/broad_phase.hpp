@@ -23,12 +23,14 @@ class BroadPhase {
     std::vector<double> zones;   // by pair, m: awake where it may be nearer; -infinity: no zone
     std::vector<double> urgent;  // by object, m: awake where nearer than this of both together
   };
-  // `most_woken`: pairs that may be woken a tick; the others wait, and pending() says so.
+  // `left_out`: pairs that somebody looks at anyway, in ascending order. `most_woken`: pairs that
+  // may be woken a tick; the others wait, and pending() says so.
   BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
-             std::size_t most_woken);
+             std::span<const std::uint32_t> left_out, std::size_t most_woken);
 
   // Takes in how the objects have moved. Pairs whose slack may be used up, whose objects were seen
-  // for the first time or have jumped, are in woken() afterwards.
+  // for the first time or have jumped, are in woken() afterwards. `objects` stay where they are
+  // until the next tick. Bounds of pairs whose objects have jumped are forgotten.
   void begin(const std::vector<ObjectState>& objects, PairTable& table) noexcept;
 
   // Woken and not decided about; in this tick's order.
@@ -40,7 +42,7 @@ class BroadPhase {
   bool sleep(std::uint32_t pair, double lower) noexcept;
 
   // The pair's distance as far as the enclosing balls tell, for the poses in use, m.
-  [[nodiscard]] RowBounds by_balls(std::uint32_t pair) const noexcept;
+  [[nodiscard]] RowBounds by_balls(std::uint32_t pair) noexcept;
 
   [[nodiscard]] double horizon() const noexcept { return horizon_; }
   // Lowering is free; raising wakes the pairs that it overtakes. m; -infinity: not set.
@@ -58,24 +60,29 @@ class BroadPhase {
   };
   struct Body {
     EnclosingBall ball;
-    Ball ball_in_world;
+    Ball ball_in_world;  // while `placed`
+    const Pose* pose = nullptr;
+    bool placed = false;
     bool fixed = false;
+    bool idle = true;             // all its pairs are left out
     double may_have_moved = 0.0;  // as of the last tick in which that was known, m
     double usual_travel = 0.0;    // m a tick, smoothed: divides the slack, proves nothing
     Arrival arrival;
   };
 
-  void arrive(std::uint32_t object) noexcept;
+  void arrive(std::uint32_t object, const ObjectState& state) noexcept;
   void jump(std::uint32_t object, PairTable& table) noexcept;
   void meet_arrivals() noexcept;
   void take_due() noexcept;
   [[nodiscard]] bool everyone_arrived() const noexcept { return met_ == arrived_.size(); }
   [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept;
   void wake(std::uint32_t pair) noexcept;
+  [[nodiscard]] const Ball& ball_of(Body& body) noexcept;
 
   const std::size_t most_woken_;
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> object_a_, object_b_;  // by pair
+  std::vector<std::uint8_t> left_out_;              // by pair
   Levels levels_;
   std::vector<std::uint32_t> first_pair_, pairs_;  // pairs by object
   WakeWheels wheels_;

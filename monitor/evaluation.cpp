@@ -16,12 +16,18 @@ void tighten(const DistanceResult& found, double placing_error, double& lower,
   upper = std::min(upper, exact ? found.upper : rounded_up(found.upper + placing_error));
 }
 
-void query(std::uint32_t row, Evaluation& evaluation) noexcept {
+DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
-  const DistanceResult found = distance(
-      *a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), table.tracking[row]);
+  return distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part),
+                  table.tracking[row]);
+}
+
+void take_in(const DistanceResult& found, std::uint32_t row, Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  const PlacedPart& a = evaluation.parts[table.part_a[row]];
+  const PlacedPart& b = evaluation.parts[table.part_b[row]];
   tighten(found, placing_error(a, b), table.lower[row], table.upper[row]);
 
   const Mat3& turn = a.world_from_part_rotation;
@@ -35,6 +41,31 @@ void query(std::uint32_t row, Evaluation& evaluation) noexcept {
   --evaluation.queries_left;
 }
 
+void query(std::uint32_t row, Evaluation& evaluation) noexcept {
+  take_in(ask(row, evaluation), row, evaluation);
+}
+
+void carry(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
+}
+
+// Nothing to choose between, and what was known before adds nothing to a tight answer.
+void evaluate_only_row(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  const std::uint32_t row = table.first_row[pair];
+  const DistanceResult found = ask(row, evaluation);
+  if (found.status == DistanceStatus::kConverged) {
+    table.lower[row] = -kInfinity;
+    table.upper[row] = kInfinity;
+    note_carried(pair, evaluation.objects, evaluation.cycle, table);
+  } else {
+    carry(pair, evaluation);
+  }
+  take_in(found, row, evaluation);
+  table.least_lower[pair] = table.lower[row];
+  table.evaluated_cycle[pair] = evaluation.cycle;
+}
+
 std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noexcept {
   const auto first = table.lower.begin() + table.first_row[pair];
   const auto end = table.lower.begin() + table.first_row[pair + 1];
@@ -46,6 +77,11 @@ std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noe
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   if (evaluation.queries_left == 0) return;
+  if (table.first_row[pair + 1] - table.first_row[pair] == 1) {
+    evaluate_only_row(pair, evaluation);
+    return;
+  }
+  carry(pair, evaluation);
   const std::uint32_t likely = row_of_least_lower(pair, table);
   query(likely, evaluation);
   double smallest_upper = table.upper[likely];

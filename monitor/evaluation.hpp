@@ -10,15 +10,17 @@ namespace clearance {
 
 // What the queries of one tick work on, and how many are left of its budget.
 struct Evaluation {
+  const std::vector<ObjectState>& objects;
   const std::vector<PlacedPart>& parts;
   const std::uint64_t cycle;
   PairTable& table;
   std::uint32_t queries_left;
 };
 
-// Evaluates an object pair as far as the budget goes: the row that may be closest, then every other
-// one that may be closer still. Rows whose carried bounds prove that they are not are left as they
-// are: the pair's distance does not depend on them.
+// Brings an object pair up to date and evaluates it as far as the budget goes: the row that may be
+// closest, then every other one that may be closer still. Rows whose carried bounds prove that they
+// are not are left as they are: the pair's distance does not depend on them. Both objects are
+// known.
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept;
 
 }  // namespace clearance

@@ -24,6 +24,7 @@ struct Monitor::State {
   PairTable table;
   Triage triage;
   ZoneRound zones;
+  ClosestPair closest;  // of this tick
   Report report;
 
   explicit State(const Scene& the_scene);
@@ -32,8 +33,10 @@ struct Monitor::State {
   void take_in(std::span<const PoseSample> samples) noexcept;
   void move() noexcept;
   void report_inputs() noexcept;
-  void report_counts() noexcept;
   void report_pairs() noexcept;
+  void report_counts() noexcept;
+  void report_whole() noexcept;
+  void count_in(std::uint32_t pair, const PairSummary& state) noexcept;
 
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
@@ -54,8 +57,9 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   // parts    -> table: every bound true for these poses, or provably not worth a look
   s.report.queries = s.triage.evaluate_due(s.objects, s.parts, s.report.cycle, s.table);
   s.report_inputs();  // table    -> report
-  s.report_counts();
   s.report_pairs();
+  s.report_counts();
+  s.report_whole();
   return s.report;
 }
 
@@ -151,29 +155,35 @@ void Monitor::State::report_counts() noexcept {
   const auto fresh = static_cast<std::uint32_t>(triage.counts().fresh());
   report.unknown = report.pairs_total - known;
   report.stale = known - fresh;
-  report.evaluated = 0;
-  for (const std::uint32_t pair : triage.evaluated()) {
-    report.evaluated += is_evaluated(summary(pair).status);
-  }
   report.carried = fresh - report.evaluated;
-  const bool all_evaluated = triage.evaluated().size() == known;
+  const bool all_evaluated = triage.evaluated() == known;
   report.oldest_evaluation_cycles = all_evaluated ? 0 : report.cycle - triage.oldest_evaluation();
-  std::size_t published = 0;
-  for (const std::uint32_t pair : triage.published()) {
-    report.pairs[published++] = report_pair(pair);
+}
+
+// Every pair that was looked at is summed up once.
+void Monitor::State::report_pairs() noexcept {
+  closest = {};
+  report.evaluated = 0;
+  zones.begin(report.zones);
+  for (PairReport& published : report.pairs) {
+    const std::uint32_t pair = published.pair;
+    const PairSummary state = summary(pair);
+    published = report_on(scene, pair, state, objects, parts, table);
+    if (table.carried_cycle[pair] == report.cycle) count_in(pair, state);
+  }
+  for (const std::uint32_t pair : triage.current()) {
+    if (!scene.pairs[pair].publish) count_in(pair, summary(pair));
   }
 }
 
-void Monitor::State::report_pairs() noexcept {
-  ClosestPair closest;
-  zones.begin(report.zones);
-  for (const std::uint32_t pair : triage.awake()) {
-    const PairSummary state = summary(pair);
-    closest.add(pair, state);
-    zones.add(pair, state);
-  }
-  for (const std::uint32_t pair : triage.evaluated()) closest.add(pair, summary(pair));
-  if (triage.awake().size() < triage.counts().known()) closest.add_rest(rest_lower());
+void Monitor::State::count_in(std::uint32_t pair, const PairSummary& state) noexcept {
+  closest.add(pair, state);
+  zones.add(pair, state);
+  report.evaluated += is_evaluated(state.status);
+}
+
+void Monitor::State::report_whole() noexcept {
+  if (triage.current().size() < triage.counts().known()) closest.add_rest(rest_lower());
   zones.finish(objects, triage.pending() ? pending_lower() : kInfinity, report.cycle, report.zones);
 
   report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();

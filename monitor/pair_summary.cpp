@@ -73,10 +73,12 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
   if (!a.known() || !b.known()) return summary;
   const std::uint32_t first = table.first_row[pair];
   const std::uint32_t end = table.first_row[pair + 1];
-  const double travelled = travelled_since(pair, objects, table);
+  const bool carried = table.carried_cycle[pair] == cycle;
+  const double travelled = carried ? 0.0 : travelled_since(pair, objects, table);
   summary.lower = kInfinity;
   for (std::uint32_t row = first; row < end; ++row) {
-    const RowBounds now = bounds_now(row, travelled, parts, table);
+    const RowBounds now = carried ? RowBounds{table.lower[row], table.upper[row]}
+                                  : bounds_now(row, travelled, parts, table);
     summary.lower = std::min(summary.lower, now.lower);
     summary.upper = std::min(summary.upper, now.upper);
   }

@@ -47,6 +47,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
     first_row.push_back(rows());
   }
   carried_at.resize(pairs());
+  carried_cycle.assign(pairs(), 0);
   least_lower.assign(pairs(), -kInfinity);
   evaluated_cycle.assign(pairs(), 0);
   lower.assign(rows(), -kInfinity);
@@ -82,7 +83,8 @@ RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<Plac
 }
 
 void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
-           const std::vector<PlacedPart>& parts, PairTable& table) noexcept {
+           const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
+  if (table.carried_cycle[pair] == cycle) return;
   const double travelled = travelled_since(pair, objects, table);
   double least = kInfinity;
   for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
@@ -92,8 +94,14 @@ void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
     least = std::min(least, now.lower);
   }
   table.least_lower[pair] = least;
+  note_carried(pair, objects, cycle, table);
+}
+
+void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
+                  PairTable& table) noexcept {
   table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
                             objects[table.object_b[pair]].travelled};
+  table.carried_cycle[pair] = cycle;
 }
 
 void forget(std::uint32_t pair, PairTable& table) noexcept {

@@ -37,6 +37,7 @@ struct PairTable {
   std::vector<std::uint32_t> object_a, object_b;
   std::vector<std::uint32_t> first_row;        // pair p: rows first_row[p] .. first_row[p + 1]
   std::vector<Travelled> carried_at;           // when its rows were last brought up to date
+  std::vector<std::uint64_t> carried_cycle;    // the tick in which that was; 0: never
   std::vector<double> least_lower;             // over its rows then, m
   std::vector<std::uint64_t> evaluated_cycle;  // when all rows that matter last were; 0: never
 
@@ -70,7 +71,11 @@ struct PairTable {
 
 // Brings a pair's rows up to date. Both objects have been seen.
 void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
-           const std::vector<PlacedPart>& parts, PairTable& table) noexcept;
+           const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
+
+// Takes note that a pair's rows are up to date, after its bounds were found anew.
+void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
+                  PairTable& table) noexcept;
 
 // Forgets a pair's bounds: nobody can say how far its objects have come.
 void forget(std::uint32_t pair, PairTable& table) noexcept;

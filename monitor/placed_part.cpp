@@ -79,6 +79,7 @@ Ball place_ball(const PlacedPart& part) noexcept {
 // part about its origin is turning the other one back about the same point, so the smaller arm
 // counts.
 double turning_error(const PlacedPart& part, const PlacedPart& other) noexcept {
+  if (part.turn_error == 0.0) return 0.0;
   const double to_other =
       (part.world_from_part.position - other.world_from_part.position).norm() + other.extent;
   return swept(part.turn_error, std::min(part.extent, rounded_up(to_other)));

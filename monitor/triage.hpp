@@ -1,15 +1,14 @@
 // Which pairs are evaluated this tick? (§4.6)
 //
-// Every bound is true before and after; triage decides only how tight it is. When the budget covers
-// every pair of the scene, all are evaluated. When it does not, the broad phase says which pairs
-// are awake, and among those:
+// Every bound is true before and after; triage decides only how tight it is. Pairs whose figures
+// somebody asked for (the published ones) are evaluated in every tick, as long as the budget covers
+// them and everything that competes with them. Of the others the broad phase says which are awake,
+// and among those:
 //  1. the minimum: in order of carried lower bound, until none left can beat the smallest upper
 //     bound; the horizon below which pairs are awake follows that;
-//  2. bins by the number of ticks until a pair's distance can fall below what somebody watches for
-//     (a zone's threshold and both margins, at least contact), by stated and measured speeds: the
-//     first bins every tick, nearest first. What a carried bound does not prove outside its zones
-//     is in the first bin;
-//  3. published pairs, all of them or in turn;
+//  2. bins by the number of ticks until contact, or a zone's threshold, can be reached (urgency):
+//     the first bins every tick, nearest first;
+//  3. published pairs, where the budget did not cover all: in turn;
 //  4. a share of all pairs in turn, asleep or not, so that each is refreshed in time;
 //  5. pairs that a tighter bound may put to sleep.
 // Order and outcome depend on the inputs only: no clock, no addresses.
@@ -23,6 +22,7 @@
 #include "monitor/evaluation.hpp"
 #include "monitor/pair_counts.hpp"
 #include "monitor/refresh_round.hpp"
+#include "monitor/urgency.hpp"
 
 namespace clearance {
 
@@ -37,62 +37,53 @@ class Triage {
                              PairTable& table) noexcept;
 
   // As of the last evaluate_due():
-  // the pairs that were awake, of those that are known. The others that are known are each at least
-  // horizon() apart for the poses in use, and, for where late objects may be, farther than their
-  // zones watch for; unless pending(), when pending_lower() is all that holds of some. m.
-  [[nodiscard]] std::span<const std::uint32_t> awake() const noexcept { return known_; }
+  // the pairs that were looked at, each once, and brought up to date. The others that are known are
+  // each at least horizon() apart for the poses in use, and, for where late objects may be, farther
+  // than their zones watch for; unless pending(), when pending_lower() is all that holds of some.
+  // m.
+  [[nodiscard]] std::span<const std::uint32_t> current() const noexcept { return current_; }
   [[nodiscard]] double horizon() const noexcept { return broad_phase_.horizon(); }
   [[nodiscard]] bool pending() const noexcept { return broad_phase_.pending(); }
   [[nodiscard]] double pending_lower() const noexcept { return broad_phase_.pending_lower(); }
   [[nodiscard]] const PairCounts& counts() const noexcept { return counts_; }
-  // those with ObjectPair::publish;
-  [[nodiscard]] std::span<const std::uint32_t> published() const noexcept { return published_; }
-  // pairs that were evaluated;
-  [[nodiscard]] std::span<const std::uint32_t> evaluated() const noexcept { return evaluated_; }
+  // how many pairs were evaluated;
+  [[nodiscard]] std::uint64_t evaluated() const noexcept { return evaluated_; }
   // and no known pair's last evaluation is older than this tick; 0: some never was.
   [[nodiscard]] std::uint64_t oldest_evaluation() const noexcept { return round_.oldest_turn(); }
 
  private:
-  // Bin b < kUrgentBins: fewer than 2^b ticks. At 1 kHz the last of them ends 8 ms ahead.
-  static constexpr std::size_t kUrgentBins = 4;
-  static constexpr double kUrgentTicks = 8.0;
-
   void follow_minimum() noexcept;
   void find_horizon() noexcept;
-  void settle_woken(const std::vector<ObjectState>& objects, Evaluation& evaluation) noexcept;
-  void list_known(const std::vector<ObjectState>& objects, const PairTable& table) noexcept;
-  void put_to_sleep(const std::vector<ObjectState>& objects, const PairTable& table) noexcept;
-  void evaluate_minimum(const std::vector<ObjectState>& objects, Evaluation& evaluation) noexcept;
+  void look_at_asked(bool roomy, Evaluation& evaluation) noexcept;
+  void look_at_awake(Evaluation& evaluation) noexcept;
+  void settle_woken(Evaluation& evaluation) noexcept;
+  void put_to_sleep(const Evaluation& evaluation) noexcept;
+  void evaluate_minimum(Evaluation& evaluation) noexcept;
   void evaluate_closest(Evaluation& evaluation) noexcept;
-  void evaluate_urgent(const std::vector<ObjectState>& objects, Evaluation& evaluation) noexcept;
-  void evaluate_published(const std::vector<ObjectState>& objects, Evaluation& evaluation) noexcept;
-  void evaluate_in_turn(const std::vector<ObjectState>& objects, Evaluation& evaluation) noexcept;
+  void evaluate_urgent(Evaluation& evaluation) noexcept;
+  void evaluate_asked(Evaluation& evaluation) noexcept;
+  void evaluate_in_turn(Evaluation& evaluation) noexcept;
   void evaluate_restless(Evaluation& evaluation) noexcept;
   void evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept;
   void evaluate_once(std::uint32_t pair, Evaluation& evaluation) noexcept;
-  [[nodiscard]] bool is_known(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                              const PairTable& table) const noexcept;
-  [[nodiscard]] std::size_t bin_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                                   const PairTable& table) const noexcept;
-  [[nodiscard]] double speed_of(std::uint32_t object, const ObjectState& state) const noexcept;
+  void look_at(std::uint32_t pair, Evaluation& evaluation) noexcept;
+  [[nodiscard]] bool has_room(const PairTable& table) const noexcept;
 
   const std::uint32_t budget_;
-  const double period_s_;
-  bool everything_;         // the budget covers all pairs: nothing ever sleeps
-  std::uint32_t per_tick_;  // pairs to be refreshed a tick
-  // By object.
-  std::vector<double> reach_;         // no point of it is farther from its origin, m
-  std::vector<double> stated_speed_;  // of any point of it, m/s; 0: fixed, or nobody said
-  // By object pair.
-  std::vector<double> watch_below_;       // m; never less than 0
-  std::vector<std::uint32_t> published_;  // pairs
-  std::size_t next_published_ = 0;        // whose turn it is
+  const std::uint32_t per_tick_;      // pairs to be refreshed a tick
+  std::vector<std::uint32_t> asked_;  // pairs whose figures somebody asked for
+  std::uint32_t asked_rows_ = 0;
+  // The budget covers those: they never sleep. Otherwise they do, and have their turns.
+  const bool asked_every_tick_;
+  std::size_t next_asked_ = 0;  // whose turn it is
   PairCounts counts_;
+  Urgency urgency_;
   BroadPhase broad_phase_;
   RefreshRound round_;
-  double smallest_upper_ = kInfinity;  // of the awake pairs this tick, m
+  double smallest_upper_ = kInfinity;  // of the pairs looked at, but for those in turn, m
+  std::uint64_t evaluated_ = 0;
   // Pairs, each list with room for all that it can ever hold.
-  std::vector<std::uint32_t> awake_, known_, scratch_, evaluated_;
+  std::vector<std::uint32_t> awake_, current_, scratch_;
 };
 
 }  // namespace clearance

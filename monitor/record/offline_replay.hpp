@@ -42,7 +42,7 @@ struct OfflineReplayOptions {
 
   // Distances that something else computed (monitor/record/reference_check.hpp): every one of a
   // pair and tick of the replay is met within the tolerance, m, and lies within the bounds. A pair
-  // that the budget left out of a tick does not meet it: give the scene a budget for all.
+  // that a tick left out does not meet it: let the scene evaluate all, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
   double tolerance = 1e-6;
 

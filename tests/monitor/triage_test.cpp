@@ -129,9 +129,10 @@ TEST_P(EveryBudget, EveryBoundHoldsInEveryTick) {
   }
 }
 
-TEST(Triage, EvaluatesEverythingThatTheBudgetCovers) {
+TEST(Triage, EvaluatesWhatIsPublishedInEveryTickThatTheBudgetCovers) {
   Random random(41);
   Scene scene = thin_bodies(random);
+  for (ObjectPair& pair : scene.pairs) pair.publish = true;
   Monitor monitor(scene);
   MovingCell motion(scene, Style::kTeleport, 42);
   for (int t = 0; t < 20; ++t) {
@@ -140,6 +141,26 @@ TEST(Triage, EvaluatesEverythingThatTheBudgetCovers) {
     EXPECT_EQ(report.oldest_evaluation_cycles, 0u);
     EXPECT_TRUE(report.minimum_proved);
   }
+}
+
+TEST(Triage, EvaluatesAllWhenAskedTo) {
+  Random random(41);
+  Scene scene = thin_bodies(random);
+  scene.evaluate_all = true;
+  Monitor monitor(scene);
+  MovingCell motion(scene, Style::kCrawl, 42);
+  for (int t = 0; t < 20; ++t) EXPECT_EQ(motion.tick(monitor).evaluated, scene.pairs.size());
+}
+
+TEST(Triage, LeavesAloneWhatNobodyAsksForAndCannotBeTheMinimum) {
+  Random random(41);
+  Scene scene = thin_bodies(random);
+  scene.refresh_s = 1e6;
+  Monitor monitor(scene);
+  MovingCell motion(scene, Style::kCrawl, 42);
+  std::uint32_t queries = 0;
+  for (int t = 0; t < 100; ++t) queries = motion.tick(monitor).queries;
+  EXPECT_LT(queries, scene.pairs.size() / 2) << "the budget would cover all";
 }
 
 TEST(Triage, ProvesTheMinimumOnAFractionOfTheBudget) {
@@ -278,6 +299,21 @@ TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
     if (t >= 20) oldest = std::max(oldest, report.oldest_evaluation_cycles);
   }
   EXPECT_LE(oldest, 7u);
+}
+
+TEST(Triage, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
+  Scene scene = far_apart(20);
+  for (std::size_t p = 10; p < 14; ++p) scene.pairs[p].publish = true;
+  scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within it
+  scene.budget = 6;
+  Monitor monitor(scene);
+  for (int t = 0; t < 30; ++t) {
+    const PoseSample sample = test::sample(0, test::at(0, 1e-4 * t, 0), kStart + t * kTick);
+    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    EXPECT_EQ(report.queries, 6u);
+    EXPECT_TRUE(report.minimum_proved);
+    EXPECT_TRUE(report.zones[0].proved);
+  }
 }
 
 TEST(Triage, PublishedPairsComeBeforeTheRest) {

@@ -73,6 +73,7 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, double toler
 
 int replay_in(Scene& scene, const ReplayArguments& arguments) {
   if (arguments.evaluate_all || !arguments.reference.empty()) {
+    scene.evaluate_all = true;
     scene.budget = std::numeric_limits<std::uint32_t>::max();
   }
   std::optional<ReportRecorder> out;
