@@ -10,6 +10,7 @@
 #include "core/overlap.hpp"
 #include "core/precision.hpp"
 #include "core/robust.hpp"
+#include "core/rounding.hpp"
 
 namespace clearance {
 namespace {
@@ -44,8 +45,7 @@ double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
 void add_radii(DistanceResult& r, const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
   const double sum = radii(a, b);
   if (sum == 0.0) return;
-  const double rounding =
-      0x1.1p-53 * (sum + std::abs(r.upper - sum));  // of the sum, and of what is left
+  const double rounding = kRadiusRounding * (sum + std::abs(r.upper - sum));
   r.distance -= sum;
   r.lower -= sum + rounding;
   r.upper -= sum - rounding;

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rounding.hpp"
+
 namespace clearance {
 namespace {
-
-// As in dqp3.cpp: a rate beyond this, per unit length, has the sign that exact arithmetic would
-// give.
-constexpr double kCertain = 0x1p-50;
-
-// Edges nearer to parallel than this (the sine's square) are left to the loop.
-constexpr double kCrossing2 = 1e-6;
 
 // Enough for 99.9 % of the tracked queries of the facet-ball workload; more is the loop's work.
 constexpr int kSteps = 24;
@@ -68,7 +63,7 @@ Step vertex_vertex(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const R
   c.own_b = w.position;
   c.point_b = pose.rotation * w.position + pose.translation;
   const Vec3 g = c.point_b - c.point_a;
-  const double apart = g.norm(), limit = -kCertain * apart;
+  const double apart = g.norm(), limit = -kCertainRate * apart;
   c.apart = c.proved = apart;
   c.normal = g / apart;
   const Steepest on_a = steepest(a, v, g);
@@ -118,7 +113,7 @@ Step edge_vertex(const ConvexPolyhedron& owner, Side& on_owner, const ConvexPoly
   if (!(s < edge.end)) return to_vertex(on_owner, edge.vertex[1]), Step::kMoved;
   const Vec3 rough = from_start - s * edge.direction;
   const Vec3 g = rough - rough.dot(edge.direction) * edge.direction;  // what cancellation has left
-  const double apart = g.norm(), limit = -kCertain * apart;
+  const double apart = g.norm(), limit = -kCertainRate * apart;
   const double left = edge.inward[0].dot(g), right = edge.inward[1].dot(g);
   if (!(std::max(left, right) < limit)) {
     if (!(std::max(left, right) > -limit)) return Step::kLost;
@@ -154,10 +149,10 @@ Step facet_vertex(const ConvexPolyhedron& owner, Side& on_owner, const ConvexPol
   }
   if (outside != kNone) return to_edge(on_owner, outside), Step::kMoved;
   const Steepest away = steepest(other, vertex, -frame.direction_out(facet.normal));
-  if (!(away.rate < -kCertain)) {
+  if (!(away.rate < -kCertainRate)) {
     const EdgeUse& use = other.vertex_edges[away.at];
     const std::int32_t next = other.edges[use.edge].vertex[1 - use.side];
-    if (!(away.rate > kCertain) || next == kNone) return Step::kLost;
+    if (!(away.rate > kCertainRate) || next == kNone) return Step::kLost;
     return to_vertex(on_other, next), Step::kMoved;
   }
   c.apart = c.proved = apart;
@@ -183,7 +178,7 @@ Step edge_edge(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Relat
   const Vec3 between = start_b - first.point;
   const Vec3 n = e.cross(f);
   const double sine2 = n.squaredNorm();
-  if (!(sine2 > kCrossing2)) return Step::kLost;
+  if (!(sine2 > kCrossingSine2)) return Step::kLost;
   const double cosine = e.dot(f), along_e = between.dot(e);
   const double t = (cosine * along_e - between.dot(f)) / sine2;
   const double s = along_e + cosine * t;
@@ -193,7 +188,7 @@ Step edge_edge(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Relat
   const Vec3 m = pose.rotation.transpose() * c.normal;
   const double on_a = std::max(first.inward[0].dot(c.normal), first.inward[1].dot(c.normal));
   const double on_b = -std::min(second.inward[0].dot(m), second.inward[1].dot(m));
-  if (!(on_a < -kCertain) || !(on_b < -kCertain)) return Step::kLost;
+  if (!(on_a < -kCertainRate) || !(on_b < -kCertainRate)) return Step::kLost;
   c.point_a = first.point + s * e;
   c.own_b = second.point + t * second.direction;
   c.point_b = start_b + t * f;

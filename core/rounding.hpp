@@ -1,0 +1,68 @@
+// The counts of roundings that the bounds are made of, for the scalar and the vector code of a
+// query.
+#pragma once
+
+#include <cmath>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+// Half an ulp of 1: the largest relative error of one rounding.
+inline constexpr double kUlp = 0x1p-53;
+
+// Error of rotation_matrix() of pose.cpp in the 2-norm, for an exact quaternion. The common factor
+// s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is
+// off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most 3: 9. The
+// subtraction from 1 on the diagonal: 2.
+inline constexpr double kMatrixError = 20 * kUlp;
+
+// Error of a Hamilton product: a component is four products in three roundings each, at most two
+// ulps of the sum of their magnitudes (at most 1) and one of itself, so the vector is off by at
+// most 5 ulps, and the rotation, which turns by twice the angle, by 10.
+inline constexpr double kProductError = 10 * kUlp;
+
+// R(q/|q|)^T v by two cross products. With |q| = 1 and exact inputs: each cross product is off by
+// at most 2.5 ulps of |q||v|, their weighted sum by 6.5, twice that by 13; the factor 2/|q|^2 by 4,
+// which moves the result by 8; the last two operations by 3.
+inline constexpr double kTurnError = 24 * kUlp;
+
+// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
+// the last where the turn only permutes axes.
+inline constexpr double kRotationError = kMatrixError + kProductError;
+inline constexpr double kTranslationError = kTurnError + kUlp;
+inline constexpr double kPermutedTranslationError = 4 * kUlp;
+
+// One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes.
+// Products of two of them, and their matrices, come out exact in doubles.
+[[nodiscard]] bool is_axis_permutation(const Eigen::Quaterniond& q) noexcept;
+
+// The same, after a look at one component that nearly always decides.
+[[nodiscard]] inline bool permutes_axes(const Eigen::Quaterniond& q) noexcept {
+  const double w = std::abs(q.w());
+  return (w == 0.0 || w == 0.5 || w == 1.0) && is_axis_permutation(q);
+}
+
+// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them:
+// placing a point on its feature (3), rotating it (6), an edge that is not quite at right angles to
+// n (6); the sums, the product and the quotient (8).
+inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
+
+// Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
+inline constexpr double kUnderflow = 1e-150;
+
+// What rounding leaves between the bounds, by how many of the bodies are unbounded: errors of
+// direction grow along their rays. Measured on the hard cases of tests/: at most 5, 40 and 250.
+inline constexpr double kTightUlps[] = {8, 64, 320};
+
+// Of a sum of radii, and of what is left when it is taken off a bound.
+inline constexpr double kRadiusRounding = 0x1.1p-53;
+
+// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give.
+inline constexpr double kCertainRate = 0x1p-50;
+
+// Edges nearer to parallel than this (the sine's square) have no direction across both that is
+// worth trusting.
+inline constexpr double kCrossingSine2 = 1e-6;
+
+}  // namespace clearance
