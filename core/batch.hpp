@@ -1,0 +1,52 @@
+// The distances of many pairs at once: the same answers as distance(), bit for bit, for less.
+//
+// Pairs whose last features are still the closest are judged by vector code, 2, 4 or 8 at a time,
+// whichever the machine has (run-time choice through Highway; the results do not depend on it). The
+// others go through distance(), one by one. Made for pairs that are tracked: bodies that move a
+// little between two rounds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/distance.hpp"
+
+namespace clearance {
+
+// Two bodies by their indices.
+struct BodyPair {
+  std::uint32_t a, b;
+};
+
+class DistanceBatch {
+ public:
+  // The bodies must outlive the batch. All memory is allocated here: about 0.9 kB a pair and 64
+  // bytes a body. Indices must be below bodies.size(); a body may be in any number of pairs.
+  DistanceBatch(std::span<const ConvexPolyhedron* const> bodies, std::span<const BodyPair> pairs);
+  ~DistanceBatch();
+  DistanceBatch(DistanceBatch&&) noexcept;
+  DistanceBatch& operator=(DistanceBatch&&) noexcept;
+
+  // One pose a body, as for relative_pose(). The results, one a pair, in the order of the pairs,
+  // are what distance() would have said, each with a tracking state of its own; they stay until the
+  // next call. No heap, deterministic.
+  std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept;
+
+  // All tracking states become cold.
+  void forget() noexcept;
+
+  // How many pairs of the last round distance() had to answer.
+  [[nodiscard]] std::size_t single_queries() const noexcept;
+
+  // The vector instructions in use here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", or "SCALAR" for
+  // plain C++.
+  [[nodiscard]] static const char* instruction_set() noexcept;
+
+ private:
+  class Rounds;
+  std::unique_ptr<Rounds> rounds_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,107 @@
+// What a batch remembers of eight pairs, in the order in which vector code reads it.
+//
+// A row holds one number of eight pairs and is a cache line; vectors of 2, 4 or 8 lanes read the
+// same rows. All pairs of a block are closest in the same kind of features, so that one
+// straight line of code decides whether they still are, without gathering anything: the features'
+// own numbers are in the rows, written when the pair came to these features.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/distance.hpp"
+
+namespace clearance {
+
+inline constexpr std::size_t kBlockLanes = 8;
+
+// Which features of A and B; the first named is A's.
+enum class FeatureKind : std::uint8_t {
+  kVertexVertex,
+  kVertexEdge,
+  kEdgeVertex,
+  kVertexFacet,
+  kFacetVertex,
+  kEdgeEdge,
+};
+inline constexpr std::size_t kFeatureKinds = 6;
+
+// Rows that every kind has. Lengths in metres; `unbounded` is 1 or 0.
+enum CommonRow : std::size_t {
+  kReachA,
+  kReachB,
+  kPositionErrorA,
+  kPositionErrorB,
+  kUnboundedA,
+  kUnboundedB,
+  kRadiusA,
+  kRadiusB,
+  kPointA,                // 3 rows: the witness points of the last query, each in its body's frame
+  kPointB = kPointA + 3,  // 3 rows
+  kFeatureRows = kPointB + 3
+};
+
+// Rows of the features, from kFeatureRows on: first an edge's or facet's, if there is one, then a
+// vertex's (of two vertices A's first), then what repeats:
+//   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3 (of two edges A's first)
+//   facet   normal 3, offset
+//   vertex  position 3
+//   sides of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
+inline constexpr std::size_t kMostRepeats = 8;  // what has more is left to the single query
+inline constexpr std::size_t kEdgeRows = 14, kFacetRows = 4, kVertexRows = 3;
+inline constexpr std::size_t kSideRows = 4, kDirectionRows = 3;
+
+inline constexpr std::size_t kDirectionsOfA = 2 * kVertexRows;  // vertex-vertex
+inline constexpr std::size_t kDirectionsOfB = kDirectionsOfA + kMostRepeats * kDirectionRows;
+inline constexpr std::size_t kDirectionsAtEdge = kEdgeRows + kVertexRows;  // edge-vertex
+inline constexpr std::size_t kSides = kFacetRows + kVertexRows;            // facet-vertex
+inline constexpr std::size_t kDirectionsAtFacet = kSides + kMostRepeats * kSideRows;
+
+inline constexpr std::size_t kRows =
+    kFeatureRows + kDirectionsAtFacet + kMostRepeats * kDirectionRows;
+
+struct alignas(64) BatchBlock {
+  std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};
+  std::array<std::uint32_t, kBlockLanes> pair{};  // of a lane not in use: one past the last pair
+  // How often what repeats does, of A's feature and of B's: in each lane, and the most since the
+  // block was empty. Every lane is filled up to the most, by repeating its last.
+  std::array<std::uint8_t, kBlockLanes> repeats_a{}, repeats_b{};
+  std::uint8_t most_a = 0, most_b = 0;
+  std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
+  bool plain = true;       // no body in it has been unbounded or with a radius
+  FeatureKind kind = FeatureKind::kVertexVertex;
+  alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
+};
+
+// A body's pose as vector code reads it: one cache line.
+struct alignas(64) PlacedBody {
+  double x, y, z, w;  // orientation
+  double position[3];
+  double translation_error;  // relative, of a difference of positions seen in this body's frame
+};
+
+// One round of the vector code over all blocks.
+struct BatchRound {
+  BatchBlock* blocks = nullptr;
+  const PlacedBody* bodies = nullptr;
+  DistanceResult* results = nullptr;  // [pair]
+  struct List {
+    const std::uint32_t* blocks = nullptr;
+    std::size_t count = 0;
+  };
+  std::array<List, kFeatureKinds> lists;
+  std::uint32_t no_pair = 0;        // BatchBlock::pair of lanes not in use
+  std::uint32_t* failed = nullptr;  // out: pairs that are distance()'s
+  std::size_t failures = 0;
+};
+
+// Judges every lane: where the features of the last query are the closest still and the bounds are
+// tight, writes what distance() would, bit for bit; the pairs of the others are listed as failed.
+// Picks the widest vectors that the machine has; the results do not depend on it.
+void run_batch(BatchRound& round) noexcept;
+
+// The instruction set that run_batch uses here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", "SCALAR".
+[[nodiscard]] const char* batch_instruction_set() noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,177 @@
+// The straight-line part of core/feature_walk.cpp, operation for operation, for as many pairs as a
+// vector has lanes: are these features the closest ones still, and where do they put the witness
+// points? Compiled once an instruction set.
+#if defined(CLEARANCE_BATCH_FEATURES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_BATCH_FEATURES_INL_HPP_
+#undef CLEARANCE_BATCH_FEATURES_INL_HPP_
+#else
+#define CLEARANCE_BATCH_FEATURES_INL_HPP_
+#endif
+
+#include "core/batch_pose-inl.hpp"
+#include "core/feature_walk.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+// As ClosestFeatures, where `holds`; elsewhere anything.
+struct Closest {
+  LaneMask holds;
+  Points point_a, point_b, own_b, normal;
+  Lanes apart, proved;
+};
+
+// Where a lane's rows are and how often what repeats does.
+struct FeatureRows {
+  const double* rows;  // at kFeatureRows, of the first lane
+  std::size_t repeats_a, repeats_b;
+
+  [[nodiscard]] HWY_INLINE Points points(std::size_t row) const {
+    return load_points(rows + row * kBlockLanes);
+  }
+  [[nodiscard]] HWY_INLINE Lanes lanes(std::size_t row) const {
+    return load(rows + row * kBlockLanes);
+  }
+};
+
+HWY_INLINE Lanes infinity() { return all(kInfinity); }
+
+// The least rate of `count` edge directions along g: all fall away from the other body when it is
+// certainly positive, g pointing away.
+HWY_INLINE Lanes least_rate(const FeatureRows& at, std::size_t row, std::size_t count,
+                            const Points& g) {
+  Lanes least = infinity();
+  for (std::size_t i = 0; i < count; ++i) {
+    least = hn::Min(least, dot(at.points(row + kDirectionRows * i), g));
+  }
+  return least;
+}
+HWY_INLINE Lanes greatest_rate(const FeatureRows& at, std::size_t row, std::size_t count,
+                               const Points& g) {
+  Lanes greatest = all(-kInfinity);
+  for (std::size_t i = 0; i < count; ++i) {
+    greatest = hn::Max(greatest, dot(at.points(row + kDirectionRows * i), g));
+  }
+  return greatest;
+}
+
+HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  c.point_a = at.points(0);
+  c.own_b = at.points(kVertexRows);
+  c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+  const Points g = c.point_b - c.point_a;
+  c.apart = c.proved = norm(g);
+  const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
+  c.normal = over(g, c.apart);
+  const Lanes on_a = greatest_rate(at, kDirectionsOfA, at.repeats_a, g);
+  const Lanes on_b = least_rate(at, kDirectionsOfB, at.repeats_b, rotate_back(pose.rotation, g));
+  c.holds = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
+  return c;
+}
+
+// One of the bodies (the owner of an edge or facet) as seen from the other. kMoved: the owner is B.
+template <bool kMoved>
+struct OwnerFrame {
+  const RelativePoses& pose;
+
+  [[nodiscard]] HWY_INLINE Points point_in(const Points& p) const {
+    if constexpr (kMoved) return rotate_back(pose.rotation, p - pose.translation);
+    return rotate(pose.rotation, p) + pose.translation;
+  }
+  [[nodiscard]] HWY_INLINE Points direction_out(const Points& v) const {
+    if constexpr (kMoved) return rotate(pose.rotation, v);
+    return rotate_back(pose.rotation, v);
+  }
+  HWY_INLINE void express(const Points& on_owner, const Points& on_other, const Points& n,
+                          Closest& c) const {
+    c.point_a = kMoved ? on_other : on_owner;
+    c.own_b = kMoved ? on_owner : on_other;
+    c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+    c.normal = n;
+    if constexpr (kMoved) c.normal = -rotate(pose.rotation, n);
+  }
+};
+
+template <bool kMoved>
+HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  const OwnerFrame<kMoved> frame{pose};
+  const Points point = at.points(0), direction = at.points(3), vertex = at.points(kEdgeRows);
+  const Points from_start = frame.point_in(vertex) - point;
+  const Lanes s = dot(from_start, direction);
+  const LaneMask within = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
+  const Points rough = from_start - times(s, direction);
+  const Points g = rough - times(dot(rough, direction), direction);
+  c.apart = c.proved = norm(g);
+  const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
+  const Lanes side = hn::Max(dot(at.points(8), g), dot(at.points(11), g));
+  const Lanes away = least_rate(at, kDirectionsAtEdge, kMoved ? at.repeats_a : at.repeats_b,
+                                frame.direction_out(g));
+  c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
+  frame.express(point + times(s, direction), vertex, over(g, c.apart), c);
+  return c;
+}
+
+template <bool kMoved>
+HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  const OwnerFrame<kMoved> frame{pose};
+  const Points normal = at.points(0), vertex = at.points(kFacetRows);
+  const Points tip = frame.point_in(vertex);
+  c.apart = c.proved = hn::Sub(dot(normal, tip), at.lanes(3));
+  const std::size_t sides = kMoved ? at.repeats_b : at.repeats_a;
+  Lanes within = all(0.0);
+  for (std::size_t i = 0; i < sides; ++i) {
+    const std::size_t row = kSides + kSideRows * i;
+    within = hn::Min(within, hn::Sub(dot(at.points(row), tip), at.lanes(row + 3)));
+  }
+  const Lanes away = least_rate(at, kDirectionsAtFacet, kMoved ? at.repeats_a : at.repeats_b,
+                                frame.direction_out(normal));
+  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
+                    hn::Gt(away, all(kCertainRate)));
+  frame.express(tip - times(c.apart, normal), vertex, normal, c);
+  return c;
+}
+
+HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose, Lanes reach_a,
+                             Lanes reach_b) {
+  Closest c;
+  constexpr std::size_t kSecond = kEdgeRows;
+  const Points first = at.points(0), e = at.points(3);
+  const Points second = at.points(kSecond), direction = at.points(kSecond + 3);
+  const Points f = rotate(pose.rotation, direction);
+  const Points start_b = rotate(pose.rotation, second) + pose.translation;
+  const Points between = start_b - first;
+  const Points n = cross(e, f);
+  const Lanes sine2 = dot(n, n), cosine = dot(e, f), along_e = dot(between, e);
+  const Lanes t = hn::Div(hn::Sub(hn::Mul(cosine, along_e), dot(between, f)), sine2);
+  const Lanes s = hn::Add(along_e, hn::Mul(cosine, t));
+  const LaneMask on_first = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
+  const LaneMask on_second =
+      hn::And(hn::Gt(t, at.lanes(kSecond + 6)), hn::Lt(t, at.lanes(kSecond + 7)));
+  const Lanes sine = hn::Sqrt(sine2);
+  const Lanes apart = hn::Div(dot(between, n), sine);
+  c.normal = over(n, hn::CopySignToAbs(sine, apart));
+  const Points m = rotate_back(pose.rotation, c.normal);
+  const Lanes on_a = hn::Max(dot(at.points(8), c.normal), dot(at.points(11), c.normal));
+  const Lanes on_b = hn::Min(dot(at.points(kSecond + 8), m), dot(at.points(kSecond + 11), m));
+  const LaneMask falls = hn::And(hn::Lt(on_a, all(-kCertainRate)), hn::Gt(on_b, all(kCertainRate)));
+  c.holds =
+      hn::And(hn::And(hn::Gt(sine2, all(kCrossingSine2)), falls), hn::And(on_first, on_second));
+  c.point_a = first + times(s, e);
+  c.own_b = second + times(t, direction);
+  c.point_b = start_b + times(t, f);
+  c.apart = norm(c.point_b - c.point_a);
+  const Lanes tilt = hn::Add(hn::Mul(reach_a, hn::Abs(dot(c.normal, e))),
+                             hn::Mul(reach_b, hn::Abs(dot(c.normal, f))));
+  c.proved = hn::Sub(hn::Abs(apart), hn::Mul(all(2.0), tilt));
+  return c;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#endif

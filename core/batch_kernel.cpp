@@ -1,0 +1,180 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/batch_kernel.cpp"
+// Four widths: two lanes in plain C++ (any machine), SSE4, AVX2, AVX-512; NEON on Arm. What lies
+// between has the same width as one of these.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#endif
+#include <hwy/foreach_target.h>
+// Keep this order: foreach_target first.
+#include <hwy/highway.h>
+
+#include <bit>
+
+#include "core/batch_block.hpp"
+#include "core/batch_features-inl.hpp"
+#include "core/precision.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+struct Slack {
+  Lanes slack, tight;
+};
+
+// precision() of core/precision.cpp.
+HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses& pose,
+                            Lanes farthest) {
+  const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
+  const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
+  Lanes reach_a = radius_a, reach_b = radius_b, tight = all(kTightUlps[0]);
+  if (!plain) {
+    const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
+    const auto far = [&](Lanes of_other)
+                         HWY_ATTR { return hn::Add(hn::Add(of_other, apart), farthest); };
+    reach_a = hn::Max(radius_a, hn::Mul(at_a, far(radius_b)));
+    reach_b = hn::Max(radius_b, hn::Mul(at_b, far(radius_a)));
+    tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
+  }
+  const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
+  const Lanes ulps =
+      hn::Add(hn::Add(hn::Mul(all(kUlpsOnA), reach_a), hn::Mul(all(kUlpsOnB), reach_b)),
+              hn::Mul(all(kUlpsBetween), apart));
+  Lanes slack = hn::Add(hn::Mul(all(kUlp), ulps), row(kPositionErrorA));
+  slack = hn::Add(slack, row(kPositionErrorB));
+  slack = hn::Add(slack, hn::Mul(pose.rotation_error, reach_b));
+  slack = hn::Add(hn::Add(slack, pose.translation_error), all(kUnderflow));
+  return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
+}
+
+struct Answers {
+  Lanes distance, lower, upper;
+  Points normal, point_a, point_b;
+  LaneMask good;  // tight and positive: distance() would have said the same
+};
+
+// From the polyhedra's surfaces to the rounded bodies'.
+HWY_INLINE void add_radii(const double* rows, Answers& r) {
+  const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
+  const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
+  const Lanes sum = hn::Add(radius_a, radius_b);
+  const Lanes rounding =
+      hn::IfThenElse(hn::Eq(sum, all(0.0)), sum,
+                     hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
+  r.distance = hn::Sub(r.distance, sum);
+  r.lower = hn::Sub(r.lower, hn::Add(sum, rounding));
+  r.upper = hn::Sub(r.upper, hn::Sub(sum, rounding));
+  r.point_a = r.point_a + times(radius_a, r.normal);
+  r.point_b = r.point_b - times(radius_b, r.normal);
+  r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
+}
+
+HWY_INLINE Answers conclude(const double* rows, bool plain, const Closest& c, const Slack& p) {
+  const LaneMask tight = hn::Le(hn::Sub(c.apart, c.proved), p.tight);
+  Answers r{c.apart,
+            hn::Sub(c.proved, p.slack),
+            hn::Add(c.apart, p.slack),
+            c.normal,
+            c.point_a,
+            c.point_b,
+            hn::And(c.holds, hn::And(hn::Gt(c.proved, p.slack), tight))};
+  if (!plain) add_radii(rows, r);
+  return r;
+}
+
+HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
+                      DistanceResult* results) {
+  double* to[kWidth];
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    DistanceResult& result = results[block.pair[first + i]];
+    to[i] = &result.distance;
+    result.status = DistanceStatus::kConverged;
+    result.iterations = 1;
+  }
+  store_columns(r.distance, r.lower, to, 0);
+  store_columns(r.upper, r.normal.x, to, 2);
+  store_columns(r.normal.y, r.normal.z, to, 4);
+  store_columns(r.point_a.x, r.point_a.y, to, 6);
+  store_columns(r.point_a.z, r.point_b.x, to, 8);
+  store_columns(r.point_b.y, r.point_b.z, to, 10);
+}
+
+template <FeatureKind kKind>
+HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose, const double* rows) {
+  if constexpr (kKind == FeatureKind::kVertexVertex) return vertex_vertex(at, pose);
+  if constexpr (kKind == FeatureKind::kVertexEdge) return edge_vertex<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeVertex) return edge_vertex<false>(at, pose);
+  if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeEdge) {
+    return edge_edge(at, pose, load(rows + kReachA * kBlockLanes),
+                     load(rows + kReachB * kBlockLanes));
+  }
+}
+
+// Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
+template <FeatureKind kKind>
+HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round) {
+  double* rows = block.rows[0].data() + first;
+  const RelativePoses pose = relative_poses(load_bodies(round.bodies, &block.body_a[first]),
+                                            load_bodies(round.bodies, &block.body_b[first]));
+  const FeatureRows at{rows + kFeatureRows * kBlockLanes, block.most_a, block.most_b};
+  const Closest c = closest<kKind>(at, pose, rows);
+  const Answers r = conclude(rows, block.plain, c, precisions(rows, block.plain, pose, c.apart));
+  store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
+  store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
+  write(r, block, first, round.results);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Tag(), r.good, bits);
+  return bits[0];
+}
+
+HWY_INLINE void list_failures(const BatchBlock& block, std::size_t lanes, BatchRound& round) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const std::uint32_t pair = block.pair[static_cast<std::size_t>(std::countr_zero(lanes))];
+    if (pair != round.no_pair) round.failed[round.failures++] = pair;
+  }
+}
+
+template <FeatureKind kKind>
+void judge_list(BatchRound& round) {
+  const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
+  for (std::size_t k = 0; k < list.count; ++k) {
+    BatchBlock& block = round.blocks[list.blocks[k]];
+    std::size_t good = 0;
+    for (std::size_t first = 0; first < block.lanes; first += kWidth) {
+      good |= judge<kKind>(block, first, round) << first;
+    }
+    list_failures(block, ~good & ((std::size_t{1} << block.lanes) - 1), round);
+  }
+}
+
+void judge_all(BatchRound& round) {
+  judge_list<FeatureKind::kVertexVertex>(round);
+  judge_list<FeatureKind::kVertexEdge>(round);
+  judge_list<FeatureKind::kEdgeVertex>(round);
+  judge_list<FeatureKind::kVertexFacet>(round);
+  judge_list<FeatureKind::kFacetVertex>(round);
+  judge_list<FeatureKind::kEdgeEdge>(round);
+}
+
+const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clearance {
+
+HWY_EXPORT(judge_all);
+HWY_EXPORT(instruction_set);
+
+void run_batch(BatchRound& round) noexcept { HWY_DYNAMIC_DISPATCH(judge_all)(round); }
+
+const char* batch_instruction_set() noexcept { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+
+}  // namespace clearance
+#endif  // HWY_ONCE

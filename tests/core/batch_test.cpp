@@ -1,0 +1,283 @@
+// The batch against single queries: nothing but speed may differ, at any vector width.
+#include "core/batch.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstring>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/shapes.hpp"
+#include "tests/shared/allocation_count.hpp"
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance {
+namespace {
+
+// While it lives, new and old batches use one instruction set.
+class OnlyWith {
+ public:
+  explicit OnlyWith(std::int64_t target) { choose(target); }
+  ~OnlyWith() { choose(0); }
+  OnlyWith(const OnlyWith&) = delete;
+  OnlyWith& operator=(const OnlyWith&) = delete;
+
+ private:
+  static void choose(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+// One lane, two, four, eight, as far as this machine goes.
+std::vector<std::int64_t> targets() {
+  std::vector<std::int64_t> all{HWY_SCALAR};
+  for (const std::int64_t target : {HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
+    if ((hwy::SupportedTargets() & target) != 0) all.push_back(target);
+  }
+  return all;
+}
+
+bool same_bits(const DistanceResult& r, const DistanceResult& s) {
+  const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+  return same(r.distance, s.distance) && same(r.lower, s.lower) && same(r.upper, s.upper) &&
+         same(r.normal, s.normal) && same(r.point_on_a, s.point_on_a) &&
+         same(r.point_on_b, s.point_on_b) && r.status == s.status && r.iterations == s.iterations;
+}
+
+std::string text(const DistanceResult& r) {
+  std::ostringstream out;
+  out << std::hexfloat << r.distance << " in [" << r.lower << ", " << r.upper << "], "
+      << name(r.status);
+  return out.str();
+}
+
+// Bodies on their way, and which pairs are watched.
+struct Motion {
+  std::vector<ConvexPolyhedron> bodies;
+  std::vector<BodyPair> pairs;
+  std::vector<std::vector<Pose>> poses;  // [step][body]
+
+  [[nodiscard]] std::vector<const ConvexPolyhedron*> shapes() const {
+    std::vector<const ConvexPolyhedron*> all;
+    for (const ConvexPolyhedron& body : bodies) all.push_back(&body);
+    return all;
+  }
+  void watch_all_pairs() {
+    for (std::uint32_t b = 1; b < bodies.size(); ++b) {
+      for (std::uint32_t a = 0; a < b; ++a) pairs.push_back({a, b});
+    }
+  }
+};
+
+struct Difference {
+  std::size_t answers = 0, single_queries = 0;
+};
+
+// Follows a motion with a batch and with a tracked query a pair; all answers must have the same
+// bits.
+Difference follow(const Motion& motion, const std::string& what) {
+  const auto shapes = motion.shapes();
+  DistanceBatch batch(shapes, motion.pairs);
+  std::vector<TrackingState> states(motion.pairs.size());
+  Difference seen;
+  for (std::size_t step = 0; step < motion.poses.size(); ++step) {
+    const std::vector<Pose>& poses = motion.poses[step];
+    const auto answers = batch.evaluate(poses);
+    seen.single_queries += batch.single_queries();
+    for (std::size_t i = 0; i < motion.pairs.size(); ++i) {
+      const auto [a, b] = motion.pairs[i];
+      const DistanceResult expected =
+          distance(*shapes[a], *shapes[b], relative_pose(poses[a], poses[b]), states[i]);
+      ++seen.answers;
+      if (same_bits(answers[i], expected)) continue;
+      ADD_FAILURE() << what << ", " << DistanceBatch::instruction_set() << ", step " << step
+                    << ", pair " << i << ": " << text(answers[i]) << ", not " << text(expected);
+      return seen;
+    }
+  }
+  return seen;
+}
+
+Pose moved(const Pose& pose, Random& random, double step, double angle) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.uniform(0.0, angle), random.direction()));
+  return {pose.position + random.in_box(step), (turn * pose.orientation).normalized()};
+}
+
+// Bodies of every kind, some of them along the axes or along each other for a while; now and then
+// one jumps.
+Motion crowd(std::uint64_t seed) {
+  Random random(seed);
+  Motion motion;
+  std::vector<Pose> poses;
+  while (motion.bodies.size() < 20) {
+    const hard::Body body = random.chance(0.1)    ? hard::unbounded(random)
+                            : random.chance(0.1)  ? hard::rounded(random)
+                            : random.chance(0.25) ? hard::box(Vec3(0.3, 0.4, 0.5))
+                                                  : hard::any_bounded(random);
+    ShapeResult shape = model(body);
+    if (!std::holds_alternative<ConvexPolyhedron>(shape)) continue;
+    motion.bodies.push_back(std::get<ConvexPolyhedron>(std::move(shape)));
+    motion.bodies.back().radius += random.chance(0.1) ? 0.01 : 0.0;
+    poses.push_back({random.in_box(10.0), random.rotation()});
+  }
+  motion.watch_all_pairs();
+  for (int step = 0; step < 40; ++step) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = moved(poses[i], random, 0.01, 0.01);
+      if (random.chance(0.01)) poses[i] = {random.in_box(10.0), random.rotation()};
+      if (random.chance(0.03)) poses[i].orientation = poses[(i + 1) % poses.size()].orientation;
+      if (random.chance(0.03)) poses[i].orientation = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
+    }
+    motion.poses.push_back(poses);
+  }
+  return motion;
+}
+
+TEST(DistanceBatch, GivesTheBitsOfSingleQueriesInACrowd) {
+  for (const std::int64_t target : targets()) {
+    const OnlyWith only(target);
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      const Difference seen = follow(crowd(seed), "crowd " + std::to_string(seed));
+      // What is claimed here is about vectors, so most answers must have come from them.
+      EXPECT_LT(2 * seen.single_queries, seen.answers) << DistanceBatch::instruction_set();
+    }
+  }
+}
+
+// All motions of one family at once, each with a pair of its own.
+Motion motions_of(const hard::MotionFamily& family) {
+  Motion motion;
+  for (std::uint64_t seed = 0; seed < 11; ++seed) {
+    Random random(seed);
+    const hard::HardMotion m = family.make(random, 40);
+    const auto index = static_cast<std::uint32_t>(motion.bodies.size());
+    motion.bodies.push_back(std::get<ConvexPolyhedron>(model(m.a)));
+    motion.bodies.push_back(std::get<ConvexPolyhedron>(model(m.b)));
+    motion.pairs.push_back({index, index + 1});
+    motion.pairs.push_back({index + 1, index});
+    motion.poses.resize(m.poses.size());
+    for (std::size_t step = 0; step < m.poses.size(); ++step) {
+      motion.poses[step].push_back(m.poses[step].first);
+      motion.poses[step].push_back(m.poses[step].second);
+    }
+  }
+  return motion;
+}
+
+TEST(DistanceBatch, GivesTheBitsOfSingleQueriesAlongHardMotions) {
+  for (const hard::MotionFamily& family : hard::motion_families()) {
+    const Motion motion = motions_of(family);
+    for (const std::int64_t target : targets()) {
+      const OnlyWith only(target);
+      follow(motion, family.name);
+    }
+  }
+}
+
+TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOnHardCases) {
+  for (const hard::CaseFamily& family : hard::case_families()) {
+    Motion motion;
+    std::vector<Pose> poses;
+    for (std::uint64_t seed = 300; seed < 310; ++seed) {
+      Random random(seed);
+      const hard::HardCase c = family.make(random);
+      const auto index = static_cast<std::uint32_t>(motion.bodies.size());
+      motion.bodies.push_back(std::get<ConvexPolyhedron>(model(c.a)));
+      motion.bodies.push_back(std::get<ConvexPolyhedron>(model(c.b)));
+      motion.pairs.push_back({index, index + 1});
+      poses.push_back(c.pose_a);
+      poses.push_back(c.pose_b);
+    }
+    motion.poses.assign(3, poses);
+    for (const std::int64_t target : targets()) {
+      const OnlyWith only(target);
+      follow(motion, family.name);
+    }
+  }
+}
+
+// Boxes two apart, turned so that the given feature of each is closest: 0 a corner, 1 an edge, 2 a
+// face.
+Pose turned_to(int feature, double x) {
+  const Vec3 closest[] = {{1.0, 1.0, 1.0}, {1.0, 1.0, 0.02}, {1.0, 0.03, 0.02}};
+  const Vec3 to = x < 0.0 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(closest[feature], to);
+  const Eigen::Quaterniond about(Eigen::AngleAxisd(x < 0.0 ? 0.3 : 1.1, to));
+  return {Vec3(x, 0.0, 0.0), about * turn};
+}
+
+TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
+  const auto cube = std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5}));
+  const ConvexPolyhedron* const bodies[] = {&cube, &cube};
+  const BodyPair pairs[] = {{0, 1}};
+  for (const auto& [a, b] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 1}}) {
+    DistanceBatch batch(bodies, pairs);
+    std::vector<Pose> poses{turned_to(a, -1.0), turned_to(b, 1.0)};
+    (void)batch.evaluate(poses);
+    EXPECT_EQ(batch.single_queries(), 1U) << a << b;
+    for (int step = 0; step < 5; ++step) {
+      poses[0].position.x() -= 1e-3;
+      (void)batch.evaluate(poses);
+      EXPECT_EQ(batch.single_queries(), 0U) << a << b << " step " << step;
+    }
+  }
+}
+
+TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    Random random(seed);
+    const hard::HardMotion m = hard::motion_families()[0].make(random, 40);
+    DistanceJudge judge(m.a, m.b);
+    const ConvexPolyhedron* const bodies[] = {&judge.a(), &judge.b()};
+    const BodyPair pairs[] = {{0, 1}};
+    DistanceBatch batch(bodies, pairs);
+    for (const auto& [pose_a, pose_b] : m.poses) {
+      const Pose poses[] = {pose_a, pose_b};
+      const DistanceResult result = batch.evaluate(poses)[0];
+      const auto faults = judge.faults(result, judge.truth(pose_a, pose_b), pose_a, pose_b);
+      EXPECT_TRUE(faults.empty()) << m.note << " seed " << seed << ": " << faults.front();
+    }
+  }
+}
+
+TEST(DistanceBatch, StartsColdAgainWhenItForgets) {
+  const Motion motion = crowd(7);
+  const auto shapes = motion.shapes();
+  DistanceBatch used(shapes, motion.pairs), fresh(shapes, motion.pairs);
+  for (const auto& poses : motion.poses) (void)used.evaluate(poses);
+  used.forget();
+  const auto again = used.evaluate(motion.poses[0]), first = fresh.evaluate(motion.poses[0]);
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_TRUE(same_bits(again[i], first[i])) << i;
+}
+
+TEST(DistanceBatch, AllocatesNothing) {
+  const Motion motion = crowd(8);
+  const auto shapes = motion.shapes();
+  DistanceBatch batch(shapes, motion.pairs);
+  const std::uint64_t before = allocations();
+  for (const auto& poses : motion.poses) (void)batch.evaluate(poses);
+  batch.forget();
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(DistanceBatch, OfNoPairsGivesNoResults) {
+  DistanceBatch batch({}, {});
+  EXPECT_TRUE(batch.evaluate({}).empty());
+}
+
+TEST(DistanceBatch, RunsOneLaneAndWiderOnesHere) {
+  std::set<std::string> names;
+  for (const std::int64_t target : targets()) {
+    const OnlyWith only(target);
+    names.insert(DistanceBatch::instruction_set());
+  }
+  EXPECT_EQ(names.size(), targets().size());
+}
+
+}  // namespace
+}  // namespace clearance
