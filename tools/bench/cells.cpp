@@ -1,7 +1,6 @@
 #include "tools/bench/cells.hpp"
 
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +10,10 @@
 #include <string>
 
 #include "config/cell_file.hpp"
+#include "core/batch.hpp"
 #include "core/distance.hpp"
 #include "monitor/monitor.hpp"
+#include "tools/bench/cpu_clock.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -97,10 +98,45 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-double cpu_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+// All part pairs at once. Each part is placed in the world once a step, not once a pair.
+void time_batch(benchmark::State& state, const Workload& load) {
+  std::vector<const ConvexPolyhedron*> parts;
+  std::vector<std::uint32_t> first_part;  // [object]
+  for (const Object& object : load.scene.objects) {
+    first_part.push_back(static_cast<std::uint32_t>(parts.size()));
+    for (const Part& part : object.parts) parts.push_back(&part.shape);
+  }
+  std::vector<BodyPair> pairs;
+  for (const ObjectPair& pair : load.scene.pairs) {
+    for (std::uint32_t a = 0; a < load.scene.objects[pair.first].parts.size(); ++a) {
+      for (std::uint32_t b = 0; b < load.scene.objects[pair.second].parts.size(); ++b) {
+        pairs.push_back({first_part[pair.first] + a, first_part[pair.second] + b});
+      }
+    }
+  }
+  DistanceBatch batch(parts, pairs);
+  std::vector<Pose> world_from_part(parts.size());
+  std::size_t step = 0, single_queries = 0;
+  double widest = 0.0;
+  for (auto _ : state) {
+    const auto& world = load.world_from_object[step++ % kSteps];
+    std::size_t part = 0;
+    for (std::size_t object = 0; object < world.size(); ++object) {
+      for (const Part& p : load.scene.objects[object].parts) {
+        world_from_part[part++] = compose(world[object], p.object_from_part);
+      }
+    }
+    for (const DistanceResult& r : batch.evaluate(world_from_part)) {
+      widest = std::max(widest, r.upper - r.lower);
+    }
+    single_queries += batch.single_queries();
+  }
+  const double queries =
+      static_cast<double>(pairs.size()) * static_cast<double>(state.iterations());
+  state.counters["single"] = static_cast<double>(single_queries) / queries;
+  state.counters["widest_gap"] = widest;
+  state.counters["ns_per_pair"] =
+      benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 double quantile(std::vector<double>& sorted, double q) {
@@ -137,6 +173,8 @@ void register_cell(const std::string& name, Scene scene) {
                                [load](benchmark::State& s) { time_queries(s, *load, true); });
   benchmark::RegisterBenchmark(("cell/cold/" + name).c_str(),
                                [load](benchmark::State& s) { time_queries(s, *load, false); });
+  benchmark::RegisterBenchmark(("cell/batch/" + name).c_str(),
+                               [load](benchmark::State& s) { time_batch(s, *load); });
   benchmark::RegisterBenchmark(("cell/tick/" + name).c_str(),
                                [load](benchmark::State& s) { time_ticks(s, *load); });
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/bench/adjacency.hpp"
+#include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -25,6 +26,8 @@ constexpr const char* kHelp =
     "                     also boxes, parallel-boxes and links\n"
     "  cold/f2 ... links  the same without what the last query left\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
+    "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
+    "                     batch/AVX2/... with that instruction set\n"
     "  variant/WHICH/...  the thesis's loop without certificates: base, dual, consistent,\n"
     "                     aggressive, all-facets, moved\n"
     "  adjacency/WHO/f2   adjacency from half-spaces: walk (the thesis's), core, qhull\n"
@@ -32,6 +35,7 @@ constexpr const char* kHelp =
     "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
     "tracked\n"
     "  cell/cold/NAME     the same without what the last query left\n"
+    "  cell/batch/NAME    a round of all the cell's part pairs at once; ns_per_pair\n"
     "  cell/tick/NAME     one Monitor::tick; counters p50, p99.9 and max in ns\n"
     "  tick/NAME          one Monitor::tick of a generated cell of thousands to millions of pairs\n"
     "\n"
@@ -51,6 +55,7 @@ constexpr const char* kHelp =
 void register_all() {
   using namespace clearance::bench;
   register_ours();
+  register_batches();
   register_variants();
   register_adjacency();
   register_peers();

@@ -55,6 +55,16 @@ struct Verdict {
   }
 };
 
+// Its counters.
+inline void count(benchmark::State& state, const Verdict& verdict) {
+  state.counters["max_error"] = verdict.max_error;
+  state.counters["failures"] = verdict.failures;
+  state.counters["iterations"] = verdict.iterations;
+  state.counters["truth_gap"] = verdict.truth_gap;
+  state.counters["overlapping"] = verdict.overlapping;
+  if (verdict.widest_gap > 0.0) state.counters["widest_gap"] = verdict.widest_gap;
+}
+
 inline constexpr int kTracked = std::numeric_limits<int>::max();
 inline constexpr int kCold = 1;
 
@@ -84,12 +94,7 @@ class Row {
         static_cast<double>(load_.queries()) * static_cast<double>(state.iterations());
     state.counters["ns"] = benchmark::Counter(
         queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-    state.counters["max_error"] = verdict_.max_error;
-    state.counters["failures"] = verdict_.failures;
-    state.counters["iterations"] = verdict_.iterations;
-    state.counters["truth_gap"] = verdict_.truth_gap;
-    state.counters["overlapping"] = verdict_.overlapping;
-    if (verdict_.widest_gap > 0.0) state.counters["widest_gap"] = verdict_.widest_gap;
+    count(state, verdict_);
   }
 
  private:

@@ -2,7 +2,6 @@
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
-#include <time.h>
 
 #include <algorithm>
 #include <bit>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "monitor/monitor.hpp"
+#include "tools/bench/cpu_clock.hpp"
 #include "tools/bench/crowd.hpp"
 
 namespace clearance::bench {
@@ -19,12 +19,6 @@ namespace {
 // Until everything is known and has been looked at once.
 constexpr int kStartUpTicks = 500;
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
-
-double cpu_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
 
 double allocated_bytes() {
   const struct mallinfo2 info = mallinfo2();

@@ -1,7 +1,6 @@
 #include "tools/bench/variants.hpp"
 
-#include <time.h>
-
+#include "tools/bench/cpu_clock.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/moved_body.hpp"
 #include "tools/bench/variant_loop.hpp"
@@ -73,12 +72,6 @@ class Moved {
   MovedBody a_, b_;
   TrackingState tracking_;
 };
-
-double cpu_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
 
 // The loop on tables that are at their poses already. Reading the clock costs as much as several
 // queries, so each is repeated, from what the last pose left.

@@ -1,0 +1,152 @@
+#include "tools/bench/batches.hpp"
+
+#include <benchmark/benchmark.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/batch.hpp"
+#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/measure.hpp"
+
+namespace clearance::bench {
+namespace {
+
+constexpr const char* kLoads[] = {"boxes", "links", "parallel-boxes", "f2", "f10", "v2", "v10"};
+
+// As many as a cell with two arms has; all that is touched fits into the second-level cache.
+constexpr std::size_t kPairs = 512;
+
+// Pairs that start on the same trajectory are this many steps apart.
+constexpr std::size_t kApart = 8;
+
+// Many pairs of a workload at once, each with bodies of its own, back and forth along its way.
+struct Fleet {
+  explicit Fleet(const Workload& of) : load(of) {
+    for (std::uint32_t i = 0; i < kPairs; ++i) {
+      shapes.push_back(trajectory(i).a.get());
+      shapes.push_back(trajectory(i).b.get());
+      pairs.push_back({2 * i, 2 * i + 1});
+    }
+    poses.resize(shapes.size());
+  }
+
+  [[nodiscard]] std::size_t steps() const { return 2 * load.trajectories[0].poses.size(); }
+  [[nodiscard]] const Trajectory& trajectory(std::size_t pair) const {
+    return load.trajectories[pair % load.trajectories.size()];
+  }
+  [[nodiscard]] std::size_t pose_of(std::size_t pair, std::size_t step) const {
+    const std::size_t at = (step + kApart * (pair / load.trajectories.size())) % steps();
+    return std::min(at, steps() - 1 - at);
+  }
+  [[nodiscard]] const Truth& truth(std::size_t pair, std::size_t step) const {
+    return load.truth[pair % load.trajectories.size()][pose_of(pair, step)];
+  }
+  void move_to(std::size_t step) {
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      std::tie(poses[2 * i], poses[2 * i + 1]) = trajectory(i).poses[pose_of(i, step)];
+    }
+  }
+
+  const Workload& load;
+  std::vector<const ConvexPolyhedron*> shapes;
+  std::vector<BodyPair> pairs;
+  std::vector<Pose> poses;  // of this step
+};
+
+class Batched {
+ public:
+  explicit Batched(const Fleet& fleet) : batch_(fleet.shapes, fleet.pairs) {}
+  std::span<const DistanceResult> step(const Fleet& fleet) { return batch_.evaluate(fleet.poses); }
+  [[nodiscard]] std::size_t single_queries() const { return batch_.single_queries(); }
+
+ private:
+  DistanceBatch batch_;
+};
+
+class OneByOne {
+ public:
+  explicit OneByOne(const Fleet& fleet)
+      : states_(fleet.pairs.size()), results_(fleet.pairs.size()) {}
+  std::span<const DistanceResult> step(const Fleet& fleet) {
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      const auto [a, b] = fleet.pairs[i];
+      results_[i] = distance(*fleet.shapes[a], *fleet.shapes[b],
+                             relative_pose(fleet.poses[a], fleet.poses[b]), states_[i]);
+    }
+    return results_;
+  }
+  [[nodiscard]] std::size_t single_queries() const { return results_.size(); }
+
+ private:
+  std::vector<TrackingState> states_;
+  std::vector<DistanceResult> results_;
+};
+
+// All steps of a fleet, after an untimed round, so that every pair is tracked. Only the queries are
+// timed: the poses are where a caller would have put them.
+template <class Solver>
+void time_fleet(benchmark::State& state, Fleet& fleet) {
+  Solver solver(fleet);
+  Verdict verdict;
+  std::size_t single_queries = 0;
+  for (std::size_t step = 0; step < fleet.steps(); ++step) {
+    fleet.move_to(step);
+    const auto results = solver.step(fleet);
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      const DistanceResult& r = results[i];
+      verdict.add({r.distance, r.status != DistanceStatus::kIterationLimit, r.iterations,
+                   r.upper - r.lower},
+                  fleet.truth(i, step));
+    }
+    if (step > 0) single_queries += solver.single_queries();
+  }
+  const auto queries = static_cast<double>(kPairs * fleet.steps());
+  verdict.iterations /= queries;
+  double spent_ns = 0.0;
+  for (auto _ : state) {
+    for (std::size_t step = 0; step < fleet.steps(); ++step) {
+      fleet.move_to(step);
+      const double start = cpu_ns();
+      benchmark::DoNotOptimize(solver.step(fleet).data());
+      spent_ns += cpu_ns() - start;
+    }
+  }
+  state.counters["ns"] = spent_ns / (queries * static_cast<double>(state.iterations()));
+  state.counters["single"] =
+      static_cast<double>(single_queries) / (queries - static_cast<double>(kPairs));
+  count(state, verdict);
+}
+
+// 0: the widest of this machine.
+template <class Solver>
+void register_fleet(const std::string& name, const std::string& load, std::int64_t target) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    Fleet fleet(workload(load));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    time_fleet<Solver>(state, fleet);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
+}
+
+}  // namespace
+
+void register_batches() {
+  for (const std::string load : kLoads) {
+    register_fleet<Batched>("batch/" + load, load, 0);
+    register_fleet<OneByOne>("batch/single/" + load, load, 0);
+    for (const std::int64_t target : {HWY_SCALAR, HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
+      if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) continue;
+      register_fleet<Batched>(std::string("batch/") + hwy::TargetName(target) + "/" + load, load,
+                              target);
+    }
+  }
+}
+
+}  // namespace clearance::bench
