@@ -93,9 +93,14 @@ TEST(DdsReports, PublishesEveryTickAsItWas) {
 
 TEST(DdsReports, TellsALateClientNamesAndZones) {
   Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_ZoneState> early(client, publisher.scene.topics.zones, Delivery::kLatched);
   publisher.tick(0.0);
   publisher.tick(0.6);  // 0.2 m away: inside the zone
-  Participant client(publisher.dds);
+  // Both reports are only queued so far: the client is late when they have been published.
+  const clearance_msg_ZoneState* seen = early.next();
+  while (seen != nullptr && !seen->active) seen = early.next();
+  ASSERT_NE(seen, nullptr);
   Reader<clearance_msg_Catalogue> catalogue(client, publisher.scene.topics.catalogue,
                                             Delivery::kLatched);
   Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
