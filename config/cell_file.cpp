@@ -123,8 +123,7 @@ void CellReader::read_dds(const YamlNode& node, Scene& scene) {
   }
   if (const YamlNode* partition = map.optional("partition")) {
     scene.partition = read_text(*partition, "a DDS partition", complaints_).value_or("");
-    if (scene.partition.find_first_of("*?[") != std::string::npos ||
-        scene.partition.size() > kMaxDdsName) {
+    if (!is_partition(scene.partition)) {
       complaints_.add(*partition,
                       "found " + describe(*partition) + "; expected a partition of at most " +
                           std::to_string(kMaxDdsName) + " bytes without wildcards (* ? [)");

@@ -12,6 +12,11 @@ std::string counted(std::size_t count, const std::string& singular) {
 
 }  // namespace
 
+bool is_partition(const std::string& name) noexcept {
+  constexpr std::size_t kLongest = 255;
+  return name.find_first_of("*?[") == std::string::npos && name.size() <= kLongest;
+}
+
 std::string summary(const Scene& scene) {
   std::size_t fixed = 0, parts = 0, facets = 0;
   for (const Object& object : scene.objects) {

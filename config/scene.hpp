@@ -77,6 +77,10 @@ struct Scene {
   Simulation simulation;  // may be empty; the monitor never looks at it
 };
 
+// A DDS partition without wildcards, which would join cells that were to be kept apart; at most 255
+// bytes, empty is the default one.
+[[nodiscard]] bool is_partition(const std::string& name) noexcept;
+
 // One line: how many objects, parts, facets, pairs and zones.
 [[nodiscard]] std::string summary(const Scene& scene);
 

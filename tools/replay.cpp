@@ -40,8 +40,8 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   const char* const kOffline = "Offline";
   app.add_option(
          "--cell", arguments.cell,
-         "The cell file; otherwise the cell that is kept in the recording. Without --offline: "
-         "only its domain and partition are used")
+         "The cell file; otherwise the cell that is kept in the recording, which lacks mesh "
+         "files. Without --offline: only its domain and partition are used")
       ->group(kOffline);
   app.add_option("-o,--output", arguments.out, "Write the reports to this recording")
       ->needs(offline)
@@ -129,6 +129,11 @@ int run(int argc, char** argv) {
   ReplayArguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
+  if (arguments.start_s > arguments.end_s) {
+    std::fprintf(stderr, "clearance-replay: --start %g lies after --end %g\n", arguments.start_s,
+                 arguments.end_s);
+    return kUsage;
+  }
   return arguments.offline ? replay_without_dds(arguments) : replay_over_dds(arguments);
 }
 

@@ -56,7 +56,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seconds", arguments.seconds,
                  "Stop after this time; 0: run until a signal comes")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--source", arguments.source, "Name of this source, at most 32 characters")
+  app.add_option("--source", arguments.source, "Name of this source, 1 to 32 bytes")
+      ->check([](const std::string& name) {
+        return !name.empty() && name.size() <= kMaxSourceLength
+                   ? std::string()
+                   : "found '" + name + "', " + std::to_string(name.size()) +
+                         " bytes; expected a name of 1 to " + std::to_string(kMaxSourceLength);
+      })
       ->capture_default_str();
   app.add_flag(
       "--latency", arguments.latency,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "config/scene.hpp"
 #include "monitor/daemon/dds.hpp"
 
 namespace clearance {
@@ -19,7 +20,13 @@ struct DdsArguments {
     app.add_option("--domain", domain, "DDS domain; otherwise the cell's, or 0")
         ->check(CLI::Range(0, 232));
     app.add_option("--partition", partition,
-                   "DDS partition; otherwise the cell's, or the default one");
+                   "DDS partition; otherwise the cell's, or the default one")
+        ->check([](const std::string& name) {
+          return is_partition(name) ? std::string()
+                                    : "found '" + name +
+                                          "'; expected a partition of at most 255 bytes without "
+                                          "wildcards (* ? [)";
+        });
     app.add_option("--interface", options.interface,
                    "Network interface; lo keeps everything on this machine")
         ->capture_default_str();

@@ -52,6 +52,7 @@ DdsPoses::DdsPoses(const Scene& scene, Participant& participant)
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
   ring_.prepare([this](PoseBatch& slot) { slot.samples.resize(samples_a_batch_); });
   tallies_.reserve(kMaxSources);
+  refused_.reserve(kMaxSources + 1);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -71,6 +72,11 @@ const PoseBatch* DdsPoses::next() noexcept {
 std::vector<SourceTally> DdsPoses::tallies() const {
   const std::lock_guard lock(tallies_mutex_);
   return tallies_;
+}
+
+std::vector<RefusedSource> DdsPoses::refused_sources() const {
+  const std::lock_guard lock(tallies_mutex_);
+  return refused_;
 }
 
 void DdsPoses::run() {
@@ -98,21 +104,32 @@ SourceTally* DdsPoses::tally_of(const SourceName& source) {
   const auto found = std::find_if(tallies_.begin(), tallies_.end(),
                                   [&](const SourceTally& tally) { return tally.source == source; });
   if (found != tallies_.end()) return &*found;
-  if (tallies_.size() == kMaxSources) {
-    if (refused_sources_.fetch_add(1) == 0) {
+  if (tallies_.size() == kMaxSources) return nullptr;
+  spdlog::info("poses from source '{}'", source.view());
+  return &tallies_.emplace_back(SourceTally{.source = source});
+}
+
+void DdsPoses::refuse(const SourceName& source, std::uint64_t poses) {
+  auto entry = std::ranges::find(refused_, source, &RefusedSource::source);
+  if (entry == refused_.end()) {
+    const bool named = refused_.size() < kMaxSources;
+    if (named) {
       spdlog::warn("source '{}' is one too many: {} sources are heard, its poses are not used",
                    source.view(), kMaxSources);
     }
-    return nullptr;
+    if (refused_.size() <= kMaxSources) refused_.push_back({named ? source : SourceName(), 0});
+    entry = refused_.end() - 1;
   }
-  spdlog::info("poses from source '{}'", source.view());
-  return &tallies_.emplace_back(SourceTally{.source = source});
+  entry->poses += poses;
 }
 
 void DdsPoses::hand_over(clearance_msg_PoseBatch& batch) {
   const std::lock_guard lock(tallies_mutex_);
   SourceTally* tally = tally_of(SourceName(batch.source));
-  if (tally == nullptr) return;
+  if (tally == nullptr) {
+    refuse(SourceName(batch.source), batch.poses._length);
+    return;
+  }
   // A smaller number is a source that started again.
   if (tally->last_ns != 0 && batch.sequence_number > tally->last_sequence + 1) {
     tally->lost += batch.sequence_number - tally->last_sequence - 1;

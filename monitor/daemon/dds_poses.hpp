@@ -29,6 +29,12 @@ struct SourceTally {
   bool warned_of_revision = false;
 };
 
+// A source beyond those that are heard.
+struct RefusedSource {
+  SourceName source;  // empty: all others together
+  std::uint64_t poses = 0;
+};
+
 class DdsPoses final : public PoseSource {
  public:
   // Poses that one batch may hold; what a source sends beyond it is counted and not used.
@@ -45,13 +51,14 @@ class DdsPoses final : public PoseSource {
 
   // Any thread but the tick's.
   [[nodiscard]] std::vector<SourceTally> tallies() const;
-  [[nodiscard]] std::uint64_t refused_sources() const noexcept { return refused_sources_.load(); }
+  [[nodiscard]] std::vector<RefusedSource> refused_sources() const;
 
  private:
   void run();
   void take_all();
   void hand_over(clearance_msg_PoseBatch& batch);
   SourceTally* tally_of(const SourceName& source);
+  void refuse(const SourceName& source, std::uint64_t poses);
 
   const Scene& scene_;
   std::size_t samples_a_batch_;
@@ -64,7 +71,7 @@ class DdsPoses final : public PoseSource {
   mutable std::mutex
       tallies_mutex_;  // between the taking and the publishing thread; never the tick's
   std::vector<SourceTally> tallies_;
-  std::atomic<std::uint64_t> refused_sources_{0};
+  std::vector<RefusedSource> refused_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

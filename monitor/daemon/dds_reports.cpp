@@ -114,8 +114,8 @@ void DdsReports::write_zones(const Report& report) {
 }
 
 void DdsReports::write_health(const Vitals& vitals) {
-  const auto sample = make_health(scene_, vitals, poses_.tallies(),
-                                  queue_.dropped_reports() + failed_writes_.load());
+  const auto sample =
+      make_health(scene_, vitals, poses_, queue_.dropped_reports() + failed_writes_.load());
   write(health_, &*sample, "health");
   health_log_.update(*sample);
 }

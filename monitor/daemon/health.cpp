@@ -25,28 +25,36 @@ void fill_loop(const Vitals& vitals, clearance_msg_Health& out) {
   out.skipped_cycles = vitals.skipped_cycles;
 }
 
-void add_rejection(clearance_msg_Health& out, const std::string& object, std::size_t cause,
+void add_rejection(clearance_msg_Health& out, const std::string& object, const char* cause,
                    std::uint64_t count) {
   if (count == 0 || out.rejected._length == out.rejected._maximum) return;
   clearance_msg_RejectCount& entry = out.rejected._buffer[out.rejected._length++];
   entry.object = dds_string_dup(object.c_str());
-  entry.cause = dds_string_dup(name(static_cast<Reject>(cause)));
+  entry.cause = dds_string_dup(cause);
   entry.count = count;
 }
 
-void fill_rejections(const Scene& scene, const Vitals& vitals, clearance_msg_Health& out) {
-  reserve_sequence(out.rejected,
-                   std::min<std::size_t>((scene.objects.size() + 1) * kRejects, 4096));
+const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
+
+void fill_rejections(const Scene& scene, const Vitals& vitals,
+                     const std::vector<RefusedSource>& refused, clearance_msg_Health& out) {
+  const std::size_t most = refused.size() + (scene.objects.size() + 1) * kRejects;
+  reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
+  for (const RefusedSource& source : refused) {
+    const std::string name(source.source.view());
+    add_rejection(out, name.empty() ? "other sources" : "source '" + name + "'",
+                  "one source too many", source.poses);
+  }
   std::array<std::uint64_t, kRejects> nameless = vitals.rejected_total;
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
     for (std::size_t cause = 0; cause < kRejects; ++cause) {
       const std::uint64_t count = vitals.rejected[object][cause];
       nameless[cause] -= std::min(count, nameless[cause]);
-      add_rejection(out, scene.objects[object].name, cause, count);
+      add_rejection(out, scene.objects[object].name, cause_name(cause), count);
     }
   }
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
-    add_rejection(out, "(no such id)", cause, nameless[cause]);
+    add_rejection(out, "(no such id)", cause_name(cause), nameless[cause]);
   }
 }
 
@@ -87,15 +95,14 @@ void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
 }  // namespace
 
 Sample<clearance_msg_Health> make_health(const Scene& scene, const Vitals& vitals,
-                                         const std::vector<SourceTally>& sources,
-                                         std::uint64_t dropped_reports) {
+                                         const DdsPoses& poses, std::uint64_t dropped_reports) {
   Sample<clearance_msg_Health> sample;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
   fill_loop(vitals, *sample);
-  fill_rejections(scene, vitals, *sample);
+  fill_rejections(scene, vitals, poses.refused_sources(), *sample);
   fill_inputs(scene, vitals, *sample);
-  fill_sources(sources, *sample);
+  fill_sources(poses.tallies(), *sample);
   return sample;
 }
 

@@ -14,7 +14,7 @@
 namespace clearance {
 
 [[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene, const Vitals& vitals,
-                                                       const std::vector<SourceTally>& sources,
+                                                       const DdsPoses& poses,
                                                        std::uint64_t dropped_reports);
 
 // Tells the log which rejections, losses and late inputs are new since the health before: a few

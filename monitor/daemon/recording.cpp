@@ -64,7 +64,7 @@ void Recording::run() {
       queue_.reports().pop();
     }
     while (const Vitals* vitals = queue_.vitals().front()) {
-      recorder_.health(*make_health(scene_, *vitals, poses_.tallies(), queue_.dropped_reports()));
+      recorder_.health(*make_health(scene_, *vitals, poses_, queue_.dropped_reports()));
       queue_.vitals().pop();
       log_trouble();
     }

@@ -81,7 +81,7 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {
   if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
-  if (all_seen_) return "no tick could be judged: none lies between the start and the end given";
+  if (all_seen_) return "no tick could be judged";
   std::vector<std::string> unseen;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) {

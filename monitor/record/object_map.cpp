@@ -18,6 +18,7 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
   if (recorded == nullptr) return;
   same_scene_ = identity_ = recorded->scene_revision == scene.revision;
   if (identity_) return;
+  any_ = false;
   std::vector<std::string> names;
   for (const Object& object : scene.objects) names.push_back(object.name);
   std::vector<bool> met(names.size(), false);
@@ -36,6 +37,7 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
     met[id] = true;
     if (!scene.objects[id].fixed) {
       id_[object.id] = id;
+      any_ = true;
     } else if (!object.is_fixed) {
       notes_.push_back("object '" + names[id] +
                        "' is fixed in the cell: its recorded poses are left out");

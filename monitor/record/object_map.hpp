@@ -24,6 +24,8 @@ class ObjectMap {
 
   // Sentences about objects that do not match.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  // Some object of the recording is a moving one of the cell, as far as can be told.
+  [[nodiscard]] bool any() const noexcept { return any_; }
   // The recording was made with this very cell.
   [[nodiscard]] bool same_scene() const noexcept { return same_scene_; }
 
@@ -31,6 +33,7 @@ class ObjectMap {
   std::uint64_t revision_;  // of batches that are taken
   bool same_scene_ = true;
   bool identity_ = true;
+  bool any_ = true;
   std::vector<std::uint32_t> id_;  // by recorded id
   std::vector<std::string> notes_;
 };

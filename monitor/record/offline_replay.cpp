@@ -53,6 +53,7 @@ class Replay {
   void compare(const TickInput& input, const Report& report);
   void compare_zones();
   void finish_reference();
+  [[nodiscard]] std::string nothing_in_window() const;
   void note_counts();
   void show_progress();
   void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
@@ -71,6 +72,7 @@ class Replay {
   std::unique_ptr<Monitor> monitor_;
 
   OfflineReplay result_;
+  std::uint64_t in_window_ = 0;  // ticks
   bool differs_ = false;
   bool gap_noted_ = false;
   bool restarted_ = false;
@@ -82,6 +84,13 @@ class Replay {
 std::string Replay::refusal() const {
   if (!expectations_.error().empty()) return expectations_.error();
   if (reference_ && !reference_->error().empty()) return reference_->error();
+  if (!feed_.objects().any()) {
+    std::string text =
+        "the recording has no object that moves in this cell; expected the cell that "
+        "it was made for, or one with the same names";
+    for (const std::string& note : feed_.objects().notes()) text += "\n" + note;
+    return text;
+  }
   if (!options_.compare) return {};
   if (!has_reports_) return "nothing to compare with: the recording holds no reports";
   if (*options_.compare == Comparison::kBits && !feed_.objects().same_scene()) {
@@ -106,6 +115,10 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   result_.damage = feed_.damage();
   result_.batches = feed_.batches();
   compare_zones();
+  if (in_window_ == 0) {
+    result_.error = nothing_in_window();
+    return std::move(result_);
+  }
   if (options_.compare && result_.compared == 0) {
     fail(0, result_.last_ns, "no report could be compared");
   }
@@ -160,6 +173,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
+  ++in_window_;
   if (reference_) {
     for (const std::string& what : reference_->check(report, *monitor_)) {
       fail(report.cycle, report.now_ns, what);
@@ -182,7 +196,12 @@ void Replay::compare(const TickInput& input, const Report& report) {
   ++result_.compared;
   if (!difference) return;
   differs_ = true;
-  fail(input.recorded->cycle, report.now_ns, "the replay differs in " + *difference);
+  const std::string what = "the replay differs in " + *difference;
+  fail(input.recorded->cycle, report.now_ns,
+       input.complete
+           ? what
+           : "poses that this tick used are not in the recording: it cannot be compared (" + what +
+                 ")");
 }
 
 // Zone changes come on a topic of their own and are compared when all are known; only where the
@@ -193,6 +212,12 @@ void Replay::compare_zones() {
   if (const auto found = zones_.first(feed_.zones())) {
     fail(found->cycle, found->now_ns, "the replay differs in " + found->what);
   }
+}
+
+std::string Replay::nothing_in_window() const {
+  if (result_.ticks == 0) return "the recording holds neither reports nor poses";
+  return "no tick lies between the start and the end given: the recording lasts " +
+         std::to_string(seconds(result_.last_ns)) + " s";
 }
 
 void Replay::finish_reference() {
@@ -219,8 +244,6 @@ void Replay::note_counts() {
     note(result_.rejected[cause],
          std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
   }
-  if (result_.ticks == 0)
-    result_.notes.emplace_back("the recording holds neither reports nor poses");
 }
 
 void Replay::show_progress() {

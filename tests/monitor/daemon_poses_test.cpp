@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/daemon/dds_poses.hpp"
+#include "monitor/daemon/health.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
@@ -12,6 +13,13 @@ namespace {
 Scene two_movers() {
   return test::cell_of(
       {test::moving("a", {test::ball(0.1)}), test::moving("b", {test::ball(0.1)})});
+}
+
+Vitals no_vitals(const Scene& scene) {
+  Vitals vitals;
+  vitals.rejected.resize(scene.objects.size());
+  vitals.ages.resize(scene.objects.size());
+  return vitals;
 }
 
 class Sender {
@@ -126,11 +134,16 @@ TEST(DdsPoses, KeepsSourcesApartAndRefusesOneTooMany) {
     senders.push_back(
         std::make_unique<Sender>(port.scene, port.dds, "source" + std::to_string(i), 4));
     port.wait_for(*senders.back());
-    senders.back()->send(100 + i);
+    senders.back()->send(100 + i, 3);
     if (i == kMaxSources) break;
     EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{100 + i});
   }
-  EXPECT_TRUE(test::eventually([&] { return port.poses.refused_sources() == 1; }));
+  EXPECT_TRUE(test::eventually([&] { return !port.poses.refused_sources().empty(); }));
+  const auto health = make_health(port.scene, no_vitals(port.scene), port.poses, 0);
+  ASSERT_EQ(health->rejected._length, 1u);
+  EXPECT_STREQ(health->rejected._buffer[0].object, "source 'source16'");
+  EXPECT_STREQ(health->rejected._buffer[0].cause, "one source too many");
+  EXPECT_EQ(health->rejected._buffer[0].count, 3u);
   EXPECT_EQ(port.poses.tallies().size(), kMaxSources);
   EXPECT_EQ(port.poses.next(), nullptr);
 }

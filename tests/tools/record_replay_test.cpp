@@ -229,5 +229,64 @@ TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
   EXPECT_EQ(0, run(kReplay, {"--offline", path("again.mcap"), "--compare"})) << output;
 }
 
+TEST_F(RecordReplay, RecorderTellsWhatItMissed) {
+  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
+  record_run(scene, folder / "run.mcap", {.ticks = 40});
+  std::vector<Kept> messages = messages_of(folder / "run.mcap");
+  const auto is_lost = [](const Kept& message) {
+    if (message.kind == TopicKind::kDistances) {
+      return decoded<clearance_msg_Distances>(message)->cycle == 7;
+    }
+    if (message.kind != TopicKind::kPoses) return false;
+    const auto batch = decoded<clearance_msg_PoseBatch>(message);
+    const bool arm = std::string_view(batch->source) == "arm";
+    return arm ? batch->sequence_number == 3 || batch->sequence_number == 5
+               : batch->sequence_number == 1;
+  };
+  std::erase_if(messages, is_lost);
+  write_messages(folder / "run.mcap", messages);
+  const auto where = dds_arguments(own_dds());
+  ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
+  ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
+      << output;
+  recorder.signal(SIGINT);
+  ASSERT_EQ(0, recorder.wait()) << recorder.output();
+  EXPECT_THAT(recorder.output(), HasSubstr("2 of the batches of source 'arm' are missing"));
+  EXPECT_THAT(recorder.output(),
+              HasSubstr("the first of the batches of source 'cell' here is number 2"));
+  EXPECT_THAT(recorder.output(), HasSubstr("1 of the reports of the daemon are missing"));
+}
+
+TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_EQ(2, replay({"--start", "0.1", "--end", "0.05"}));
+  EXPECT_THAT(output, HasSubstr("--start 0.1 lies after --end 0.05"));
+  EXPECT_EQ(1, replay({"--start", "10"}));
+  EXPECT_THAT(output, HasSubstr("no tick lies between the start and the end given"));
+  EXPECT_EQ(1, run(kReplay, with({path("run.mcap"), "--start", "10", "--wait", "0"},
+                                 dds_arguments(own_dds()))));
+  EXPECT_THAT(output, HasSubstr("no message of these topics lies between"));
+}
+
+TEST_F(RecordReplay, ReportsWithoutTheirPosesCannotBeCompared) {
+  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
+  record_run(scene, folder / "run.mcap", {.ticks = 40});
+  std::vector<Kept> messages = messages_of(folder / "run.mcap");
+  std::erase_if(messages, [](const Kept& message) { return message.kind == TopicKind::kPoses; });
+  write_messages(folder / "run.mcap", messages);
+  EXPECT_EQ(1, replay({"--compare"}));
+  EXPECT_THAT(output, HasSubstr("tick 1 (0.000000 s): poses that this tick used are not in the "
+                                "recording: it cannot be compared"));
+}
+
+TEST_F(RecordReplay, PartitionsWithWildcardsAndLongSourceNamesAreRefused) {
+  for (const std::string& program : {kDaemon, kRobot, kReplay}) {
+    EXPECT_EQ(2, run(program, {path("cell.yaml"), "--partition", "a*"})) << program;
+    EXPECT_THAT(output, HasSubstr("found 'a*'; expected a partition of at most 255 bytes"));
+  }
+  EXPECT_EQ(2, run(kRobot, {path("cell.yaml"), "--source", std::string(33, 'x')}));
+  EXPECT_THAT(output, HasSubstr("33 bytes; expected a name of 1 to 32"));
+}
+
 }  // namespace
 }  // namespace clearance::test

@@ -13,6 +13,7 @@
 #include "monitor/record/recording_writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
+#include "tools/record/stream_gaps.hpp"
 
 namespace clearance {
 namespace {
@@ -53,6 +54,8 @@ class Subscription {
     }
     return sum;
   }
+
+  [[nodiscard]] std::vector<std::string> gaps() const { return gaps_.notes(); }
 
   // In the order of kTopicKinds, so that poses stand before the reports that used them.
   void take_all() {
@@ -98,11 +101,19 @@ class Subscription {
     bytes_.resize(ddsi_serdata_size(taken.sample));
     ddsi_serdata_to_ser(taken.sample, 0, bytes_.size(), bytes_.data());
     ++counts_[index(kind)];
-    Sample<clearance_msg_Catalogue> catalogue;
-    if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue)) {
-      writer_.describe(*catalogue);
-    }
+    look_into(kind);
     writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
+  }
+
+  void look_into(TopicKind kind) {
+    if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue_)) {
+      writer_.describe(*catalogue_);
+    } else if (kind == TopicKind::kPoses && decoder_.decode(bytes_, batch_)) {
+      gaps_.note("batches", "of source '" + std::string(batch_->source) + "'",
+                 batch_->sequence_number);
+    } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
+      gaps_.note("reports", "of the daemon", report_->cycle);
+    }
   }
 
   RecordingWriter& writer_;
@@ -111,6 +122,10 @@ class Subscription {
   std::vector<Taken> taken_;
   std::vector<std::byte> bytes_;
   CdrDecoder decoder_;
+  Sample<clearance_msg_Catalogue> catalogue_;
+  Sample<clearance_msg_PoseBatch> batch_;
+  Sample<clearance_msg_Distances> report_;
+  StreamGaps gaps_;
 };
 
 void show(const Subscription& subscription, const RecordingWriter& writer, const char* end) {
@@ -166,6 +181,9 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   if (subscription.lost() > 0) {
     std::fprintf(stderr, "clearance-record: %llu samples were lost on the way here\n",
                  static_cast<unsigned long long>(subscription.lost()));
+  }
+  for (const std::string& gap : subscription.gaps()) {
+    std::fprintf(stderr, "clearance-record: %s\n", gap.c_str());
   }
   if (subscription.total() > 0) return kOk;
   std::fprintf(stderr,

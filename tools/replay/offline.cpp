@@ -121,7 +121,8 @@ int replay_without_dds(const ReplayArguments& arguments) {
   std::optional<Scene> scene = scene_or_errors(std::move(*cell));
   if (!scene) {
     if (arguments.cell.empty())
-      say("this is the cell kept in the recording; --cell takes the file");
+      say("this is the cell as the recording keeps it, without its mesh files; give the cell file "
+          "with --cell");
     return kBadCell;
   }
   return replay_in(*scene, arguments);

@@ -243,6 +243,11 @@ int Publishing::finish(const RecordingReader& reader) {
                  "clearance-replay: %llu messages do not decode as what their channel says\n",
                  static_cast<unsigned long long>(undecodable_));
   }
+  if (published_ == 0 && !stop_.wait(0)) {
+    std::fputs("clearance-replay: no message of these topics lies between the start and the end\n",
+               stderr);
+    return kFailed;
+  }
   if (!reader.error().empty()) {
     std::fprintf(stderr, "clearance-replay: %s\n", reader.error().c_str());
     return reader.readable() ? kIncomplete : kFailed;

@@ -1,0 +1,29 @@
+#include "tools/record/stream_gaps.hpp"
+
+namespace clearance {
+
+void StreamGaps::note(const std::string& kind, const std::string& stream, std::uint64_t number) {
+  const auto [entry, is_new] = streams_.try_emplace(stream, Stream{kind, number, number, 0});
+  Stream& known = entry->second;
+  if (!is_new && number > known.last) known.missing += number - known.last - 1;
+  known.last = number;
+}
+
+std::vector<std::string> StreamGaps::notes() const {
+  std::vector<std::string> notes;
+  for (const auto& [name, stream] : streams_) {
+    const std::string what = stream.kind + " " + name;
+    if (stream.first > 1) {
+      notes.push_back("the first of the " + what + " here is number " +
+                      std::to_string(stream.first) +
+                      ": those before it were sent before this recorder was known");
+    }
+    if (stream.missing > 0) {
+      notes.push_back(std::to_string(stream.missing) + " of the " + what +
+                      " are missing in between");
+    }
+  }
+  return notes;
+}
+
+}  // namespace clearance
