@@ -1,11 +1,14 @@
 #include "tools/bench/crowd.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <variant>
 
+#include "config/cell_file.hpp"
 #include "config/simulation.hpp"
+#include "config/warehouse_cell.hpp"
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/random.hpp"
@@ -15,8 +18,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kOrbit = 0.18;  // m
-constexpr double kSpeed = 1.0;   // m/s
-constexpr double kSpin = 2.0;    // rad/s
+constexpr double kSpin = 2.0;    // rad/s for each m/s
 
 ConvexPolyhedron made(ShapeResult result) { return std::get<ConvexPolyhedron>(std::move(result)); }
 
@@ -91,7 +93,8 @@ void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample
   }
 }
 
-Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving) {
+Crowd orbiting_crowd(const OrbitingOptions& options) {
+  const std::uint32_t count = options.count, moving = options.moving;
   Random draw(count);
   Crowd crowd;
   crowd.scene.name = crowd.name = std::to_string(count) + "_of_which_" + std::to_string(moving);
@@ -100,18 +103,19 @@ Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving) {
   for (std::uint32_t i = 0; i < count; ++i) {
     crowd.scene.objects.push_back(
         object_of("body_" + std::to_string(i), body(i, draw.uniform(0.15, 0.28), draw)));
+    crowd.scene.objects.back().max_speed *= std::max(1.0, options.speed);
     Crowd::Orbit orbit;
     orbit.object = i;
-    orbit.centre = Vec3(i % side, i / side % side, i / side / side);
+    orbit.centre = options.spacing * Vec3(i % side, i / side % side, i / side / side);
     const Eigen::Quaterniond plane = draw.turn();
     // Movers are spread evenly over the others.
     const bool moves = static_cast<std::uint64_t>(i) * moving / count !=
                        (static_cast<std::uint64_t>(i) + 1) * moving / count;
     orbit.across = kOrbit * (plane * Vec3::UnitX());
     orbit.along = kOrbit * (plane * Vec3::UnitY());
-    orbit.turn_rate = moves ? kSpeed / kOrbit : 0.0;
+    orbit.turn_rate = moves ? options.speed / kOrbit : 0.0;
     orbit.spin_axis = draw.direction();
-    orbit.spin_rate = moves ? kSpin : 0.0;
+    orbit.spin_rate = moves ? kSpin * options.speed : 0.0;
     crowd.orbits.push_back(orbit);
   }
   for (std::uint32_t a = 0; a < count; ++a) {
@@ -157,6 +161,13 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
       if (b >= kLinks || b > a + 2) crowd.scene.pairs.push_back({a, b, false});
     }
   }
+  return crowd;
+}
+
+Crowd warehouse_crowd(std::uint32_t objects) {
+  Crowd crowd;
+  crowd.scene = std::get<Scene>(parse_cell(warehouse_cell({.objects = objects}), "warehouse.yaml"));
+  crowd.name = crowd.scene.name;
   return crowd;
 }
 

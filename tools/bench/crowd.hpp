@@ -28,14 +28,24 @@ struct Crowd {
   void samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const;
 };
 
-// `count` boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of
-// a cubic grid of 1 m, of which `moving` go round in circles of 0.18 m at 1 m/s and 2 rad/s. No two
-// ever meet; neighbours come as near as 0.08 m. All pairs are watched; what does not
-// move sends the same pose in every tick.
-[[nodiscard]] Crowd orbiting_crowd(std::uint32_t count, std::uint32_t moving);
+struct OrbitingOptions {
+  std::uint32_t count = 100, moving = 100;
+  double speed = 1.0;    // m/s; they spin at 2 rad/s for each
+  double spacing = 1.0;  // of the grid, m; at least 1
+};
+
+// Boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of a cubic
+// grid, of which `moving` go round in circles of 0.18 m. No two ever meet; in a grid of 1 m
+// neighbours come as near as 0.08 m. All pairs are watched; what does not move sends the same pose
+// in every tick.
+[[nodiscard]] Crowd orbiting_crowd(const OrbitingOptions& options);
 
 // A serial arm of 20 links among `obstacles` fixed bodies around it; all pairs of a link and an
 // obstacle, and all pairs of links that are not neighbours or next neighbours.
 [[nodiscard]] Crowd robot_in_crowd(std::uint32_t obstacles);
+
+// The generated warehouse of config/warehouse_cell.hpp: objects of up to eight parts, of which one
+// in twenty moves.
+[[nodiscard]] Crowd warehouse_crowd(std::uint32_t objects);
 
 }  // namespace clearance::bench

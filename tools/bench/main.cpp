@@ -38,14 +38,23 @@ constexpr const char* kHelp =
     "  cell/batch/NAME    a round of all the cell's part pairs at once; ns_per_pair\n"
     "  cell/tick/NAME     one Monitor::tick; counters p50, p99.9 and max in ns\n"
     "  tick/NAME          one Monitor::tick of a generated cell of thousands to millions of pairs\n"
+    "  tick/NAME/plain    the same evaluating every pair; tick/NAME/fcl the minimum alone, by "
+    "FCL's\n"
+    "                     DynamicAABBTreeCollisionManager\n"
+    "  sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), "
+    "and of\n"
+    "                     other numbers of objects\n"
     "\n"
     "Counters: ns a query; max_error in m against a reference in long doubles; failures (flag,\n"
     "NaN, or error above 1e-6 m) among the 4,000 queries; iterations, mean, 0 where not told;\n"
     "truth_gap, how far the reference itself may be off; overlapping, how many pairs are.\n"
     "\n"
-    "  --tick             the ticks alone, as --benchmark_filter=tick/ does\n"
-    "  --report DIR       runs all but the cells, which takes a few minutes, and writes\n"
+    "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
+    "  --report DIR       runs all but cells and ticks, which takes a few minutes, and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
+    "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
+    "and\n"
+    "                     DIR/ticks.svg, cost against the number of pairs, speed and density\n"
     "\n"
     "example: clearance-bench --benchmark_filter='tracked/(f|v)' --benchmark_repetitions=5\n"
     "         clearance-bench --report build/report\n"
@@ -64,7 +73,8 @@ void register_all() {
 }
 
 // What --report asks of Google Benchmark, unless the caller asks for something else.
-std::vector<std::string> report_options() {
+std::vector<std::string> report_options(bool ticks) {
+  if (ticks) return {std::string("--benchmark_filter=") + clearance::bench::kTickRows};
   return {std::string("--benchmark_filter=") + clearance::bench::kReportRows,
           "--benchmark_min_time=0.02", "--benchmark_repetitions=3",
           "--benchmark_enable_random_interleaving=true"};
@@ -74,12 +84,13 @@ std::vector<std::string> report_options() {
 
 int main(int argc, char** argv) {
   std::optional<std::filesystem::path> report;
+  bool ticks = false;
   std::vector<std::string> options, others;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);
     if (word == "--tick") {
-      others.emplace_back("--benchmark_filter=tick/");
+      ticks = true;
     } else if (word != "--report") {
       others.emplace_back(word);
     } else if (i + 1 < argc) {
@@ -89,7 +100,11 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  if (report) options = report_options();
+  if (report) {
+    options = report_options(ticks);
+  } else if (ticks) {
+    options = {"--benchmark_filter=^tick/"};
+  }
   options.insert(options.end(), others.begin(), others.end());
   std::vector<char*> words{argv[0]};
   for (std::string& option : options) words.push_back(option.data());
@@ -100,7 +115,8 @@ int main(int argc, char** argv) {
   if (report) {
     clearance::bench::Collector collector;
     benchmark::RunSpecifiedBenchmarks(&collector);
-    if (!clearance::bench::write_report(*report, collector.figures())) return 1;
+    const auto write = ticks ? clearance::bench::write_tick_report : clearance::bench::write_report;
+    if (!write(*report, collector.figures())) return 1;
   } else {
     benchmark::RunSpecifiedBenchmarks();
   }

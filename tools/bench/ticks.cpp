@@ -1,17 +1,14 @@
 #include "tools/bench/ticks.hpp"
 
-#include <benchmark/benchmark.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <bit>
-#include <functional>
-#include <string>
-#include <vector>
+#include <limits>
 
 #include "monitor/monitor.hpp"
 #include "tools/bench/cpu_clock.hpp"
-#include "tools/bench/crowd.hpp"
+#include "tools/bench/peers/peers.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -19,6 +16,7 @@ namespace {
 // Until everything is known and has been looked at once.
 constexpr int kStartUpTicks = 500;
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
+constexpr std::int64_t kFirst = 1'000'000'000;
 
 double allocated_bytes() {
   const struct mallinfo2 info = mallinfo2();
@@ -49,8 +47,18 @@ class Run {
  public:
   explicit Run(const Crowd& crowd) : crowd_(crowd), monitor_(crowd.scene) {}
 
+  // Until everything has been looked at once; returns the longest tick, ns.
+  double start_up() {
+    double longest = 0.0;
+    const int ticks = crowd_.scene.evaluate_all ? 10 : kStartUpTicks;
+    for (tick_ = -ticks; tick_ < 0;) {
+      prepare();
+      longest = std::max(longest, tick());
+    }
+    return longest;
+  }
   void prepare() {
-    now_ns_ += kPeriod;
+    now_ns_ = stamp_ns(tick_++);
     crowd_.samples_at(1e-9 * static_cast<double>(now_ns_), now_ns_, samples_);
   }
   // Thread CPU time of one tick, ns.
@@ -65,22 +73,18 @@ class Run {
   const Crowd& crowd_;
   Monitor monitor_;
   std::vector<PoseSample> samples_;
-  std::int64_t now_ns_ = 1'000'000'000;
+  int tick_ = 0;
+  std::int64_t now_ns_ = 0;
   const Report* report_ = nullptr;
 };
 
-void time_crowd(benchmark::State& state, const std::function<Crowd()>& make) {
+void time_crowd(benchmark::State& state, const MakeCrowd& make) {
   const Crowd crowd = make();
   const double bytes_before = allocated_bytes(), start = cpu_ns();
   Run run(crowd);
   const double construction = cpu_ns() - start;
   const double bytes = allocated_bytes() - bytes_before;
-  double start_up_max = 0.0;
-  const bool plain = crowd.scene.evaluate_all;
-  for (int t = 0; t < (plain ? 10 : kStartUpTicks); ++t) {
-    run.prepare();
-    start_up_max = std::max(start_up_max, run.tick());
-  }
+  const double start_up_max = run.start_up();
 
   std::vector<double> times;
   std::uint64_t queries = 0, proved = 0;
@@ -94,12 +98,9 @@ void time_crowd(benchmark::State& state, const std::function<Crowd()>& make) {
     proved += run.report().minimum_proved;
     hash.add(run.report());
   }
-  std::sort(times.begin(), times.end());
   const double ticks = static_cast<double>(times.size());
   const double pairs = static_cast<double>(crowd.scene.pairs.size());
-  state.counters["p50_us"] = 1e-3 * quantile(times, 0.5);
-  state.counters["p99.9_us"] = 1e-3 * quantile(times, 0.999);
-  state.counters["max_us"] = 1e-3 * times.back();
+  count_times(times, state);
   state.counters["queries"] = static_cast<double>(queries) / ticks;
   state.counters["proved"] = static_cast<double>(proved) / ticks;
   state.counters["pairs"] = pairs;
@@ -109,39 +110,102 @@ void time_crowd(benchmark::State& state, const std::function<Crowd()>& make) {
   state.counters["hash"] = hash.value();
 }
 
-void register_crowd(const std::string& name, int ticks, const std::function<Crowd()>& make) {
-  benchmark::RegisterBenchmark(name.c_str(), [make](benchmark::State& s) { time_crowd(s, make); })
+void register_crowd(const std::string& name, int ticks, const MakeCrowd& make) {
+  register_tick_row(name, ticks, [make](benchmark::State& s) { time_crowd(s, make); });
+}
+
+// The same with a budget that covers every pair: each is evaluated in every tick.
+void register_plain(const std::string& name, int ticks, const MakeCrowd& make) {
+  register_crowd(name + "/plain", ticks, [make] {
+    Crowd crowd = make();
+    crowd.scene.evaluate_all = true;
+    std::uint64_t rows = 0;
+    for (const ObjectPair& pair : crowd.scene.pairs) {
+      rows += crowd.scene.objects[pair.first].parts.size() *
+              crowd.scene.objects[pair.second].parts.size();
+    }
+    crowd.scene.budget = static_cast<std::uint32_t>(rows);
+    return crowd;
+  });
+}
+
+struct Ticks {
+  int ours, plain, fcl;  // how many are timed; 0: none
+};
+
+void register_all(const std::string& name, const Ticks& ticks, const MakeCrowd& make) {
+  register_crowd(name, ticks.ours, make);
+  if (ticks.plain > 0) register_plain(name, ticks.plain, make);
+#ifdef CLEARANCE_BENCH_FCL
+  if (ticks.fcl > 0) register_fcl_manager(name + "/fcl", ticks.fcl, make);
+#endif
+}
+
+// Cost against the number of pairs, speed and density.
+void register_sweeps() {
+  const auto sweep = [](const std::string& name, const OrbitingOptions& options) {
+    const int plain = options.count > 500 ? 10 : 50;
+    register_all("sweep/" + name, {1'000, plain, 100},
+                 [options] { return orbiting_crowd(options); });
+  };
+  for (const std::uint32_t count : {30u, 100u, 300u, 1000u}) {
+    sweep("objects/" + std::to_string(count), {.count = count, .moving = count});
+  }
+  for (const char* speed : {"0.1", "0.3", "1", "3", "10"}) {
+    sweep(std::string("speed/") + speed,
+          {.count = 300, .moving = 300, .speed = std::stod(speed), .spacing = 1.0});
+  }
+  for (const char* spacing : {"1", "1.5", "2.2", "3.2", "4.6"}) {
+    sweep(std::string("spacing/") + spacing,
+          {.count = 300, .moving = 300, .speed = 1.0, .spacing = std::stod(spacing)});
+  }
+}
+
+}  // namespace
+
+std::int64_t stamp_ns(int tick) { return kFirst + (kStartUpTicks + tick) * kPeriod; }
+
+std::vector<double> proved_minima(const Crowd& crowd, int ticks) {
+  Run run(crowd);
+  run.start_up();
+  std::vector<double> minima;
+  for (int t = 0; t < ticks; ++t) {
+    run.prepare();
+    run.tick();
+    minima.push_back(run.report().minimum_proved ? run.report().minimum.distance
+                                                 : std::numeric_limits<double>::quiet_NaN());
+  }
+  return minima;
+}
+
+void count_times(std::vector<double>& times, benchmark::State& state) {
+  std::sort(times.begin(), times.end());
+  state.counters["p50_us"] = 1e-3 * quantile(times, 0.5);
+  state.counters["p99.9_us"] = 1e-3 * quantile(times, 0.999);
+  state.counters["max_us"] = 1e-3 * times.back();
+}
+
+void register_tick_row(const std::string& name, int ticks,
+                       const std::function<void(benchmark::State&)>& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)
       ->Iterations(ticks)
       ->UseManualTime()
       ->Unit(benchmark::kMicrosecond);
 }
 
-// The same with a budget that covers every pair: each is evaluated in every tick.
-void register_plain(const std::string& name, int ticks, const std::function<Crowd()>& make) {
-  register_crowd(name + "/plain", ticks, [make] {
-    Crowd crowd = make();
-    crowd.scene.evaluate_all = true;
-    crowd.scene.budget = static_cast<std::uint32_t>(crowd.scene.pairs.size());
-    return crowd;
-  });
-}
-
-}  // namespace
-
 void register_ticks() {
-  const auto robot = [] { return robot_in_crowd(100); };
   const auto all_moving = [](std::uint32_t count) {
-    return [count] { return orbiting_crowd(count, count); };
+    return [count] { return orbiting_crowd({.count = count, .moving = count}); };
   };
-  register_crowd("tick/robot_2k", 20'000, robot);
-  register_plain("tick/robot_2k", 2'000, robot);
-  register_crowd("tick/100_all_moving_5k", 20'000, all_moving(100));
-  register_plain("tick/100_all_moving_5k", 2'000, all_moving(100));
-  register_crowd("tick/300_all_moving_45k", 10'000, all_moving(300));
-  register_plain("tick/300_all_moving_45k", 200, all_moving(300));
-  register_crowd("tick/1000_all_moving_500k", 5'000, all_moving(1000));
-  register_plain("tick/1000_all_moving_500k", 20, all_moving(1000));
-  register_crowd("tick/3000_few_moving_4500k", 5'000, [] { return orbiting_crowd(3000, 150); });
+  register_all("tick/robot_2k", {20'000, 2'000, 1'000}, [] { return robot_in_crowd(100); });
+  register_all("tick/100_all_moving_5k", {20'000, 2'000, 1'000}, all_moving(100));
+  register_all("tick/300_all_moving_45k", {10'000, 200, 300}, all_moving(300));
+  register_all("tick/warehouse_49k", {10'000, 100, 300}, [] { return warehouse_crowd(1000); });
+  register_all("tick/1000_all_moving_500k", {5'000, 20, 100}, all_moving(1000));
+  // Plain evaluation of these would take seconds a tick.
+  register_all("tick/3000_few_moving_4500k", {5'000, 0, 100},
+               [] { return orbiting_crowd({.count = 3000, .moving = 150}); });
+  register_sweeps();
 }
 
 }  // namespace clearance::bench

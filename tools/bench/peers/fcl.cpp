@@ -1,41 +1,18 @@
-#include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
 
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
+#include "tools/bench/peers/fcl_bodies.hpp"
 #include "tools/bench/peers/peers.hpp"
-#include "tools/bench/peers/welded.hpp"
 
 namespace clearance::bench {
 namespace {
 
-using Hull = fcl::Convex<double>;
-
-// Its faces as FCL wants them: the number of corners, then the corners counter-clockwise.
-std::shared_ptr<Hull> hull(const ConvexPolyhedron& body) {
-  const Welded mesh = welded(body);
-  const auto points =
-      std::make_shared<std::vector<fcl::Vector3d>>(mesh.points.begin(), mesh.points.end());
-  const auto faces = std::make_shared<std::vector<int>>();
-  for (const std::vector<int>& face : mesh.faces) {
-    faces->push_back(static_cast<int>(face.size()));
-    faces->insert(faces->end(), face.begin(), face.end());
-  }
-  return std::make_shared<Hull>(points, static_cast<int>(mesh.faces.size()), faces);
-}
-
-fcl::Transform3d transform_of(const Pose& pose) {
-  fcl::Transform3d t = fcl::Transform3d::Identity();
-  t.linear() = pose.orientation.toRotationMatrix();
-  t.translation() = pose.position;
-  return t;
-}
-
 class Pair {
  public:
-  using Shape = std::shared_ptr<Hull>;
-  static Shape shape(const ConvexPolyhedron& body) { return hull(body); }
+  using Shape = std::shared_ptr<FclHull>;
+  static Shape shape(const ConvexPolyhedron& body) { return fcl_hull(body); }
   Pair(Shape a, Shape b) : a_(std::move(a)), b_(std::move(b)) {}
 
  protected:
@@ -43,7 +20,7 @@ class Pair {
   Answer ask(const Gjk& gjk, const Pose& world_from_a, const Pose& world_from_b) {
     double apart = 0.0;
     fcl::Vector3d on_a, on_b;
-    gjk.shapeDistance(*a_, transform_of(world_from_a), *b_, transform_of(world_from_b), &apart,
+    gjk.shapeDistance(*a_, fcl_transform(world_from_a), *b_, fcl_transform(world_from_b), &apart,
                       &on_a, &on_b);
     return {.distance = apart};
   }

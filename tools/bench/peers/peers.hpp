@@ -3,7 +3,10 @@
 // own warm start where it has one, its solver called directly rather than through its scene.
 #pragma once
 
+#include <functional>
 #include <string>
+
+#include "tools/bench/crowd.hpp"
 
 namespace clearance::bench {
 
@@ -19,6 +22,10 @@ void register_bullet();
 void register_libccd();
 // A general primal active-set QP; see qp.cpp.
 void register_qp();
+
+// The minimum over all pairs of a crowd by FCL's DynamicAABBTreeCollisionManager; see
+// fcl_manager.cpp.
+void register_fcl_manager(const std::string& name, int ticks, const std::function<Crowd()>& make);
 
 // All of them; says on stderr which are left out because they are not installed.
 void register_peers();

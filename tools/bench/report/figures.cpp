@@ -21,6 +21,7 @@ void Figures::add(const benchmark::BenchmarkReporter::Run& run) {
   figure.iterations = counter(run, "iterations");
   figure.facets = counter(run, "facets");
   figure.wrong = counter(run, "wrong");
+  for (const auto& [name, value] : run.counters) figure.counters[name] = value.value;
 }
 
 void Collector::ReportRuns(const std::vector<Run>& runs) {

@@ -15,6 +15,12 @@ struct Figure {
   double failures = 0.0;
   double iterations = 0.0;
   double facets = 0.0, wrong = 0.0;  // adjacency only
+  // Of ticks: all that the row counts; 0 where it does not.
+  std::map<std::string, double> counters;
+  [[nodiscard]] double counted(const std::string& name) const {
+    const auto found = counters.find(name);
+    return found == counters.end() ? 0.0 : found->second;
+  }
 };
 
 class Figures {
@@ -24,6 +30,7 @@ class Figures {
     const auto found = rows_.find(name);
     return found == rows_.end() ? nullptr : &found->second;
   }
+  [[nodiscard]] const std::map<std::string, Figure>& rows() const { return rows_; }
   void add(const benchmark::BenchmarkReporter::Run& run);
 
  private:

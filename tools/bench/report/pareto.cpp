@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <string>
 
 #include "tools/bench/report/report.hpp"
+#include "tools/bench/report/svg.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -41,13 +41,6 @@ struct Size {
 };
 constexpr Size kSizes[] = {{"f2", "12 facets", 4.0}, {"f10", "256", 6.5}, {"f40", "4,084", 9.5}};
 
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char buffer[400];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 class Panel {
  public:
   Panel(std::ostream& out, double left) : out_(out), left_(left) {}
@@ -80,27 +73,17 @@ class Panel {
       if (!f) continue;
       const double x = at_time(f->ns), y = at_error(f->max_error);
       path += print("%s%.1f %.1f", path.empty() ? "M" : " L", x, y);
-      circles += print(
-          "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" fill-opacity=\"0.85\" "
-          "stroke=\"%s\" stroke-width=\"2\"/>\n",
-          x, y, size.radius, f->failures > 0.0 ? "#ffffff" : solver.colour, solver.colour);
+      circles += svg_circle(x, y, size.radius, f->failures > 0.0 ? "#ffffff" : solver.colour,
+                            solver.colour);
     }
-    out_ << print("<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\"/>\n",
-                  path.c_str(), solver.colour)
-         << circles;
+    out_ << svg_path(path, solver.colour) << circles;
   }
 
   void text(double x, double y, const std::string& words, const char* anchor, int size) const {
-    out_ << print("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\">%s</text>\n", x,
-                  y, anchor, size, words.c_str());
+    out_ << svg_text(x, y, words, anchor, size);
   }
 
  private:
-  static std::string time_label(int exponent) {
-    const char* const units[] = {"ns", "&#181;s", "ms"};
-    const int thousands = exponent / 3;
-    return print("%.0f %s", std::pow(10.0, exponent - 3 * thousands), units[thousands]);
-  }
   [[nodiscard]] double at_time(double ns) const {
     const double share = (std::log10(ns) - kFirstTime) / (kLastTime - kFirstTime);
     return left_ + kPanelWidth * std::clamp(share, 0.0, 1.0);
@@ -112,10 +95,7 @@ class Panel {
   }
   void line(double x1, double y1, double x2, double y2, const char* colour,
             const char* dashes = "none") const {
-    out_ << print(
-        "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" "
-        "stroke-dasharray=\"%s\"/>\n",
-        x1, y1, x2, y2, colour, dashes);
+    out_ << svg_line(x1, y1, x2, y2, colour, dashes);
   }
 
   std::ostream& out_;
@@ -144,11 +124,6 @@ void legend(std::ostream& out, const Panel& page) {
 
 std::string pareto(const Figures& figures) {
   std::ostringstream out;
-  out << print(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
-      "viewBox=\"0 0 %.0f %.0f\" font-family=\"sans-serif\" fill=\"#222222\">\n",
-      kWidth, kHeight, kWidth, kHeight);
-  out << "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   const Panel tracked(out, kLeft), cold(out, kLeft + kPanelWidth + kGap);
   tracked.text(kWidth / 2, 32, "Largest error against time: distance of two facet-balls", "middle",
                19);
@@ -159,8 +134,7 @@ std::string pareto(const Figures& figures) {
     cold.draw(solver, figures, "cold");
   }
   legend(out, tracked);
-  out << "</svg>\n";
-  return out.str();
+  return svg_page(kWidth, kHeight, out.str());
 }
 
 }  // namespace clearance::bench

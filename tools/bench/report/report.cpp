@@ -16,9 +16,9 @@ bool write(const std::filesystem::path& file, const std::string& text) {
   return false;
 }
 
-}  // namespace
-
-bool write_report(const std::filesystem::path& folder, const Figures& figures) {
+// Two files of the folder, which is made if it is not there.
+bool write_both(const std::filesystem::path& folder, const char* table_file,
+                const std::string& table, const char* picture_file, const std::string& picture) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -26,11 +26,21 @@ bool write_report(const std::filesystem::path& folder, const Figures& figures) {
                  error.message().c_str());
     return false;
   }
-  if (!write(folder / "report.md", tables(figures))) return false;
-  if (!write(folder / "pareto.svg", pareto(figures))) return false;
-  std::fprintf(stderr, "\r\033[Kwritten: %s and %s\n", (folder / "report.md").c_str(),
-               (folder / "pareto.svg").c_str());
+  if (!write(folder / table_file, table)) return false;
+  if (!write(folder / picture_file, picture)) return false;
+  std::fprintf(stderr, "\r\033[Kwritten: %s and %s\n", (folder / table_file).c_str(),
+               (folder / picture_file).c_str());
   return true;
+}
+
+}  // namespace
+
+bool write_report(const std::filesystem::path& folder, const Figures& figures) {
+  return write_both(folder, "report.md", tables(figures), "pareto.svg", pareto(figures));
+}
+
+bool write_tick_report(const std::filesystem::path& folder, const Figures& figures) {
+  return write_both(folder, "ticks.md", tick_tables(figures), "ticks.svg", tick_curves(figures));
 }
 
 }  // namespace clearance::bench

@@ -16,8 +16,15 @@ inline constexpr const char* kReportRows =
 // Writes DIR/report.md and DIR/pareto.svg. False, and says so on stderr, when it cannot.
 [[nodiscard]] bool write_report(const std::filesystem::path& folder, const Figures& figures);
 
-// The parts of it.
+// The same of whole ticks: DIR/ticks.md, the table, and DIR/ticks.svg, cost against the number of
+// pairs, speed and density.
+inline constexpr const char* kTickRows = "^(tick|sweep)/";
+[[nodiscard]] bool write_tick_report(const std::filesystem::path& folder, const Figures& figures);
+
+// The parts of them.
 [[nodiscard]] std::string tables(const Figures& figures);
 [[nodiscard]] std::string pareto(const Figures& figures);
+[[nodiscard]] std::string tick_tables(const Figures& figures);
+[[nodiscard]] std::string tick_curves(const Figures& figures);
 
 }  // namespace clearance::bench

@@ -1,41 +1,16 @@
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 #include <vector>
 
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/intervals.hpp"
+#include "tools/bench/report/print.hpp"
 #include "tools/bench/report/report.hpp"
+#include "tools/bench/report/table.hpp"
 #include "tools/bench/workload.hpp"
 
 namespace clearance::bench {
 namespace {
-
-using Cells = std::vector<std::string>;
-
-// A Markdown table.
-class Table {
- public:
-  explicit Table(const Cells& head) {
-    row(head);
-    row(Cells(head.size(), "---:"));
-  }
-  void row(const Cells& cells) {
-    for (const std::string& cell : cells) text_ << "| " << cell << ' ';
-    text_ << "|\n";
-  }
-  [[nodiscard]] std::string text() const { return text_.str() + "\n"; }
-
- private:
-  std::ostringstream text_;
-};
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 std::string time_of(double ns) { return ns < 10000.0 ? print("%.0f", ns) : print("%.2e", ns); }
 
