@@ -9,7 +9,6 @@
 
 #include "core/batch_block.hpp"
 #include "core/batch_lane.hpp"
-#include "core/rounding.hpp"
 
 namespace clearance {
 namespace {
@@ -23,16 +22,6 @@ constexpr std::uint32_t kRetry = 8;
 
 // Lanes of each kind that may be empty.
 constexpr std::size_t kMostHoles = 8;
-
-PlacedBody placed(const Pose& pose) noexcept {
-  const Eigen::Quaterniond& q = pose.orientation;
-  return {q.x(),
-          q.y(),
-          q.z(),
-          q.w(),
-          {pose.position.x(), pose.position.y(), pose.position.z()},
-          permutes_axes(q) ? kPermutedTranslationError : kTranslationError};
-}
 
 bool same_features(const TrackingState& s, const TrackingState& t) noexcept {
   return s.a.dimension == t.a.dimension && s.a.feature == t.a.feature && s.a.deep == t.a.deep &&
@@ -48,7 +37,6 @@ class DistanceBatch::Rounds {
         pairs_(pairs.begin(), pairs.end()),
         states_(pairs.size()),
         slots_(pairs.size(), kNowhere),
-        placed_(bodies.size()),
         results_(pairs.size() + 1),
         blocks_((pairs.size() + kFeatureKinds * kMostHoles) / kBlockLanes + kFeatureKinds),
         failed_(pairs.size()) {
@@ -63,9 +51,8 @@ class DistanceBatch::Rounds {
 
   std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept {
     assert(world_from_body.size() == bodies_.size());
-    std::transform(world_from_body.begin(), world_from_body.end(), placed_.begin(), placed);
     ++rounds_;
-    const std::size_t failures = judge_blocks();
+    const std::size_t failures = judge_blocks(world_from_body);
     single_queries_ = loose_.size() + failures;
     ask_loose(world_from_body);
     for (std::size_t i = 0; i < failures; ++i) ask_failed(failed_[i], world_from_body);
@@ -108,10 +95,10 @@ class DistanceBatch::Rounds {
     return settled_[static_cast<std::size_t>(kind)];
   }
 
-  std::size_t judge_blocks() noexcept {
+  std::size_t judge_blocks(std::span<const Pose> poses) noexcept {
     BatchRound round;
     round.blocks = blocks_.data();
-    round.bodies = placed_.data();
+    round.world_from_body = poses.data();
     round.results = results_.data();
     round.failed = failed_.data();
     round.no_pair = no_pair();
@@ -252,7 +239,6 @@ class DistanceBatch::Rounds {
   std::vector<BodyPair> pairs_;
   std::vector<TrackingState> states_;    // points of pairs in a block are there
   std::vector<Slot> slots_;              // [pair]
-  std::vector<PlacedBody> placed_;       // [body]
   std::vector<DistanceResult> results_;  // [pair], and one for lanes that are not in use
   std::vector<BatchBlock> blocks_;
   std::array<Settled, kFeatureKinds> settled_;

@@ -27,7 +27,7 @@ enum class FeatureKind : std::uint8_t {
 };
 inline constexpr std::size_t kFeatureKinds = 6;
 
-// Rows that every kind has. Lengths in metres; `unbounded` is 1 or 0.
+// Rows that every kind has. Lengths in metres; `unbounded` and `edgeless` are 1 or 0.
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
@@ -37,6 +37,8 @@ enum CommonRow : std::size_t {
   kUnboundedB,
   kRadiusA,
   kRadiusB,
+  kEdgelessA,  // the feature is a body that is a single point
+  kEdgelessB,
   kPointA,                // 3 rows: the witness points of the last query, each in its body's frame
   kPointB = kPointA + 3,  // 3 rows
   kFeatureRows = kPointB + 3
@@ -69,22 +71,15 @@ struct alignas(64) BatchBlock {
   std::array<std::uint8_t, kBlockLanes> repeats_a{}, repeats_b{};
   std::uint8_t most_a = 0, most_b = 0;
   std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
-  bool plain = true;       // no body in it has been unbounded or with a radius
+  bool plain = true;       // no body in it has been unbounded, a point, or with a radius
   FeatureKind kind = FeatureKind::kVertexVertex;
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
-};
-
-// A body's pose as vector code reads it: one cache line.
-struct alignas(64) PlacedBody {
-  double x, y, z, w;  // orientation
-  double position[3];
-  double translation_error;  // relative, of a difference of positions seen in this body's frame
 };
 
 // One round of the vector code over all blocks.
 struct BatchRound {
   BatchBlock* blocks = nullptr;
-  const PlacedBody* bodies = nullptr;
+  const Pose* world_from_body = nullptr;
   DistanceResult* results = nullptr;  // [pair]
   struct List {
     const std::uint32_t* blocks = nullptr;

@@ -24,8 +24,8 @@ struct Closest {
 
 // Where a lane's rows are and how often what repeats does.
 struct FeatureRows {
-  const double* rows;  // at kFeatureRows, of the first lane
-  std::size_t repeats_a, repeats_b;
+  const double* rows;  // of the first lane, at kFeatureRows
+  const BatchBlock& block;
 
   [[nodiscard]] HWY_INLINE Points points(std::size_t row) const {
     return load_points(rows + row * kBlockLanes);
@@ -33,28 +33,40 @@ struct FeatureRows {
   [[nodiscard]] HWY_INLINE Lanes lanes(std::size_t row) const {
     return load(rows + row * kBlockLanes);
   }
+  [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
+    return load(rows - (kFeatureRows - row) * kBlockLanes);
+  }
 };
 
-HWY_INLINE Lanes infinity() { return all(kInfinity); }
+// The edges of a vertex of A's or B's. Of a point, which has none, all fall away.
+template <bool kOfB>
+struct VertexEdges {
+  const FeatureRows& at;
+  std::size_t row;
 
-// The least rate of `count` edge directions along g: all fall away from the other body when it is
-// certainly positive, g pointing away.
-HWY_INLINE Lanes least_rate(const FeatureRows& at, std::size_t row, std::size_t count,
-                            const Points& g) {
-  Lanes least = infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    least = hn::Min(least, dot(at.points(row + kDirectionRows * i), g));
+  [[nodiscard]] HWY_INLINE Lanes least_rate(const Points& g) const {
+    Lanes least = all(kInfinity);
+    for (std::size_t i = 0; i < count(); ++i) least = hn::Min(least, rate(i, g));
+    return at.block.plain ? least : unless_point(all(kInfinity), least);
   }
-  return least;
-}
-HWY_INLINE Lanes greatest_rate(const FeatureRows& at, std::size_t row, std::size_t count,
-                               const Points& g) {
-  Lanes greatest = all(-kInfinity);
-  for (std::size_t i = 0; i < count; ++i) {
-    greatest = hn::Max(greatest, dot(at.points(row + kDirectionRows * i), g));
+  [[nodiscard]] HWY_INLINE Lanes greatest_rate(const Points& g) const {
+    Lanes greatest = all(-kInfinity);
+    for (std::size_t i = 0; i < count(); ++i) greatest = hn::Max(greatest, rate(i, g));
+    return at.block.plain ? greatest : unless_point(all(-kInfinity), greatest);
   }
-  return greatest;
-}
+
+ private:
+  [[nodiscard]] HWY_INLINE std::size_t count() const {
+    return kOfB ? at.block.most_b : at.block.most_a;
+  }
+  [[nodiscard]] HWY_INLINE Lanes rate(std::size_t i, const Points& g) const {
+    return dot(at.points(row + kDirectionRows * i), g);
+  }
+  [[nodiscard]] HWY_INLINE Lanes unless_point(Lanes of_point, Lanes of_edges) const {
+    const Lanes edgeless = at.common(kOfB ? kEdgelessB : kEdgelessA);
+    return hn::IfThenElse(hn::Eq(edgeless, all(0.0)), of_edges, of_point);
+  }
+};
 
 HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
@@ -65,8 +77,9 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   c.apart = c.proved = norm(g);
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
   c.normal = over(g, c.apart);
-  const Lanes on_a = greatest_rate(at, kDirectionsOfA, at.repeats_a, g);
-  const Lanes on_b = least_rate(at, kDirectionsOfB, at.repeats_b, rotate_back(pose.rotation, g));
+  const Lanes on_a = VertexEdges<false>{at, kDirectionsOfA}.greatest_rate(g);
+  const Lanes on_b =
+      VertexEdges<true>{at, kDirectionsOfB}.least_rate(rotate_back(pose.rotation, g));
   c.holds = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
   return c;
 }
@@ -107,8 +120,7 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   c.apart = c.proved = norm(g);
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
   const Lanes side = hn::Max(dot(at.points(8), g), dot(at.points(11), g));
-  const Lanes away = least_rate(at, kDirectionsAtEdge, kMoved ? at.repeats_a : at.repeats_b,
-                                frame.direction_out(g));
+  const Lanes away = VertexEdges<!kMoved>{at, kDirectionsAtEdge}.least_rate(frame.direction_out(g));
   c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
   frame.express(point + times(s, direction), vertex, over(g, c.apart), c);
   return c;
@@ -121,22 +133,21 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Points normal = at.points(0), vertex = at.points(kFacetRows);
   const Points tip = frame.point_in(vertex);
   c.apart = c.proved = hn::Sub(dot(normal, tip), at.lanes(3));
-  const std::size_t sides = kMoved ? at.repeats_b : at.repeats_a;
+  const std::size_t sides = kMoved ? at.block.most_b : at.block.most_a;
   Lanes within = all(0.0);
   for (std::size_t i = 0; i < sides; ++i) {
     const std::size_t row = kSides + kSideRows * i;
     within = hn::Min(within, hn::Sub(dot(at.points(row), tip), at.lanes(row + 3)));
   }
-  const Lanes away = least_rate(at, kDirectionsAtFacet, kMoved ? at.repeats_a : at.repeats_b,
-                                frame.direction_out(normal));
+  const Lanes away =
+      VertexEdges<!kMoved>{at, kDirectionsAtFacet}.least_rate(frame.direction_out(normal));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
   frame.express(tip - times(c.apart, normal), vertex, normal, c);
   return c;
 }
 
-HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose, Lanes reach_a,
-                             Lanes reach_b) {
+HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
   constexpr std::size_t kSecond = kEdgeRows;
   const Points first = at.points(0), e = at.points(3);
@@ -164,8 +175,8 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose, L
   c.own_b = second + times(t, direction);
   c.point_b = start_b + times(t, f);
   c.apart = norm(c.point_b - c.point_a);
-  const Lanes tilt = hn::Add(hn::Mul(reach_a, hn::Abs(dot(c.normal, e))),
-                             hn::Mul(reach_b, hn::Abs(dot(c.normal, f))));
+  const Lanes tilt = hn::Add(hn::Mul(at.common(kReachA), hn::Abs(dot(c.normal, e))),
+                             hn::Mul(at.common(kReachB), hn::Abs(dot(c.normal, f))));
   c.proved = hn::Sub(hn::Abs(apart), hn::Mul(all(2.0), tilt));
   return c;
 }

@@ -71,7 +71,7 @@ HWY_INLINE void add_radii(const double* rows, Answers& r) {
   r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
 }
 
-HWY_INLINE Answers conclude(const double* rows, bool plain, const Closest& c, const Slack& p) {
+HWY_INLINE Answers conclude(const Closest& c, const Slack& p) {
   const LaneMask tight = hn::Le(hn::Sub(c.apart, c.proved), p.tight);
   Answers r{c.apart,
             hn::Sub(c.proved, p.slack),
@@ -80,7 +80,6 @@ HWY_INLINE Answers conclude(const double* rows, bool plain, const Closest& c, co
             c.point_a,
             c.point_b,
             hn::And(c.holds, hn::And(hn::Gt(c.proved, p.slack), tight))};
-  if (!plain) add_radii(rows, r);
   return r;
 }
 
@@ -102,30 +101,32 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
 }
 
 template <FeatureKind kKind>
-HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose, const double* rows) {
+HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
   if constexpr (kKind == FeatureKind::kVertexVertex) return vertex_vertex(at, pose);
   if constexpr (kKind == FeatureKind::kVertexEdge) return edge_vertex<true>(at, pose);
   if constexpr (kKind == FeatureKind::kEdgeVertex) return edge_vertex<false>(at, pose);
   if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
   if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
-  if constexpr (kKind == FeatureKind::kEdgeEdge) {
-    return edge_edge(at, pose, load(rows + kReachA * kBlockLanes),
-                     load(rows + kReachB * kBlockLanes));
-  }
+  if constexpr (kKind == FeatureKind::kEdgeEdge) return edge_edge(at, pose);
 }
 
 // Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
 template <FeatureKind kKind>
 HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round) {
   double* rows = block.rows[0].data() + first;
-  const RelativePoses pose = relative_poses(load_bodies(round.bodies, &block.body_a[first]),
-                                            load_bodies(round.bodies, &block.body_b[first]));
-  const FeatureRows at{rows + kFeatureRows * kBlockLanes, block.most_a, block.most_b};
-  const Closest c = closest<kKind>(at, pose, rows);
-  const Answers r = conclude(rows, block.plain, c, precisions(rows, block.plain, pose, c.apart));
+  const Pose* poses = round.world_from_body;
+  const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
+                                            load_poses(poses, &block.body_b[first]));
+  const Closest c = closest<kKind>({rows + kFeatureRows * kBlockLanes, block}, pose);
+  Answers r = conclude(c, precisions(rows, block.plain, pose, c.apart));
+  if (HWY_LIKELY(block.plain)) {
+    write(r, block, first, round.results);
+  } else {
+    add_radii(rows, r);
+    write(r, block, first, round.results);
+  }
   store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
   store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
-  write(r, block, first, round.results);
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Tag(), r.good, bits);
   return bits[0];

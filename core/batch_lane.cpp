@@ -48,10 +48,8 @@ bool few(std::int32_t repeats) noexcept {
 // A feature with what vector code needs of it; a facet without sides is one.
 bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
   switch (side.dimension) {
-    case 0: {
-      const std::int32_t edges = body.vertices[side.feature].edges;
-      return edges > 0 && few(edges);
-    }
+    case 0:
+      return few(body.vertices[side.feature].edges);
     case 1:
       return body.edges[side.feature].facet[0] != kNone;
     case 2:
@@ -156,6 +154,14 @@ void level(BatchBlock& block, std::size_t changed, const RepeatRows& at,
   pad(block, changed, at.row, at.stride, counts[changed], most);
 }
 
+bool is_point(const ConvexPolyhedron& body) noexcept {
+  return body.edges.empty() && !body.vertices.empty();
+}
+
+bool plain(const ConvexPolyhedron& body) noexcept {
+  return body.bounded() && body.radius == 0.0 && !is_point(body);
+}
+
 void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                 const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   LaneWriter to(block, lane, 0);
@@ -167,10 +173,10 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   to.put(b.bounded() ? 0.0 : 1.0);
   to.put(a.radius);
   to.put(b.radius);
+  to.put(is_point(a) ? 1.0 : 0.0);
+  to.put(is_point(b) ? 1.0 : 0.0);
   put_last_points(block, lane, state);
 }
-
-bool plain(const ConvexPolyhedron& body) noexcept { return body.bounded() && body.radius == 0.0; }
 
 }  // namespace
 

@@ -18,14 +18,13 @@ struct Quaternions {
   Lanes x, y, z, w;
 };
 
-struct PlacedBodies {
-  Quaternions orientation;
+struct Poses {
   Points position;
-  Lanes translation_error;
+  Quaternions orientation;
 };
 
 struct Rotations {
-  Points row[3];
+  Points x, y, z;  // rows
 };
 
 struct RelativePoses {
@@ -36,26 +35,28 @@ struct RelativePoses {
 
 // As Eigen multiplies a fixed 3 x 3 matrix: two rows as a packet, the third as a sum of its own.
 HWY_INLINE Points rotate(const Rotations& r, const Points& p) {
-  const Points& last = r.row[2];
-  const Lanes z =
-      hn::Add(hn::Mul(last.x, p.x), hn::Add(hn::Mul(last.y, p.y), hn::Mul(last.z, p.z)));
-  return {dot(r.row[0], p), dot(r.row[1], p), z};
+  const Lanes yz = hn::Add(hn::Mul(r.z.y, p.y), hn::Mul(r.z.z, p.z));
+  return {dot(r.x, p), dot(r.y, p), hn::Add(hn::Mul(r.z.x, p.x), yz)};
 }
 
 HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
-  const auto column = [&](Lanes x, Lanes y, Lanes z) HWY_ATTR { return dot({x, y, z}, p); };
-  return {column(r.row[0].x, r.row[1].x, r.row[2].x), column(r.row[0].y, r.row[1].y, r.row[2].y),
-          column(r.row[0].z, r.row[1].z, r.row[2].z)};
+  return {dot({r.x.x, r.y.x, r.z.x}, p), dot({r.x.y, r.y.y, r.z.y}, p),
+          dot({r.x.z, r.y.z, r.z.z}, p)};
 }
 
-HWY_INLINE PlacedBodies load_bodies(const PlacedBody* bodies, const std::uint32_t* which) {
+// A pose is eight numbers in pairs: position and one that means nothing, x, y, z, w.
+static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == 16);
+static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
+
+HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
   const double* rows[kWidth];
-  for (std::size_t i = 0; i < kWidth; ++i) rows[i] = &bodies[which[i]].x;
-  PlacedBodies out;
-  load_columns(rows, 0, out.orientation.x, out.orientation.y);
-  load_columns(rows, 2, out.orientation.z, out.orientation.w);
-  load_columns(rows, 4, out.position.x, out.position.y);
-  load_columns(rows, 6, out.position.z, out.translation_error);
+  for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
+  Poses out;
+  Lanes nothing;
+  load_columns(rows, 0, out.position.x, out.position.y);
+  load_columns(rows, 2, out.position.z, nothing);
+  load_columns(rows, 4, out.orientation.x, out.orientation.y);
+  load_columns(rows, 6, out.orientation.z, out.orientation.w);
   return out;
 }
 
@@ -86,9 +87,9 @@ HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
                             HWY_ATTR { return hn::Sub(one, hn::Mul(s, hn::Add(p, r))); };
   const auto sum = [&](Lanes p, Lanes r) HWY_ATTR { return hn::Mul(s, hn::Add(p, r)); };
   const auto difference = [&](Lanes p, Lanes r) HWY_ATTR { return hn::Mul(s, hn::Sub(p, r)); };
-  return {{{diagonal(yy, zz), difference(xy, wz), sum(xz, wy)},
-           {sum(xy, wz), diagonal(xx, zz), difference(yz, wx)},
-           {difference(xz, wy), sum(yz, wx), diagonal(xx, yy)}}};
+  return {{diagonal(yy, zz), difference(xy, wz), sum(xz, wy)},
+          {sum(xy, wz), diagonal(xx, zz), difference(yz, wx)},
+          {difference(xz, wy), sum(yz, wx), diagonal(xx, yy)}};
 }
 
 HWY_INLINE Points turn_back(const Quaternions& q, const Points& v) {
@@ -105,31 +106,55 @@ HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b)
   return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
 }
 
-// Equal orientations give the identity, to the sign of its zeros.
-HWY_INLINE void settle_equal(LaneMask equal, RelativePoses& pose) {
-  const Lanes zero = all(0.0), one = all(1.0);
-  for (int i = 0; i < 3; ++i) {
-    Points& row = pose.rotation.row[i];
-    row = {hn::IfThenElse(equal, i == 0 ? one : zero, row.x),
-           hn::IfThenElse(equal, i == 1 ? one : zero, row.y),
-           hn::IfThenElse(equal, i == 2 ? one : zero, row.z)};
-  }
-  pose.rotation_error = hn::IfThenElse(equal, zero, pose.rotation_error);
+// The quick look of rounding.hpp.
+HWY_INLINE LaneMask may_permute_axes(const Quaternions& q) {
+  const Lanes w = hn::Abs(q.w);
+  return hn::Or(hn::Or(hn::Eq(w, all(0.0)), hn::Eq(w, all(0.5))), hn::Eq(w, all(1.0)));
 }
 
-HWY_INLINE RelativePoses relative_poses(const PlacedBodies& a, const PlacedBodies& b) {
-  const Quaternions q = relative(a.orientation, b.orientation);
-  const Points between = b.position - a.position;
-  const Lanes zero = all(0.0), exact = all(kPermutedTranslationError);
-  const LaneMask permutes =
-      hn::And(hn::Eq(a.translation_error, exact), hn::Eq(b.translation_error, exact));
-  RelativePoses out{rotation_matrices(q), turn_back(a.orientation, between),
-                    hn::IfThenElse(permutes, zero, all(kRotationError)),
-                    hn::Mul(a.translation_error, norm(between))};
+HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
+  const Lanes x = hn::Abs(q.x), y = hn::Abs(q.y), z = hn::Abs(q.z), w = hn::Abs(q.w);
+  const auto which = [&](double value) HWY_ATTR {
+    const auto number = [&](Lanes c) HWY_ATTR {
+      return hn::IfThenElseZero(hn::Eq(c, all(value)), all(1.0));
+    };
+    return hn::Add(hn::Add(number(x), number(y)), hn::Add(number(z), number(w)));
+  };
+  const LaneMask one = hn::And(hn::Eq(which(1.0), all(1.0)), hn::Eq(which(0.0), all(3.0)));
+  return hn::Or(hn::Eq(which(0.5), all(4.0)), one);
+}
+
+// settle_exactness() and what follows it. Equal orientations give the identity, to the sign of its
+// zeros.
+HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes between,
+                                 RelativePoses& pose) {
+  const Lanes zero = all(0.0), one = all(1.0);
+  const LaneMask equal = equal_up_to_sign(a, b), a_permutes = permute_axes(a);
+  const auto settle = [&](Points& row, Lanes x, Lanes y, Lanes z) HWY_ATTR {
+    row = {hn::IfThenElse(equal, x, row.x), hn::IfThenElse(equal, y, row.y),
+           hn::IfThenElse(equal, z, row.z)};
+  };
+  settle(pose.rotation.x, one, zero, zero);
+  settle(pose.rotation.y, zero, one, zero);
+  settle(pose.rotation.z, zero, zero, one);
+  const LaneMask exact = hn::Or(equal, hn::And(a_permutes, permute_axes(b)));
+  pose.rotation_error = hn::IfThenElse(exact, zero, pose.rotation_error);
+  pose.translation_error = hn::IfThenElse(
+      a_permutes, hn::Mul(all(kPermutedTranslationError), between), pose.translation_error);
+}
+
+HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& world_from_b) {
+  const Quaternions& a = world_from_a.orientation;
+  const Quaternions& b = world_from_b.orientation;
+  const Quaternions q = relative(a, b);
+  const Points between = world_from_b.position - world_from_a.position;
+  const Lanes apart = norm(between), zero = all(0.0);
+  RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError),
+                    hn::Mul(all(kTranslationError), apart)};
   const LaneMask no_turn =
       hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), no_turn))) {
-    settle_equal(equal_up_to_sign(a.orientation, b.orientation), out);
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), hn::Or(no_turn, may_permute_axes(a))))) {
+    settle_exactness(a, b, apart, out);
   }
   return out;
 }
