@@ -27,7 +27,7 @@ enum class FeatureKind : std::uint8_t {
 };
 inline constexpr std::size_t kFeatureKinds = 6;
 
-// Rows that every kind has. Lengths in metres; `unbounded` and `edgeless` are 1 or 0.
+// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0.
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
@@ -37,8 +37,8 @@ enum CommonRow : std::size_t {
   kUnboundedB,
   kRadiusA,
   kRadiusB,
-  kEdgelessA,  // the feature is a body that is a single point
-  kEdgelessB,
+  kBareA,  // nothing is beside the feature: a point's only vertex, a segment's only edge
+  kBareB,
   kPointA,                // 3 rows: the witness points of the last query, each in its body's frame
   kPointB = kPointA + 3,  // 3 rows
   kFeatureRows = kPointB + 3
@@ -53,6 +53,7 @@ enum CommonRow : std::size_t {
 inline constexpr std::size_t kMostRepeats = 8;  // what has more is left to the single query
 inline constexpr std::size_t kEdgeRows = 14, kFacetRows = 4, kVertexRows = 3;
 inline constexpr std::size_t kSideRows = 4, kDirectionRows = 3;
+inline constexpr std::size_t kInwardRow = 8;  // of an edge
 
 inline constexpr std::size_t kDirectionsOfA = 2 * kVertexRows;  // vertex-vertex
 inline constexpr std::size_t kDirectionsOfB = kDirectionsOfA + kMostRepeats * kDirectionRows;
@@ -71,7 +72,7 @@ struct alignas(64) BatchBlock {
   std::array<std::uint8_t, kBlockLanes> repeats_a{}, repeats_b{};
   std::uint8_t most_a = 0, most_b = 0;
   std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
-  bool plain = true;       // no body in it has been unbounded, a point, or with a radius
+  bool plain = true;       // no body in it has been unbounded, a point, a segment, or with a radius
   FeatureKind kind = FeatureKind::kVertexVertex;
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
 };

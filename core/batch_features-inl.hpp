@@ -36,35 +36,43 @@ struct FeatureRows {
   [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
     return load(rows - (kFeatureRows - row) * kBlockLanes);
   }
+  // A rate at which what lies beside a feature falls away; where nothing does, `of_nothing`.
+  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes rate, double of_nothing) const {
+    if (HWY_LIKELY(block.plain)) return rate;
+    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), rate, all(of_nothing));
+  }
 };
 
-// The edges of a vertex of A's or B's. Of a point, which has none, all fall away.
+// The edges of a vertex, A's or B's, or the facets of an edge.
 template <bool kOfB>
-struct VertexEdges {
+struct Beside {
   const FeatureRows& at;
   std::size_t row;
+  static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
 
   [[nodiscard]] HWY_INLINE Lanes least_rate(const Points& g) const {
     Lanes least = all(kInfinity);
-    for (std::size_t i = 0; i < count(); ++i) least = hn::Min(least, rate(i, g));
-    return at.block.plain ? least : unless_point(all(kInfinity), least);
+    for (std::size_t i = 0; i < edges(); ++i) least = hn::Min(least, rate(i, g));
+    return at.unless_bare(kBare, least, kInfinity);
   }
   [[nodiscard]] HWY_INLINE Lanes greatest_rate(const Points& g) const {
     Lanes greatest = all(-kInfinity);
-    for (std::size_t i = 0; i < count(); ++i) greatest = hn::Max(greatest, rate(i, g));
-    return at.block.plain ? greatest : unless_point(all(-kInfinity), greatest);
+    for (std::size_t i = 0; i < edges(); ++i) greatest = hn::Max(greatest, rate(i, g));
+    return at.unless_bare(kBare, greatest, -kInfinity);
+  }
+  [[nodiscard]] HWY_INLINE Lanes least_of_two(const Points& g) const {
+    return at.unless_bare(kBare, hn::Min(rate(0, g), rate(1, g)), kInfinity);
+  }
+  [[nodiscard]] HWY_INLINE Lanes greatest_of_two(const Points& g) const {
+    return at.unless_bare(kBare, hn::Max(rate(0, g), rate(1, g)), -kInfinity);
   }
 
  private:
-  [[nodiscard]] HWY_INLINE std::size_t count() const {
+  [[nodiscard]] HWY_INLINE std::size_t edges() const {
     return kOfB ? at.block.most_b : at.block.most_a;
   }
   [[nodiscard]] HWY_INLINE Lanes rate(std::size_t i, const Points& g) const {
     return dot(at.points(row + kDirectionRows * i), g);
-  }
-  [[nodiscard]] HWY_INLINE Lanes unless_point(Lanes of_point, Lanes of_edges) const {
-    const Lanes edgeless = at.common(kOfB ? kEdgelessB : kEdgelessA);
-    return hn::IfThenElse(hn::Eq(edgeless, all(0.0)), of_edges, of_point);
   }
 };
 
@@ -77,9 +85,8 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   c.apart = c.proved = norm(g);
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
   c.normal = over(g, c.apart);
-  const Lanes on_a = VertexEdges<false>{at, kDirectionsOfA}.greatest_rate(g);
-  const Lanes on_b =
-      VertexEdges<true>{at, kDirectionsOfB}.least_rate(rotate_back(pose.rotation, g));
+  const Lanes on_a = Beside<false>{at, kDirectionsOfA}.greatest_rate(g);
+  const Lanes on_b = Beside<true>{at, kDirectionsOfB}.least_rate(rotate_back(pose.rotation, g));
   c.holds = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
   return c;
 }
@@ -119,8 +126,8 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   const Points g = rough - times(dot(rough, direction), direction);
   c.apart = c.proved = norm(g);
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
-  const Lanes side = hn::Max(dot(at.points(8), g), dot(at.points(11), g));
-  const Lanes away = VertexEdges<!kMoved>{at, kDirectionsAtEdge}.least_rate(frame.direction_out(g));
+  const Lanes side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(g);
+  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(frame.direction_out(g));
   c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
   frame.express(point + times(s, direction), vertex, over(g, c.apart), c);
   return c;
@@ -140,7 +147,7 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
     within = hn::Min(within, hn::Sub(dot(at.points(row), tip), at.lanes(row + 3)));
   }
   const Lanes away =
-      VertexEdges<!kMoved>{at, kDirectionsAtFacet}.least_rate(frame.direction_out(normal));
+      Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(frame.direction_out(normal));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
   frame.express(tip - times(c.apart, normal), vertex, normal, c);
@@ -166,8 +173,8 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const Lanes apart = hn::Div(dot(between, n), sine);
   c.normal = over(n, hn::CopySignToAbs(sine, apart));
   const Points m = rotate_back(pose.rotation, c.normal);
-  const Lanes on_a = hn::Max(dot(at.points(8), c.normal), dot(at.points(11), c.normal));
-  const Lanes on_b = hn::Min(dot(at.points(kSecond + 8), m), dot(at.points(kSecond + 11), m));
+  const Lanes on_a = Beside<false>{at, kInwardRow}.greatest_of_two(c.normal);
+  const Lanes on_b = Beside<true>{at, kSecond + kInwardRow}.least_of_two(m);
   const LaneMask falls = hn::And(hn::Lt(on_a, all(-kCertainRate)), hn::Gt(on_b, all(kCertainRate)));
   c.holds =
       hn::And(hn::And(hn::Gt(sine2, all(kCrossingSine2)), falls), hn::And(on_first, on_second));

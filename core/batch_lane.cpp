@@ -51,7 +51,7 @@ bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
     case 0:
       return few(body.vertices[side.feature].edges);
     case 1:
-      return body.edges[side.feature].facet[0] != kNone;
+      return true;
     case 2:
       return few(body.facets[side.feature].sides);
     default:
@@ -154,12 +154,16 @@ void level(BatchBlock& block, std::size_t changed, const RepeatRows& at,
   pad(block, changed, at.row, at.stride, counts[changed], most);
 }
 
-bool is_point(const ConvexPolyhedron& body) noexcept {
-  return body.edges.empty() && !body.vertices.empty();
+bool point_or_segment(const ConvexPolyhedron& body) noexcept {
+  return body.facets.empty() && !body.vertices.empty();
+}
+
+bool bare(const ConvexPolyhedron& body, const Side& side) noexcept {
+  return point_or_segment(body) && (side.dimension == 1 || body.edges.empty());
 }
 
 bool plain(const ConvexPolyhedron& body) noexcept {
-  return body.bounded() && body.radius == 0.0 && !is_point(body);
+  return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }
 
 void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
@@ -173,8 +177,8 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   to.put(b.bounded() ? 0.0 : 1.0);
   to.put(a.radius);
   to.put(b.radius);
-  to.put(is_point(a) ? 1.0 : 0.0);
-  to.put(is_point(b) ? 1.0 : 0.0);
+  to.put(bare(a, state.a) ? 1.0 : 0.0);
+  to.put(bare(b, state.b) ? 1.0 : 0.0);
   put_last_points(block, lane, state);
 }
 

@@ -8,7 +8,7 @@
 namespace clearance {
 
 // Which kind the features of `state` are; none where only distance() can judge them: facet on
-// facet, overlapping, within a segment, two unbounded bodies, too many neighbours.
+// facet, overlapping, two unbounded bodies, too many neighbours.
 [[nodiscard]] std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a,
                                                       const ConvexPolyhedron& b,
                                                       const TrackingState& state) noexcept;

@@ -43,6 +43,12 @@ Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, const Vec3
   return best;
 }
 
+// How steeply the facets beside an edge rise along g; a segment's only edge has none.
+double steepest_side(const Edge& edge, const Vec3& g) noexcept {
+  if (edge.facet[0] == kNone) return -kInfinity;
+  return std::max(edge.inward[0].dot(g), edge.inward[1].dot(g));
+}
+
 // From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
 // far end.
 void leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepest& way) noexcept {
@@ -106,7 +112,6 @@ Step edge_vertex(const ConvexPolyhedron& owner, Side& on_owner, const ConvexPoly
                  Side& on_other, const Owner<kMoved>& frame, ClosestFeatures& c) noexcept {
   const Edge& edge = owner.edges[on_owner.feature];
   const Vertex& vertex = other.vertices[on_other.feature];
-  if (edge.facet[0] == kNone) return Step::kLost;
   const Vec3 from_start = frame.point_in(vertex.position) - edge.point;
   const double s = from_start.dot(edge.direction);
   if (!(s > edge.begin)) return to_vertex(on_owner, edge.vertex[0]), Step::kMoved;
@@ -114,10 +119,10 @@ Step edge_vertex(const ConvexPolyhedron& owner, Side& on_owner, const ConvexPoly
   const Vec3 rough = from_start - s * edge.direction;
   const Vec3 g = rough - rough.dot(edge.direction) * edge.direction;  // what cancellation has left
   const double apart = g.norm(), limit = -kCertainRate * apart;
-  const double left = edge.inward[0].dot(g), right = edge.inward[1].dot(g);
-  if (!(std::max(left, right) < limit)) {
-    if (!(std::max(left, right) > -limit)) return Step::kLost;
-    return to_facet(on_owner, edge.facet[left >= right ? 0 : 1]), Step::kMoved;
+  const double side = steepest_side(edge, g);
+  if (!(side < limit)) {
+    if (!(side > -limit)) return Step::kLost;
+    return to_facet(on_owner, edge.facet[edge.inward[0].dot(g) == side ? 0 : 1]), Step::kMoved;
   }
   const Steepest away = steepest(other, vertex, -frame.direction_out(g));
   if (!(away.rate < limit)) {
@@ -171,7 +176,6 @@ Step edge_edge(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Relat
                TrackingState& state, ClosestFeatures& c) noexcept {
   const Edge& first = a.edges[state.a.feature];
   const Edge& second = b.edges[state.b.feature];
-  if (first.facet[0] == kNone || second.facet[0] == kNone) return Step::kLost;
   if (!a.bounded() || !b.bounded()) return Step::kLost;
   const Vec3 e = first.direction, f = pose.rotation * second.direction;
   const Vec3 start_b = pose.rotation * second.point + pose.translation;
@@ -186,8 +190,7 @@ Step edge_edge(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Relat
   const double sine = std::sqrt(sine2), apart = between.dot(n) / sine;
   c.normal = n / std::copysign(sine, apart);
   const Vec3 m = pose.rotation.transpose() * c.normal;
-  const double on_a = std::max(first.inward[0].dot(c.normal), first.inward[1].dot(c.normal));
-  const double on_b = -std::min(second.inward[0].dot(m), second.inward[1].dot(m));
+  const double on_a = steepest_side(first, c.normal), on_b = steepest_side(second, -m);
   if (!(on_a < -kCertainRate) || !(on_b < -kCertainRate)) return Step::kLost;
   c.point_a = first.point + s * e;
   c.own_b = second.point + t * second.direction;
