@@ -91,7 +91,7 @@ class Poses {
   // Everything that was sent, in order; numbers count from 1.
   [[nodiscard]] const std::vector<PoseBatch>& sent() const noexcept { return sent_; }
 
-  void send(double t_s) {
+  void send(double t_s, bool with_twist = true) {
     poses_at(scene_, t_s, poses_);
     PoseBatch& batch = sent_.emplace_back();
     batch.source = SourceName("test");
@@ -103,7 +103,7 @@ class Poses {
                                .stamp_ns = now,
                                .world_from_object = pose.world_from_object,
                                .twist = pose.twist,
-                               .has_twist = true});
+                               .has_twist = with_twist});
     }
     to_wire(batch, *sample_);
     ASSERT_EQ(dds_write(writer_, &*sample_), DDS_RETCODE_OK);

@@ -29,6 +29,23 @@ TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
   EXPECT_TRUE(robot.wrote("batches of 2 poses sent, 0 failed")) << robot.output();
 }
 
+TEST(Watch, SaysThatNobodyKnowsHowFastThingsCloseYet) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Poses poses(client, scene);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  poses.send(0.0, false);
+  ASSERT_TRUE(eventually([&] { return watch.wrote("closing at an unknown speed"); }))
+      << watch.output();
+  poses.send(0.0, false);
+  ASSERT_TRUE(eventually([&] { return watch.wrote("closing +0.000 m/s  contact in"); }))
+      << watch.output();
+}
+
 TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
   const test::CellFile first(test::small_cell("first"));
   std::string text = test::small_cell("second");
