@@ -63,7 +63,7 @@ struct Scene {
   std::string yaml;            // the text it was read from, for recordings
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
-  double refresh_s = 10.0;  // every pair is evaluated this often, even if nothing moves and nobody
+  double refresh_s = 10.0;  // every pair is refreshed this often, even if nothing moves and nobody
                             // asks; as far as the budget allows
   bool evaluate_all = false;  // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it

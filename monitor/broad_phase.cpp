@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "monitor/rounding.hpp"
 
@@ -14,6 +15,8 @@ constexpr double kLeastTicks = 4.0;                       // of both objects' us
 // Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
 // balls' own rounding takes over.
 constexpr double kSumError = 1e-9;
+constexpr double kSmoothing = 0.125;  // of usual travel: eight ticks
+constexpr double kRest = 1e-12;       // m a tick: none
 // The slower object's part of the slack is no less than this, in case it darts.
 constexpr double kLeastShare = 0.125;
 
@@ -28,6 +31,7 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
                        std::span<const std::uint32_t> left_out, std::size_t most_woken)
     : most_woken_(most_woken),
       bodies_(scene.objects.size()),
+      usual_travel_(scene.objects.size(), 0.0),
       left_out_(scene.pairs.size(), 0),
       levels_(std::move(levels)),
       first_pair_(scene.objects.size() + 1, 0),
@@ -55,12 +59,16 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
     if (!left_out_[p]) bodies_[object_a_[p]].idle = bodies_[object_b_[p]].idle = false;
   }
   woken_.reserve(scene.pairs.size());
+  everyone_.resize(bodies_.size());
+  std::iota(everyone_.begin(), everyone_.end(), 0u);
   arrived_.reserve(bodies_.size());
 }
 
-void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table) noexcept {
+void BroadPhase::begin(const std::vector<ObjectState>& objects,
+                       std::span<const std::uint32_t> stirred, PairTable& table) noexcept {
   farthest_travel_ = 0.0;
-  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+  for (double& usual : usual_travel_) usual = usual > kRest ? (1.0 - kSmoothing) * usual : 0.0;
+  for (const std::uint32_t i : stirred) {
     const ObjectState& object = objects[i];
     if (!object.seen) continue;
     Body& body = bodies_[i];
@@ -69,7 +77,7 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table
     if (object.moved) body.placed = false;
     if (!body.arrival.here()) arrive(i, object);
     double by = object.travel < kInfinity ? object.travel : 0.0;
-    body.usual_travel += 0.125 * (by - body.usual_travel);
+    usual_travel_[i] += kSmoothing * by;
     if (object.may_have_moved < kInfinity) {
       by += std::max(0.0, object.may_have_moved - body.may_have_moved);
       body.may_have_moved = object.may_have_moved;
@@ -78,7 +86,7 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects, PairTable& table
     wheels_.advance(i, rounded_up(by));
     farthest_travel_ = std::max(farthest_travel_, rounded_up(by));
   }
-  take_due();
+  take_due(overdue_ ? everyone_ : stirred);
   meet_arrivals();
 }
 
@@ -103,7 +111,7 @@ void BroadPhase::wake(std::uint32_t pair) noexcept {
 
 // Every pair is met once: when the later of its objects has its turn.
 void BroadPhase::meet_arrivals() noexcept {
-  while (!everyone_arrived()) {
+  while (!everyone_met()) {
     const std::uint32_t object = arrived_[met_];
     const std::span<const std::uint32_t> pairs = pairs_of(object);
     for (; met_pairs_ < pairs.size(); ++met_pairs_) {
@@ -118,11 +126,11 @@ void BroadPhase::meet_arrivals() noexcept {
   }
 }
 
-void BroadPhase::take_due() noexcept {
-  bool all = true;
-  for (std::uint32_t i = 0; i < bodies_.size() && all; ++i) {
-    all = wheels_.take_due(i, most_woken_, woken_);
-  }
+// Of these objects, and there are none due of others.
+void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
+  const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
+    return wheels_.take_due(object, most_woken_, woken_);
+  });
   // A hook that is due has been so for no longer than its pair has been overdue.
   const double overtaken = rounded_up(2.0 * farthest_travel_);
   const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
@@ -131,7 +139,18 @@ void BroadPhase::take_due() noexcept {
 }
 
 double BroadPhase::pending_lower() const noexcept {
-  return everyone_arrived() ? overdue_lower_ : -kInfinity;
+  return everyone_met() ? overdue_lower_ : -kInfinity;
+}
+
+double BroadPhase::level_of(std::uint32_t pair) const noexcept {
+  const std::uint32_t a = object_a_[pair], b = object_b_[pair];
+  const double near = std::max(horizon_, levels_.urgent[a] + levels_.urgent[b]);
+  const double unseen = bodies_[a].may_have_moved + bodies_[b].may_have_moved;
+  return std::max(near, levels_.zones[pair] + unseen) + kSumError;
+}
+
+bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
+  return horizon_ > -kInfinity && lower > level_of(pair);
 }
 
 bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
@@ -139,14 +158,12 @@ bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
-  const double near = std::max(horizon_, levels_.urgent[a] + levels_.urgent[b]);
-  const double unseen = body_a.may_have_moved + body_b.may_have_moved;
-  const double slack = lower - std::max(near, levels_.zones[pair] + unseen) - kSumError;
-  const double usual = body_a.usual_travel + body_b.usual_travel;
+  const double slack = lower - level_of(pair);
+  const double usual = usual_travel_[a] + usual_travel_[b];
   if (!(slack >= kLeastSlack + kLeastTicks * usual)) return false;
   if (body_b.fixed) return wheels_.set(2 * pair, a, slack);  // two fixed ones: the horizon's moves
   if (body_a.fixed) return wheels_.set(2 * pair + 1, b, slack);
-  const double part_a = rounded_down(slack * share_of_a(body_a.usual_travel, body_b.usual_travel));
+  const double part_a = rounded_down(slack * share_of_a(usual_travel_[a], usual_travel_[b]));
   if (!wheels_.set(2 * pair, a, part_a)) return false;
   if (wheels_.set(2 * pair + 1, b, rounded_down(slack - part_a))) return true;
   wheels_.cancel(2 * pair);
@@ -172,7 +189,7 @@ void BroadPhase::move_horizon(double to) noexcept {
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) wheels_.advance(i, by);
     farthest_travel_ = by;
     horizon_ = to;
-    take_due();
+    take_due(everyone_);
     return;
   }
   horizon_ = to;

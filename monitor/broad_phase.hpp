@@ -31,7 +31,9 @@ class BroadPhase {
   // Takes in how the objects have moved. Pairs whose slack may be used up, whose objects were seen
   // for the first time or have jumped, are in woken() afterwards. `objects` stay where they are
   // until the next tick. Bounds of pairs whose objects have jumped are forgotten.
-  void begin(const std::vector<ObjectState>& objects, PairTable& table) noexcept;
+  // `stirred`: at least the objects that have moved, or may have moved farther unseen, or less.
+  void begin(const std::vector<ObjectState>& objects, std::span<const std::uint32_t> stirred,
+             PairTable& table) noexcept;
 
   // Woken and not decided about; in this tick's order.
   [[nodiscard]] std::span<const std::uint32_t> woken() const noexcept { return woken_; }
@@ -41,6 +43,9 @@ class BroadPhase {
   // near its levels, or no horizon has been set.
   bool sleep(std::uint32_t pair, double lower) noexcept;
 
+  // Whether a pair that far apart, m, is out of question now: not the minimum, nor in a zone.
+  [[nodiscard]] bool is_far(std::uint32_t pair, double lower) const noexcept;
+
   // The pair's distance as far as the enclosing balls tell, for the poses in use, m.
   [[nodiscard]] RowBounds by_balls(std::uint32_t pair) noexcept;
 
@@ -49,8 +54,14 @@ class BroadPhase {
   void move_horizon(double to) noexcept;
 
   // Some pairs had to wait, so that only pending_lower() is known of them, m, for the poses in use.
-  [[nodiscard]] bool pending() const noexcept { return overdue_ || !everyone_arrived(); }
+  [[nodiscard]] bool pending() const noexcept { return overdue_ || !everyone_met(); }
   [[nodiscard]] double pending_lower() const noexcept;
+  // No pair waits to be looked at for the first time.
+  [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
+
+  [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
+  // Left out or not.
+  [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept;
 
  private:
   // An object whose pairs have to be looked at for the first time: with those that came before.
@@ -66,21 +77,21 @@ class BroadPhase {
     bool fixed = false;
     bool idle = true;             // all its pairs are left out
     double may_have_moved = 0.0;  // as of the last tick in which that was known, m
-    double usual_travel = 0.0;    // m a tick, smoothed: divides the slack, proves nothing
     Arrival arrival;
   };
 
   void arrive(std::uint32_t object, const ObjectState& state) noexcept;
   void jump(std::uint32_t object, PairTable& table) noexcept;
   void meet_arrivals() noexcept;
-  void take_due() noexcept;
-  [[nodiscard]] bool everyone_arrived() const noexcept { return met_ == arrived_.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept;
+  void take_due(std::span<const std::uint32_t> objects) noexcept;
+  [[nodiscard]] double level_of(std::uint32_t pair) const noexcept;
   void wake(std::uint32_t pair) noexcept;
   [[nodiscard]] const Ball& ball_of(Body& body) noexcept;
 
   const std::size_t most_woken_;
   std::vector<Body> bodies_;
+  std::vector<double>
+      usual_travel_;  // by object, m a tick, smoothed: divides slack, proves nothing
   std::vector<std::uint32_t> object_a_, object_b_;  // by pair
   std::vector<std::uint8_t> left_out_;              // by pair
   Levels levels_;
@@ -88,7 +99,8 @@ class BroadPhase {
   WakeWheels wheels_;
   double horizon_ = -kInfinity;
   std::vector<std::uint32_t> woken_;
-  std::vector<std::uint32_t> arrived_;  // objects, in order; those before met_ have met all others
+  std::vector<std::uint32_t> everyone_;  // all objects
+  std::vector<std::uint32_t> arrived_;   // objects, in order; those before met_ have met all others
   std::size_t met_ = 0, met_pairs_ = 0;
   double farthest_travel_ = 0.0;  // of any wheel this tick, m
   bool overdue_ = false;          // hooks that are due are still on the wheels

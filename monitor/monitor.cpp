@@ -12,6 +12,7 @@
 #include "monitor/placed_part.hpp"
 #include "monitor/rounding.hpp"
 #include "monitor/triage.hpp"
+#include "monitor/worker_pool.hpp"
 #include "monitor/zone_round.hpp"
 
 namespace clearance {
@@ -20,19 +21,23 @@ struct Monitor::State {
   const Scene& scene;
   std::vector<ObjectState> objects;
   std::vector<PlacedPart> parts;
-  std::vector<double> reach;  // by object: as EnclosingBall::reach, m
+  std::vector<double> reach;              // by object: as EnclosingBall::reach, m
+  std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
+  std::vector<std::uint32_t> stirred;     // objects of which this tick knows something else
+  double most_unseen = 0.0;  // that any two known objects, both together, may have moved, m
   PairTable table;
+  WorkerPool pool;
   Triage triage;
   ZoneRound zones;
   ClosestPair closest;  // of this tick
   Report report;
 
-  explicit State(const Scene& the_scene);
+  State(const Scene& the_scene, const MonitorOptions& options);
 
   void begin(std::int64_t now_ns) noexcept;
   void take_in(std::span<const PoseSample> samples) noexcept;
   void move() noexcept;
-  void report_inputs() noexcept;
+  void look_at_inputs() noexcept;
   void report_pairs() noexcept;
   void report_counts() noexcept;
   void report_whole() noexcept;
@@ -41,12 +46,12 @@ struct Monitor::State {
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
   [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
-  [[nodiscard]] double most_unseen() const noexcept;
   [[nodiscard]] double rest_lower() const noexcept;
   [[nodiscard]] double pending_lower() const noexcept;
 };
 
-Monitor::Monitor(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
+Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
 Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept {
@@ -54,10 +59,10 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   s.begin(now_ns);
   s.take_in(samples);  // samples  -> objects: the pose in use of each
   s.move();            // objects  -> parts: where each is, how far it moved
+  s.look_at_inputs();
   // parts    -> table: every bound true for these poses, or provably not worth a look
-  s.report.queries = s.triage.evaluate_due(s.objects, s.parts, s.report.cycle, s.table);
-  s.report_inputs();  // table    -> report
-  s.report_pairs();
+  s.report.queries = s.triage.evaluate_due(s.objects, s.stirred, s.parts, s.report.cycle, s.table);
+  s.report_pairs();  // table    -> report
   s.report_counts();
   s.report_whole();
   return s.report;
@@ -66,6 +71,10 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept { state_->refuse(object, cause); }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->report_pair(pair); }
+
+std::uint64_t Monitor::refreshed_cycle(std::uint32_t pair) const noexcept {
+  return state_->triage.refreshed_cycle(pair, state_->table);
+}
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const ObjectState& state = state_->objects[object];
@@ -80,16 +89,22 @@ std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->objects[object].stamp_ns;
 }
 
-Monitor::State::State(const Scene& the_scene)
+Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
     : scene(the_scene),
       parts(parts_of(the_scene)),
+      first_part(the_scene.objects.size() + 1, 0),
       table(the_scene, parts),
-      triage(the_scene, parts, table),
+      pool(options.workers, options.on_worker_start),
+      triage(the_scene, parts, table, pool),
       zones(the_scene) {
   for (const EnclosingBall& ball : enclosing_balls(scene.objects.size(), parts)) {
     reach.push_back(ball.reach);
   }
   for (const Object& object : scene.objects) objects.push_back(initial_state(object));
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    first_part[i + 1] = first_part[i] + static_cast<std::uint32_t>(scene.objects[i].parts.size());
+  }
+  stirred.reserve(objects.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   report.now_ns = std::numeric_limits<std::int64_t>::min();
@@ -130,34 +145,44 @@ void Monitor::State::refuse(std::uint32_t object, Reject cause) noexcept {
 }
 
 void Monitor::State::move() noexcept {
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    advance(scene.objects[i], report.now_ns, objects[i]);
-    travel(reach[i], objects[i]);
+  stirred.clear();
+  const bool first_tick = report.cycle == 1;
+  for (std::uint32_t i = 0; i < objects.size(); ++i) {
+    if (scene.objects[i].fixed && !first_tick) continue;
+    ObjectState& object = objects[i];
+    const bool was_late = object.late;
+    const double might_have_moved = object.may_have_moved;
+    advance(scene.objects[i], report.now_ns, object);
+    travel(reach[i], object);
+    if (object.moved || object.late != was_late || object.may_have_moved != might_have_moved ||
+        first_tick) {
+      stirred.push_back(i);
+    }
   }
-  for (PlacedPart& part : parts) {
-    if (objects[part.object].seen) place(objects[part.object], part);
+  for (const std::uint32_t i : stirred) {
+    if (!objects[i].seen) continue;
+    for (std::uint32_t part = first_part[i]; part < first_part[i + 1]; ++part) {
+      place(objects[i], parts[part]);
+    }
   }
 }
 
-void Monitor::State::report_inputs() noexcept {
+void Monitor::State::look_at_inputs() noexcept {
   bool any = false;
+  double most = 0.0, second = 0.0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (scene.objects[i].fixed || !objects[i].seen) continue;
-    const std::int64_t stamp_ns = objects[i].stamp_ns;
-    report.newest_pose_ns = any ? std::max(report.newest_pose_ns, stamp_ns) : stamp_ns;
-    report.oldest_pose_ns = any ? std::min(report.oldest_pose_ns, stamp_ns) : stamp_ns;
+    const ObjectState& object = objects[i];
+    if (scene.objects[i].fixed || !object.seen) continue;
+    report.newest_pose_ns =
+        any ? std::max(report.newest_pose_ns, object.stamp_ns) : object.stamp_ns;
+    report.oldest_pose_ns =
+        any ? std::min(report.oldest_pose_ns, object.stamp_ns) : object.stamp_ns;
     any = true;
+    if (!object.known() || object.may_have_moved <= second) continue;
+    second = std::min(most, object.may_have_moved);
+    most = std::max(most, object.may_have_moved);
   }
-}
-
-void Monitor::State::report_counts() noexcept {
-  const auto known = static_cast<std::uint32_t>(triage.counts().known());
-  const auto fresh = static_cast<std::uint32_t>(triage.counts().fresh());
-  report.unknown = report.pairs_total - known;
-  report.stale = known - fresh;
-  report.carried = fresh - report.evaluated;
-  const bool all_evaluated = triage.evaluated() == known;
-  report.oldest_evaluation_cycles = all_evaluated ? 0 : report.cycle - triage.oldest_evaluation();
+  most_unseen = rounded_up(most + second);
 }
 
 // Every pair that was looked at is summed up once.
@@ -182,6 +207,15 @@ void Monitor::State::count_in(std::uint32_t pair, const PairSummary& state) noex
   report.evaluated += is_evaluated(state.status);
 }
 
+void Monitor::State::report_counts() noexcept {
+  const auto known = static_cast<std::uint32_t>(triage.counts().known());
+  const auto fresh = static_cast<std::uint32_t>(triage.counts().fresh());
+  report.unknown = report.pairs_total - known;
+  report.stale = known - fresh;
+  report.carried = fresh - report.evaluated;
+  report.oldest_evaluation_cycles = report.cycle - triage.oldest_refresh();
+}
+
 void Monitor::State::report_whole() noexcept {
   if (triage.current().size() < triage.counts().known()) closest.add_rest(rest_lower());
   zones.finish(objects, triage.pending() ? pending_lower() : kInfinity, report.cycle, report.zones);
@@ -194,23 +228,12 @@ void Monitor::State::report_whole() noexcept {
 
 // Of the pairs that are asleep, or that wait to be looked at, for where their objects may be.
 double Monitor::State::rest_lower() const noexcept {
-  const double asleep = rounded_down(triage.horizon() - most_unseen());
+  const double asleep = rounded_down(triage.horizon() - most_unseen);
   return triage.pending() ? std::min(asleep, pending_lower()) : asleep;
 }
 
 double Monitor::State::pending_lower() const noexcept {
-  return rounded_down(triage.pending_lower() - most_unseen());
-}
-
-// How far any two known objects may have moved since their stamps, both together, m.
-double Monitor::State::most_unseen() const noexcept {
-  double most = 0.0, second = 0.0;
-  for (const ObjectState& object : objects) {
-    if (!object.known() || object.may_have_moved <= second) continue;
-    second = std::min(most, object.may_have_moved);
-    most = std::max(most, object.may_have_moved);
-  }
-  return rounded_up(most + second);
+  return rounded_down(triage.pending_lower() - most_unseen);
 }
 
 PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -17,10 +18,15 @@ struct InputAge {
   bool stale = false;        // older than the object's limit
 };
 
+struct MonitorOptions {
+  unsigned workers = 1;  // threads that evaluate pairs, the one that calls tick() included
+  std::function<void()> on_worker_start = {};  // runs first in each of the others
+};
+
 class Monitor {
  public:
   // Allocates all it will ever need. The scene must outlive the monitor.
-  explicit Monitor(const Scene& scene);
+  explicit Monitor(const Scene& scene, const MonitorOptions& options = {});
   ~Monitor();
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
@@ -29,7 +35,7 @@ class Monitor {
   // moves the objects, carries every bound forward, evaluates what is due within the budget,
   // updates zones. `now_ns` (CLOCK_REALTIME) must not decrease; if it does, the previous value is
   // used. The report stays valid until the next tick. Allocates, throws and locks nothing; same
-  // inputs, same bits.
+  // inputs, same bits, with one worker or several.
   const Report& tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept;
 
   // Counts a sample that was refused before it came here (a batch made for another scene). In the
@@ -38,6 +44,10 @@ class Monitor {
 
   // Any pair as of the last tick, whether it is published or not; all unknown before the first.
   [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
+
+  // The tick in which the pair's bound was last found afresh from poses: by an evaluation, or by
+  // balls around its objects where these prove it far. 0: never.
+  [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair) const noexcept;
 
   // How old an object's pose was at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;

@@ -8,6 +8,7 @@ PairCounts::PairCounts(const Scene& scene)
     : words_((scene.objects.size() + 63) / 64), neighbours_(scene.objects.size() * words_) {
   known_.members.resize(words_);
   fresh_.members.resize(words_);
+  regained_.reserve(scene.objects.size());
   const auto join = [this](std::size_t object, std::size_t other) {
     neighbours_[object * words_ + other / 64] |= std::uint64_t{1} << other % 64;
   };
@@ -17,18 +18,20 @@ PairCounts::PairCounts(const Scene& scene)
   }
 }
 
-void PairCounts::update(const std::vector<ObjectState>& objects) noexcept {
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+void PairCounts::update(const std::vector<ObjectState>& objects,
+                        std::span<const std::uint32_t> changed) noexcept {
+  regained_.clear();
+  for (const std::uint32_t i : changed) {
     const bool known = objects[i].known();
-    set(i, known, known_);
+    if (set(i, known, known_) && known) regained_.push_back(i);
     set(i, known && !objects[i].late, fresh_);
   }
 }
 
-void PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
+bool PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
   std::uint64_t& word = kind.members[object / 64];
   const std::uint64_t bit = std::uint64_t{1} << object % 64;
-  if (static_cast<bool>(word & bit) == is_member) return;
+  if (static_cast<bool>(word & bit) == is_member) return false;
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < words_; ++i) {
     pairs += static_cast<std::uint64_t>(
@@ -36,6 +39,7 @@ void PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
   }
   word ^= bit;
   kind.pairs = is_member ? kind.pairs + pairs : kind.pairs - pairs;
+  return true;
 }
 
 }  // namespace clearance

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -16,8 +17,13 @@ class PairCounts {
  public:
   explicit PairCounts(const Scene& scene);
 
-  // Takes the counts to the objects' present states.
-  void update(const std::vector<ObjectState>& objects) noexcept;
+  // Takes the counts to the objects' present states; `changed` are at least those whose states are
+  // not what they were.
+  void update(const std::vector<ObjectState>& objects,
+              std::span<const std::uint32_t> changed) noexcept;
+
+  // Objects that are known since the last update and were not before.
+  [[nodiscard]] std::span<const std::uint32_t> regained() const noexcept { return regained_; }
 
   // Both objects' poses are known, as of the last update.
   [[nodiscard]] std::uint64_t known() const noexcept { return known_.pairs; }
@@ -30,11 +36,13 @@ class PairCounts {
     std::vector<std::uint64_t> members;
     std::uint64_t pairs = 0;
   };
-  void set(std::size_t object, bool is_member, Kind& kind) noexcept;
+  // False: nothing changed.
+  bool set(std::size_t object, bool is_member, Kind& kind) noexcept;
 
   std::size_t words_;                      // of a row
   std::vector<std::uint64_t> neighbours_;  // row by object: who makes a pair with it
   Kind known_, fresh_;
+  std::vector<std::uint32_t> regained_;
 };
 
 }  // namespace clearance

@@ -77,7 +77,8 @@ struct Report {
   // Object pairs; each is one of the last four.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick
-  // Ticks since the stalest known pair was evaluated; one that never was counts from the start.
+  // Ticks since the stalest known pair was refreshed: evaluated, or proved by balls around its
+  // objects, placed for that tick, to be out of question. One that never was counts from the start.
   std::uint64_t oldest_evaluation_cycles = 0;
   std::vector<PairReport> pairs;  // those with ObjectPair::publish, in scene order; sized once
   std::vector<ZoneReport> zones;  // one a zone, in scene order; sized once

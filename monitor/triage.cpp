@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "monitor/evaluation_batch.hpp"
+
 namespace clearance {
 namespace {
 
@@ -15,20 +17,27 @@ constexpr double kHeadroom = 0.02;
 constexpr double kHorizonStep = 0.002;
 constexpr int kMostRaises = 8;  // a tick
 
-// Looking at a woken pair costs about a fifth of a query.
-constexpr std::size_t kWokenPerQuery = 5;
+// Waking a pair and looking at it costs as much as a query where memory is far, less where it is
+// near; pairs that are met for the first time are bounded by the same.
+constexpr std::size_t kWokenPerQuery = 2;
 constexpr std::size_t kLeastWoken = 1'000;
 
 constexpr std::uint32_t kLeastRefreshed = 16;  // pairs a tick
+// As many times more when some are overdue, having been out of sight.
+constexpr std::uint32_t kCatchUp = 4;
 // A pair that stays awake is evaluated this often, in ticks: its carried bound may be what keeps
 // it.
 constexpr std::uint64_t kRestlessTicks = 16;
 constexpr std::uint32_t kMostRestless = 256;  // a tick
 
+std::uint64_t ticks_of_refresh(const Scene& scene) {
+  return static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
+}
+
 std::uint32_t refreshed_per_tick(const Scene& scene) {
-  const double ticks = std::max(1.0, scene.refresh_s * scene.rate_hz);
-  const double pairs = std::ceil(static_cast<double>(scene.pairs.size()) / ticks);
-  return std::max(kLeastRefreshed, static_cast<std::uint32_t>(std::min(pairs, 1e9)));
+  const std::uint64_t ticks = ticks_of_refresh(scene);
+  const std::uint64_t pairs = (scene.pairs.size() + ticks - 1) / ticks;
+  return std::max(kLeastRefreshed, static_cast<std::uint32_t>(pairs));
 }
 
 std::vector<std::uint32_t> asked_pairs(const Scene& scene) {
@@ -60,8 +69,10 @@ bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
 
 }  // namespace
 
-Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table)
+Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
+               WorkerPool& pool)
     : budget_(scene.budget),
+      refresh_ticks_(ticks_of_refresh(scene)),
       per_tick_(refreshed_per_tick(scene)),
       asked_(asked_pairs(scene)),
       asked_rows_(rows_of(asked_, table)),
@@ -71,20 +82,18 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
       broad_phase_(scene, parts, urgency_.levels(),
                    asked_every_tick_ ? std::span(asked_) : std::span<const std::uint32_t>(),
                    std::max(kLeastWoken, kWokenPerQuery * scene.budget)),
-      round_(scene.objects.size(), scene.pairs.size()) {
+      queue_(scene.objects.size(), scene.pairs.size()),
+      pool_(pool),
+      is_current_(table.pairs(), 0) {
   for (auto* list : {&awake_, &current_, &scratch_}) list->reserve(table.pairs());
 }
 
 std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
+                                   std::span<const std::uint32_t> stirred,
                                    const std::vector<PlacedPart>& parts, std::uint64_t cycle,
                                    PairTable& table) noexcept {
   Evaluation evaluation{objects, parts, cycle, table, budget_};
-  evaluated_ = 0;
-  current_.clear();
-  counts_.update(objects);
-  round_.look(objects);
-  follow_minimum();
-  broad_phase_.begin(objects, table);
+  begin(stirred, evaluation);
   if (asked_every_tick_) look_at_asked(has_room(table), evaluation);
   look_at_awake(evaluation);
   find_horizon();
@@ -92,11 +101,25 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
 
   evaluate_minimum(evaluation);
   evaluate_urgent(evaluation);
-  evaluate_asked(evaluation);
-  evaluate_in_turn(evaluation);
+  // Pairs asked for that outnumber the budget must not starve the rest.
+  const bool covered = asked_.size() <= evaluation.queries_left;
+  if (covered) evaluate_asked(evaluation);
+  refresh_stalest(evaluation);
+  if (!covered) evaluate_asked(evaluation);
   evaluate_restless(evaluation);
   put_to_sleep(evaluation);
+  find_oldest(evaluation);
   return budget_ - evaluation.queries_left;
+}
+
+void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept {
+  for (const std::uint32_t pair : current_) is_current_[pair] = 0;
+  current_.clear();
+  counts_.update(evaluation.objects, stirred);
+  for (const std::uint32_t object : counts_.regained()) queue_.regain(object);
+  queue_.bring_back(broad_phase_, evaluation.objects, evaluation.table);
+  follow_minimum();
+  broad_phase_.begin(evaluation.objects, stirred, evaluation.table);
 }
 
 // Whatever is urgent can be evaluated besides, so that it need not come first.
@@ -105,13 +128,14 @@ bool Triage::has_room(const PairTable& table) const noexcept {
 }
 
 void Triage::look_at_asked(bool roomy, Evaluation& evaluation) noexcept {
+  scratch_.clear();
   for (const std::uint32_t pair : asked_) {
-    if (!is_known(pair, evaluation)) continue;
-    if (roomy) {
-      evaluate_once(pair, evaluation);
-    } else {
-      look_at(pair, evaluation);
-    }
+    if (is_known(pair, evaluation)) scratch_.push_back(pair);
+  }
+  if (roomy) {
+    evaluate_these(scratch_, evaluation);
+  } else {
+    for (const std::uint32_t pair : scratch_) look_at(pair, evaluation);
   }
 }
 
@@ -146,10 +170,15 @@ void Triage::find_horizon() noexcept {
 void Triage::settle_woken(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.woken()) {
     if (is_known(pair, evaluation)) {
-      if (broad_phase_.sleep(pair, broad_phase_.by_balls(pair).lower)) continue;
+      if (broad_phase_.sleep(pair, broad_phase_.by_balls(pair).lower)) {
+        queue_.refreshed(pair, evaluation.cycle);
+        continue;
+      }
       look_at(pair, evaluation);
+      queue_.enter(pair);
       if (broad_phase_.sleep(pair, evaluation.table.least_lower[pair])) continue;
     }
+    queue_.enter(pair);
     awake_.push_back(pair);
   }
   broad_phase_.clear_woken();
@@ -170,19 +199,31 @@ void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
   }
 }
 
-void Triage::look_at(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  if (evaluation.table.carried_cycle[pair] == evaluation.cycle) return;
-  carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
+void Triage::list(std::uint32_t pair) noexcept {
+  if (is_current_[pair]) return;
+  is_current_[pair] = 1;
   current_.push_back(pair);
 }
 
-void Triage::evaluate_once(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  if (is_evaluated(pair, evaluation) || evaluation.queries_left == 0) return;
-  if (evaluation.table.carried_cycle[pair] != evaluation.cycle) current_.push_back(pair);
-  evaluate(pair, evaluation);
-  ++evaluated_;
+void Triage::look_at(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
+  list(pair);
 }
 
+// Known pairs that are not evaluated yet, as many of the first as the budget covers.
+void Triage::evaluate_these(std::span<const std::uint32_t> pairs, Evaluation& evaluation) noexcept {
+  const std::size_t done = evaluate(pairs, pool_, evaluation);
+  for (const std::uint32_t pair : pairs.first(done)) note_evaluated(pair, evaluation);
+}
+
+void Triage::note_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  list(pair);
+  if (!is_evaluated(pair, evaluation) || broad_phase_.left_out(pair)) return;
+  queue_.refreshed(pair, evaluation.cycle);
+}
+
+// In batches that grow: one is mostly enough, and what is shared between workers must not depend on
+// how many they are.
 void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   const auto upper_of = [&table](std::uint32_t pair) {
@@ -190,25 +231,32 @@ void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
                              table.upper.begin() + table.first_row[pair + 1]);
   };
   double smallest_upper = kInfinity;
-  for (const std::uint32_t pair : current_)
+  for (const std::uint32_t pair : current_) {
     smallest_upper = std::min(smallest_upper, upper_of(pair));
-
+  }
   scratch_.clear();
   for (const std::uint32_t pair : current_) {
-    const bool done = table.evaluated_cycle[pair] == evaluation.cycle;
+    const bool done = is_evaluated(pair, evaluation);
     if (!done && table.least_lower[pair] < smallest_upper) scratch_.push_back(pair);
   }
   const auto later = [&table](std::uint32_t left, std::uint32_t right) {
     return std::tie(table.least_lower[left], left) > std::tie(table.least_lower[right], right);
   };
   std::make_heap(scratch_.begin(), scratch_.end(), later);
-  while (!scratch_.empty() && evaluation.queries_left > 0) {
-    std::pop_heap(scratch_.begin(), scratch_.end(), later);
-    const std::uint32_t pair = scratch_.back();
-    scratch_.pop_back();
-    if (table.least_lower[pair] >= smallest_upper) break;
-    evaluate_once(pair, evaluation);
-    smallest_upper = std::min(smallest_upper, upper_of(pair));
+  auto end = scratch_.end();
+  for (std::ptrdiff_t size = 1; evaluation.queries_left > 0; size *= 2) {
+    auto first = end;
+    while (first != scratch_.begin() && end - first < size &&
+           table.least_lower[scratch_.front()] < smallest_upper) {
+      std::pop_heap(scratch_.begin(), first--, later);
+    }
+    if (first == end) break;
+    std::reverse(first, end);
+    evaluate_these({first, end}, evaluation);
+    for (auto it = first; it != end; ++it) {
+      smallest_upper = std::min(smallest_upper, upper_of(*it));
+    }
+    end = first;
   }
   smallest_upper_ = smallest_upper;
 }
@@ -226,40 +274,56 @@ void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
   }
 }
 
-// Pairs asked for that outnumber the budget must not starve the rest: they take turns in what the
-// round of all pairs leaves.
+// As far as the budget goes; where that was in the last tick, it begins in this one.
 void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
-  const bool covered = asked_.size() <= evaluation.queries_left;
-  const std::uint32_t kept = covered ? 0 : std::min(per_tick_, evaluation.queries_left);
-  for (std::size_t i = 0; i < asked_.size() && evaluation.queries_left > kept; ++i) {
+  for (std::size_t i = 0; i < asked_.size() && evaluation.queries_left > 0; ++i) {
     if (next_asked_ >= asked_.size()) next_asked_ = 0;
     const std::uint32_t pair = asked_[next_asked_++];
-    if (is_known(pair, evaluation)) evaluate_once(pair, evaluation);
+    if (is_evaluated(pair, evaluation) || !is_known(pair, evaluation)) continue;
+    evaluate_these({&pair, 1}, evaluation);
   }
 }
 
-void Triage::evaluate_in_turn(Evaluation& evaluation) noexcept {
-  std::uint32_t left = per_tick_;
-  // Passing over a pair costs little; still, there may be millions that nobody knows.
-  const std::uint64_t turns = std::min<std::uint64_t>(evaluation.table.pairs(), 4ull * per_tick_);
-  for (std::uint64_t turn = 0; turn < turns && left > 0 && evaluation.queries_left > 0; ++turn) {
-    const std::uint32_t pair = round_.take_turn(evaluation.cycle);
-    if (is_evaluated(pair, evaluation) || !is_known(pair, evaluation)) continue;
-    evaluate_once(pair, evaluation);
-    --left;
+void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
+  // Pairs that are set aside do not count; still, there may be millions of them.
+  const std::uint32_t most = kCatchUp * per_tick_;
+  std::uint32_t refreshed = 0;
+  for (std::uint32_t turn = 0; turn < most; ++turn) {
+    const std::uint32_t pair = queue_.stalest();
+    if (pair == RefreshQueue::kNobody) return;
+    const std::uint64_t last = queue_.refreshed_cycle(pair);
+    if (last == evaluation.cycle) return;
+    if (!is_known(pair, evaluation)) {
+      const std::uint32_t a = evaluation.table.object_a[pair];
+      queue_.set_aside(pair, evaluation.objects[a].known() ? evaluation.table.object_b[pair] : a);
+      continue;
+    }
+    const bool overdue = evaluation.cycle - last >= refresh_ticks_;
+    if (refreshed >= per_tick_ && !overdue) return;
+    if (!refresh(pair, evaluation)) return;
+    ++refreshed;
   }
+}
+
+// False: the budget is used up.
+bool Triage::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  if (broad_phase_.is_far(pair, broad_phase_.by_balls(pair).lower)) {
+    queue_.refreshed(pair, evaluation.cycle);
+    return true;
+  }
+  evaluate_these({&pair, 1}, evaluation);
+  return is_evaluated(pair, evaluation);
 }
 
 void Triage::evaluate_restless(Evaluation& evaluation) noexcept {
-  std::uint32_t left = std::min(kMostRestless, evaluation.queries_left);
+  scratch_.clear();
   for (const std::uint32_t pair : awake_) {
-    if (left == 0) return;
+    if (scratch_.size() == kMostRestless) break;
     const std::uint64_t last = evaluation.table.evaluated_cycle[pair];
     if (last + kRestlessTicks >= evaluation.cycle && last > 0) continue;
-    if (!is_known(pair, evaluation)) continue;
-    evaluate_once(pair, evaluation);
-    --left;
+    if (is_known(pair, evaluation)) scratch_.push_back(pair);
   }
+  evaluate_these(scratch_, evaluation);
 }
 
 void Triage::put_to_sleep(const Evaluation& evaluation) noexcept {
@@ -283,7 +347,21 @@ void Triage::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evalua
     std::sort(pairs.begin(), end, staler);
     pairs = pairs.first(evaluation.queries_left);
   }
-  for (const std::uint32_t pair : pairs) evaluate_once(pair, evaluation);
+  evaluate_these(pairs, evaluation);
+}
+
+std::uint64_t Triage::refreshed_cycle(std::uint32_t pair, const PairTable& table) const noexcept {
+  return broad_phase_.left_out(pair) ? table.evaluated_cycle[pair] : queue_.refreshed_cycle(pair);
+}
+
+void Triage::find_oldest(const Evaluation& evaluation) noexcept {
+  oldest_refresh_ = std::min(evaluation.cycle, queue_.oldest());
+  if (!broad_phase_.everyone_met()) oldest_refresh_ = 0;
+  if (!asked_every_tick_) return;
+  for (const std::uint32_t pair : asked_) {
+    if (!is_known(pair, evaluation)) continue;
+    oldest_refresh_ = std::min(oldest_refresh_, evaluation.table.evaluated_cycle[pair]);
+  }
 }
 
 }  // namespace clearance

@@ -8,10 +8,12 @@
 //     bound; the horizon below which pairs are awake follows that;
 //  2. bins by the number of ticks until contact, or a zone's threshold, can be reached (urgency):
 //     the first bins every tick, nearest first;
-//  3. published pairs, where the budget did not cover all: in turn;
-//  4. a share of all pairs in turn, asleep or not, so that each is refreshed in time;
+//  3. published pairs, if the budget covers them after all;
+//  4. a share of all pairs, asleep or not, the stalest first, so that each is refreshed in time: by
+//     the balls around its objects where these prove it far, else by an evaluation; then published
+//     pairs in turn, where the budget does not cover them;
 //  5. pairs that a tighter bound may put to sleep.
-// Order and outcome depend on the inputs only: no clock, no addresses.
+// Order and outcome depend on the inputs only: no clock, no addresses, no number of workers.
 #pragma once
 
 #include <cstdint>
@@ -21,18 +23,23 @@
 #include "monitor/broad_phase.hpp"
 #include "monitor/evaluation.hpp"
 #include "monitor/pair_counts.hpp"
-#include "monitor/refresh_round.hpp"
+#include "monitor/refresh_queue.hpp"
 #include "monitor/urgency.hpp"
+#include "monitor/worker_pool.hpp"
 
 namespace clearance {
 
 class Triage {
  public:
-  Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table);
+  // `pool` must outlive the triage.
+  Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
+         WorkerPool& pool);
 
   // Carries what has to be carried and evaluates what is due; returns how many queries that took,
-  // at most Scene::budget.
+  // at most Scene::budget. `stirred`: at least the objects that have moved, or of which something
+  // else is known than in the last tick.
   std::uint32_t evaluate_due(const std::vector<ObjectState>& objects,
+                             std::span<const std::uint32_t> stirred,
                              const std::vector<PlacedPart>& parts, std::uint64_t cycle,
                              PairTable& table) noexcept;
 
@@ -46,14 +53,18 @@ class Triage {
   [[nodiscard]] bool pending() const noexcept { return broad_phase_.pending(); }
   [[nodiscard]] double pending_lower() const noexcept { return broad_phase_.pending_lower(); }
   [[nodiscard]] const PairCounts& counts() const noexcept { return counts_; }
-  // how many pairs were evaluated;
-  [[nodiscard]] std::uint64_t evaluated() const noexcept { return evaluated_; }
-  // and no known pair's last evaluation is older than this tick; 0: some never was.
-  [[nodiscard]] std::uint64_t oldest_evaluation() const noexcept { return round_.oldest_turn(); }
+  // the tick in which a pair was last refreshed: evaluated, or proved far by the balls around its
+  // objects; 0: never;
+  [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair,
+                                              const PairTable& table) const noexcept;
+  // and the same of the stalest pair that is known; the cycle itself: none is stale. Exact, but
+  // while pairs are met for the first time or come back into sight: then none is older.
+  [[nodiscard]] std::uint64_t oldest_refresh() const noexcept { return oldest_refresh_; }
 
  private:
   void follow_minimum() noexcept;
   void find_horizon() noexcept;
+  void begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept;
   void look_at_asked(bool roomy, Evaluation& evaluation) noexcept;
   void look_at_awake(Evaluation& evaluation) noexcept;
   void settle_woken(Evaluation& evaluation) noexcept;
@@ -62,16 +73,21 @@ class Triage {
   void evaluate_closest(Evaluation& evaluation) noexcept;
   void evaluate_urgent(Evaluation& evaluation) noexcept;
   void evaluate_asked(Evaluation& evaluation) noexcept;
-  void evaluate_in_turn(Evaluation& evaluation) noexcept;
+  void refresh_stalest(Evaluation& evaluation) noexcept;
+  [[nodiscard]] bool refresh(std::uint32_t pair, Evaluation& evaluation) noexcept;
   void evaluate_restless(Evaluation& evaluation) noexcept;
   void evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept;
-  void evaluate_once(std::uint32_t pair, Evaluation& evaluation) noexcept;
+  void evaluate_these(std::span<const std::uint32_t> pairs, Evaluation& evaluation) noexcept;
+  void note_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept;
   void look_at(std::uint32_t pair, Evaluation& evaluation) noexcept;
+  void list(std::uint32_t pair) noexcept;
+  void find_oldest(const Evaluation& evaluation) noexcept;
   [[nodiscard]] bool has_room(const PairTable& table) const noexcept;
 
   const std::uint32_t budget_;
-  const std::uint32_t per_tick_;      // pairs to be refreshed a tick
-  std::vector<std::uint32_t> asked_;  // pairs whose figures somebody asked for
+  const std::uint64_t refresh_ticks_;  // within which every pair is to be refreshed
+  const std::uint32_t per_tick_;       // pairs to be refreshed a tick
+  std::vector<std::uint32_t> asked_;   // pairs whose figures somebody asked for
   std::uint32_t asked_rows_ = 0;
   // The budget covers those: they never sleep. Otherwise they do, and have their turns.
   const bool asked_every_tick_;
@@ -79,9 +95,11 @@ class Triage {
   PairCounts counts_;
   Urgency urgency_;
   BroadPhase broad_phase_;
-  RefreshRound round_;
+  RefreshQueue queue_;  // of the pairs that the broad phase is told of
+  WorkerPool& pool_;
   double smallest_upper_ = kInfinity;  // of the pairs looked at, but for those in turn, m
-  std::uint64_t evaluated_ = 0;
+  std::uint64_t oldest_refresh_ = 0;
+  std::vector<std::uint8_t> is_current_;  // by pair: is in current_
   // Pairs, each list with room for all that it can ever hold.
   std::vector<std::uint32_t> awake_, current_, scratch_;
 };

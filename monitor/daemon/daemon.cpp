@@ -28,6 +28,15 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
   return options.dds;
 }
 
+// The tick waits for its workers, so they run with its priority; free to go to any processor.
+MonitorOptions monitor_options(const DaemonOptions& options) {
+  const auto start = [priority = options.fifo_priority] {
+    name_thread("worker");
+    if (priority > 0) log_refusal(use_fifo_scheduling(priority));
+  };
+  return {.workers = options.workers, .on_worker_start = start};
+}
+
 std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
                                           const DdsPoses& poses) {
   if (options.record_file.empty()) return nullptr;
@@ -45,7 +54,8 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       reports_(scene, participant_, publish_queue_, poses_),
       recording_(open_recording(scene, options, poses_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
-                             .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene)};
+                             .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene),
+                             .monitor = monitor_options(options)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
   loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);

@@ -27,6 +27,7 @@ struct DaemonOptions {
   std::filesystem::path record_file;  // empty: no recording
   bool record_over = false;           // a file that is there already
   std::optional<int> cpu;             // that the tick thread is pinned to
+  unsigned workers = 1;  // threads that evaluate pairs, the tick thread included; same scheduling
 };
 
 class Daemon {

@@ -8,7 +8,7 @@ namespace clearance {
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
     : scene_(scene),
-      monitor_(scene),
+      monitor_(scene, options.monitor),
       source_(source),
       sinks_(std::move(sinks)),
       clock_(clock),

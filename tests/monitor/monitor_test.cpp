@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
+#include "tests/monitor/report_bytes.hpp"
 #include "tests/monitor/two_balls.hpp"
 #include "tests/shared/allocation_count.hpp"
 
@@ -167,50 +167,13 @@ TEST(Monitor, ATickAllocatesNothing) {
   }
 }
 
-template <class T>
-void append(std::vector<unsigned char>& bytes, const T& figure) {
-  const std::size_t size = bytes.size();
-  bytes.resize(size + sizeof(T));
-  std::memcpy(bytes.data() + size, &figure, sizeof(T));
-}
-
-void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
-  append(bytes, pair.status);
-  append(bytes, pair.evaluated_cycle);
-  append(bytes, pair.part_a);
-  append(bytes, pair.part_b);
-  for (const double figure :
-       {pair.distance, pair.lower, pair.upper, pair.closing_speed, pair.time_to_contact}) {
-    append(bytes, figure);
-  }
-  for (const Vec3& v : {pair.witness_a, pair.witness_b, pair.normal}) {
-    for (int i = 0; i < 3; ++i) append(bytes, v[i]);
-  }
-}
-
-std::vector<unsigned char> bytes_of(const Report& report) {
-  std::vector<unsigned char> bytes;
-  append(bytes, report.queries);
-  append(bytes, report.minimum_proved);
-  append(bytes, report.lower_all);
-  append(bytes, report.minimum);
-  for (const PairReport& pair : report.pairs) append(bytes, pair);
-  for (const ZoneReport& zone : report.zones) {
-    append(bytes, zone.active);
-    append(bytes, zone.proved);
-    append(bytes, zone.clearance);
-    append(bytes, zone.pair);
-  }
-  append(bytes, report.rejected);
-  return bytes;
-}
-
 TEST(Monitor, SameInputsGiveTheSameBits) {
   Trouble first(62), second(62);
   Monitor one(first.scene()), other(second.scene());
   for (int t = 0; t < 500; ++t) {
-    const std::vector<unsigned char> expected = bytes_of(one.tick(first.next(), first.now_ns()));
-    ASSERT_EQ(bytes_of(other.tick(second.next(), second.now_ns())), expected) << "tick " << t;
+    const std::vector<unsigned char> expected =
+        test::bytes_of(one.tick(first.next(), first.now_ns()));
+    ASSERT_EQ(test::bytes_of(other.tick(second.next(), second.now_ns())), expected) << "tick " << t;
   }
 }
 

@@ -210,18 +210,85 @@ Scene far_apart(std::uint32_t count) {
   return test::cell_of(std::move(objects));
 }
 
-TEST(Triage, TheRestIsEvaluatedRoundRobinStalestFirst) {
-  Scene scene = far_apart(20);
+// Side by side, so long that the balls around them say nothing.
+TEST(Triage, TheRestIsEvaluatedTheStalestFirst) {
+  std::vector<Object> objects{test::moving("mover", {test::capsule(100.0, 0.01)})};
+  for (int i = 0; i < 20; ++i) {
+    objects.push_back(
+        test::fixed("pole", {test::capsule(100.0, 0.01)}, test::at(0, 1.0 + 0.5 * i, 0)));
+  }
+  Scene scene = test::cell_of(std::move(objects));
   scene.budget = 5;
   Monitor monitor(scene);
-  std::uint64_t oldest = 0;
   for (int t = 0; t < 50; ++t) {
+    std::vector<std::uint64_t> before;
+    for (std::uint32_t p = 0; p < 20; ++p) before.push_back(monitor.refreshed_cycle(p));
     const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
     const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
     EXPECT_EQ(report.queries, 5u);
-    if (t >= 20) oldest = std::max(oldest, report.oldest_evaluation_cycles);
+    if (t < 20) continue;
+    EXPECT_LE(report.oldest_evaluation_cycles, 5u) << "19 far pairs at four or five a tick";
+    std::uint64_t freshest_of_refreshed = 0, stalest_left = report.cycle;
+    for (std::uint32_t p = 1; p < 20; ++p) {
+      const bool refreshed = monitor.refreshed_cycle(p) == report.cycle;
+      EXPECT_EQ(refreshed, monitor.pair(p).evaluated_cycle == report.cycle);
+      if (refreshed) freshest_of_refreshed = std::max(freshest_of_refreshed, before[p]);
+      if (!refreshed) stalest_left = std::min(stalest_left, before[p]);
+    }
+    EXPECT_LE(freshest_of_refreshed, stalest_left) << "tick " << t;
   }
-  EXPECT_LE(oldest, 5u) << "19 far pairs at four or five a tick";
+}
+
+TEST(Triage, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
+  Scene scene = far_apart(200);
+  Monitor monitor(scene);
+  for (int t = 0; t < 100; ++t) {
+    const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
+    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    EXPECT_LE(report.queries, 2u);
+    EXPECT_LE(report.oldest_evaluation_cycles, 13u) << "199 pairs, 16 a tick";
+  }
+  EXPECT_EQ(monitor.pair(150).evaluated_cycle, 0u);
+}
+
+// Nobody states a speed, so that an object that falls silent is unknown.
+TEST(Triage, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
+  std::vector<Object> objects;
+  for (int i = 0; i < 40; ++i) {
+    objects.push_back(test::moving("pole", {test::capsule(10.0, 0.01)}));
+  }
+  Scene scene = test::cell_of(std::move(objects));
+  scene.refresh_s = 0.04;
+  constexpr std::uint64_t kLimit = 40;
+  Monitor monitor(scene);
+  Random random(47);
+  std::vector<int> silent(40, 0), known_for(40, 0);
+  bool lost = false;
+  for (int t = 0; t < 1500; ++t) {
+    std::vector<PoseSample> samples;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      if (silent[i] == 0 && random.in(0, 1) < 0.002) silent[i] = 120;
+      if (silent[i] > 0) --silent[i];
+      if (silent[i] == 0) {
+        samples.push_back(test::sample(i, test::at(0, 0.2 * i, 0), kStart + t * kTick));
+      }
+    }
+    const Report& report = monitor.tick(samples, kStart + t * kTick);
+    lost = lost || report.unknown > 0;
+    for (std::uint32_t i = 0; i < 40; ++i) known_for[i] = silent[i] < 100 ? known_for[i] + 1 : 0;
+    std::uint64_t stalest = 0;
+    for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+      const auto& [a, b, publish] = scene.pairs[p];
+      if (monitor.pair(p).status == PairStatus::kUnknown) continue;
+      const std::uint64_t age = report.cycle - monitor.refreshed_cycle(p);
+      stalest = std::max(stalest, age);
+      const int known = std::min({known_for[a], known_for[b], t});
+      if (known <= static_cast<int>(kLimit)) continue;
+      ASSERT_LE(age, kLimit) << "tick " << t << " pair " << p;
+    }
+    ASSERT_LE(stalest, report.oldest_evaluation_cycles) << "tick " << t;
+  }
+  EXPECT_TRUE(lost);
 }
 
 TEST(Triage, FirstBinsAreEvaluatedEveryTick) {

@@ -1,0 +1,54 @@
+#include "monitor/evaluation_batch.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+std::uint32_t rows_of(std::uint32_t pair, const PairTable& table) noexcept {
+  return table.first_row[pair + 1] - table.first_row[pair];
+}
+
+// How many of them the budget covers whatever each of them takes.
+std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& evaluation) noexcept {
+  std::uint32_t left = evaluation.queries_left;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::uint32_t rows = rows_of(pairs[i], evaluation.table);
+    if (rows > left) return i;
+    left -= rows;
+  }
+  return pairs.size();
+}
+
+// That evaluating a pair once took.
+std::uint32_t queries_of(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  const PairTable& table = evaluation.table;
+  if (rows_of(pair, table) == 1) return 1;
+  const auto first = table.row_evaluated_cycle.begin() + table.first_row[pair];
+  const auto end = table.row_evaluated_cycle.begin() + table.first_row[pair + 1];
+  return static_cast<std::uint32_t>(std::count(first, end, evaluation.cycle));
+}
+
+}  // namespace
+
+std::size_t evaluate(std::span<const std::uint32_t> pairs, WorkerPool& pool,
+                     Evaluation& evaluation) noexcept {
+  std::size_t done = 0;
+  while (done < pairs.size() && evaluation.queries_left > 0) {
+    const auto batch = pairs.subspan(done, covered(pairs.subspan(done), evaluation));
+    if (batch.empty()) {  // whether the budget lasts for this one will be seen
+      evaluate(pairs[done++], evaluation);
+      continue;
+    }
+    const auto one = [&evaluation, batch](std::uint32_t i) noexcept {
+      Evaluation own = evaluation;
+      evaluate(batch[i], own);
+    };
+    pool.run(static_cast<std::uint32_t>(batch.size()), one);
+    for (const std::uint32_t pair : batch) evaluation.queries_left -= queries_of(pair, evaluation);
+    done += batch.size();
+  }
+  return done;
+}
+
+}  // namespace clearance

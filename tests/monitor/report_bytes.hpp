@@ -1,0 +1,51 @@
+// What a report says, as bytes: equal when it is the same to the bit.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "monitor/report.hpp"
+
+namespace clearance::test {
+
+template <class T>
+inline void append(std::vector<unsigned char>& bytes, const T& figure) {
+  const std::size_t size = bytes.size();
+  bytes.resize(size + sizeof(T));
+  std::memcpy(bytes.data() + size, &figure, sizeof(T));
+}
+
+inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
+  append(bytes, pair.status);
+  append(bytes, pair.evaluated_cycle);
+  append(bytes, pair.part_a);
+  append(bytes, pair.part_b);
+  for (const double figure :
+       {pair.distance, pair.lower, pair.upper, pair.closing_speed, pair.time_to_contact}) {
+    append(bytes, figure);
+  }
+  for (const Vec3& v : {pair.witness_a, pair.witness_b, pair.normal}) {
+    for (int i = 0; i < 3; ++i) append(bytes, v[i]);
+  }
+}
+
+[[nodiscard]] inline std::vector<unsigned char> bytes_of(const Report& report) {
+  std::vector<unsigned char> bytes;
+  append(bytes, report.queries);
+  append(bytes, report.evaluated);
+  append(bytes, report.oldest_evaluation_cycles);
+  append(bytes, report.minimum_proved);
+  append(bytes, report.lower_all);
+  append(bytes, report.minimum);
+  for (const PairReport& pair : report.pairs) append(bytes, pair);
+  for (const ZoneReport& zone : report.zones) {
+    append(bytes, zone.active);
+    append(bytes, zone.proved);
+    append(bytes, zone.clearance);
+    append(bytes, zone.pair);
+  }
+  append(bytes, report.rejected);
+  return bytes;
+}
+
+}  // namespace clearance::test
