@@ -33,14 +33,14 @@ PairIds pair_ids(const Scene& scene) {
 // Half a unit of the last digit written: 0.0005 for "0.125" and for "125e-3".
 double rounding_of(std::string_view text) {
   const std::size_t mantissa = std::min(text.find_first_of("eE"), text.size());
-  int exponent = 0;
+  std::int64_t exponent = 0;
   if (mantissa < text.size()) {
     const std::size_t digits = mantissa + (text[mantissa + 1] == '+' ? 2 : 1);
     std::from_chars(text.data() + digits, text.data() + text.size(), exponent);
   }
   const std::size_t point = text.find('.');
-  if (point < mantissa) exponent -= static_cast<int>(mantissa - point - 1);
-  return 0.5 * std::pow(10.0, exponent);
+  if (point < mantissa) exponent -= static_cast<std::int64_t>(mantissa - point - 1);
+  return 0.5 * std::pow(10.0, static_cast<double>(exponent));
 }
 
 // A depth counts as contact where the reference does not tell it.

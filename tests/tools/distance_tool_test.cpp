@@ -210,6 +210,13 @@ TEST_F(DistanceTool, ACheckOfNothingFails) {
     const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), bad));
     EXPECT_EQ(r.status, 1) << bad;
   }
+  // No translation parts two whole half-spaces that overlap: the depth is not a number.
+  const std::string half = R"({"halfspaces":[[1,0,0,1]]})";
+  const Outcome r = run("--cases - --out - --check",
+                        R"({"id":"x","distance":"0","penetration":"1","a":)" + half + R"(,"b":)" +
+                            half + R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})");
+  EXPECT_EQ(r.status, 1);
+  EXPECT_NE(r.err.find("has no number for penetration"), std::string::npos) << r.err;
   EXPECT_EQ(run("--cases - --out - --tolerance 1e-9", cubes("x", 1.5)).status, 2);
 }
 

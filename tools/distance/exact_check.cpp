@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/distance.hpp"
 #include "tools/distance/rational.hpp"
@@ -21,6 +22,9 @@ const Rational& digits_left_out() {
   return share;
 }
 
+// Of two points in their frames' origins: any error is too large.
+constexpr double kLeastScale = std::numeric_limits<double>::min();
+
 struct Exact {
   Rational value;
   std::string text;  // as the case has it
@@ -32,6 +36,10 @@ Exact exact_number(const Json& value, const char* key) {
   if (!number)
     throw BadLine(std::string(key) + ": expected an exact number as text, as \"0.0625\"");
   return {*number, text};
+}
+
+bool is_finite(const Json& value) {
+  return value.is_number() && std::isfinite(value.get<double>());
 }
 
 RationalPoint exact_point(const OrderedJson& list) {
@@ -101,7 +109,7 @@ class ExactCheck::Judge {
     const Rational& truth = question_.distance.value;
     const Rational slack = truth * digits_left_out();
     const std::string exact = ", exactly " + question_.distance.text;
-    if (!distance.is_number() || !lower.is_number() || !upper.is_number()) {
+    if (!is_finite(distance) || !is_finite(lower) || !is_finite(upper)) {
       faults.push_back("has no number for distance, lower and upper");
       return;
     }
@@ -126,7 +134,7 @@ class ExactCheck::Judge {
     if (!question_.penetration) return;
     const Rational& exact = question_.penetration->value;
     const std::string text = ", exactly " + question_.penetration->text;
-    if (!depth.is_number() || !lower.is_number() || !upper.is_number()) {
+    if (!is_finite(depth) || !is_finite(lower) || !is_finite(upper)) {
       faults.push_back("has no number for penetration and its bounds" + text);
       return;
     }
@@ -144,6 +152,10 @@ class ExactCheck::Judge {
 
   void judge_witnesses(const OrderedJson& witness_a, const OrderedJson& witness_b,
                        double distance) {
+    if (!std::ranges::all_of(witness_a, is_finite) || !std::ranges::all_of(witness_b, is_finite)) {
+      faults.push_back("has no witness points");
+      return;
+    }
     const RationalPoint a = exact_point(witness_a), b = exact_point(witness_b);
     judge_inside("a", a, question_.pose_a);
     judge_inside("b", b, question_.pose_b);
@@ -208,7 +220,7 @@ std::vector<std::string> ExactCheck::faults(const Json& line, const DistanceCase
         asked.poses[k].second,
         exact_number(asked.motion ? exact[k] : exact, key),
         depth.is_null() ? std::optional<Exact>() : exact_number(depth, "penetration"),
-        line.value("scale", reach)};
+        std::max(line.value("scale", reach), kLeastScale)};
     const auto given = [&](const char* name) { return entry(answer, name, k, asked.motion); };
     Judge judge(question, tolerance_);
     judge.judge_distance(given("distance"), given("lower"), given("upper"), given("status"));

@@ -25,7 +25,8 @@ std::optional<Rational> rational_from(const std::string& decimal) {
     const std::size_t start = mantissa_end + (decimal[mantissa_end + 1] == '+' ? 2 : 1);
     const char* const end = decimal.data() + decimal.size();
     const auto read = std::from_chars(decimal.data() + start, end, exponent);
-    if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
+    const bool usable = read.ec == std::errc() && read.ptr == end;
+    if (!usable || exponent < -kLargestExponent || exponent > kLargestExponent) return std::nullopt;
   }
   std::string digits = decimal.substr(0, mantissa_end);
   if (const std::size_t point = digits.find('.'); point != std::string::npos) {
