@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "monitor/rounding.hpp"
 
@@ -36,6 +35,7 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
       levels_(std::move(levels)),
       first_pair_(scene.objects.size() + 1, 0),
       pairs_(2 * scene.pairs.size()),
+      others_(2 * scene.pairs.size()),
       wheels_(scene.objects.size(), scene.pairs.size()) {
   const std::vector<EnclosingBall> balls = enclosing_balls(scene.objects.size(), parts);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -54,19 +54,24 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
   for (std::size_t i = 0; i < bodies_.size(); ++i) first_pair_[i + 1] += first_pair_[i];
   std::vector<std::uint32_t> next(first_pair_.begin(), first_pair_.end() - 1);
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    pairs_[next[object_a_[p]]++] = p;
-    pairs_[next[object_b_[p]]++] = p;
-    if (!left_out_[p]) bodies_[object_a_[p]].idle = bodies_[object_b_[p]].idle = false;
+    const std::uint32_t a = object_a_[p], b = object_b_[p];
+    others_[next[a]] = b;
+    others_[next[b]] = a;
+    pairs_[next[a]++] = pairs_[next[b]++] = p;
+    if (!left_out_[p]) bodies_[a].idle = bodies_[b].idle = false;
   }
   woken_.reserve(scene.pairs.size());
-  everyone_.resize(bodies_.size());
-  std::iota(everyone_.begin(), everyone_.end(), 0u);
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    if (!bodies_[i].idle) busy_.push_back(i);
+  }
+  advanced_.reserve(busy_.size());
   arrived_.reserve(bodies_.size());
 }
 
 void BroadPhase::begin(const std::vector<ObjectState>& objects,
                        std::span<const std::uint32_t> stirred, PairTable& table) noexcept {
   farthest_travel_ = 0.0;
+  advanced_.clear();
   for (double& usual : usual_travel_) usual = usual > kRest ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : stirred) {
     const ObjectState& object = objects[i];
@@ -84,9 +89,10 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects,
     }
     if (!(by > 0.0)) continue;
     wheels_.advance(i, rounded_up(by));
+    advanced_.push_back(i);
     farthest_travel_ = std::max(farthest_travel_, rounded_up(by));
   }
-  take_due(overdue_ ? everyone_ : stirred);
+  take_due(overdue_ ? busy_ : advanced_);
   meet_arrivals();
 }
 
@@ -109,17 +115,22 @@ void BroadPhase::wake(std::uint32_t pair) noexcept {
   woken_.push_back(pair);
 }
 
-// Every pair is met once: when the later of its objects has its turn.
+// Every pair is met once: in the turn of the first of its objects, if the other is there by then;
+// so that pairs are met in the order in which they lie in memory when all objects come at once.
 void BroadPhase::meet_arrivals() noexcept {
   while (!everyone_met()) {
     const std::uint32_t object = arrived_[met_];
-    const std::span<const std::uint32_t> pairs = pairs_of(object);
-    for (; met_pairs_ < pairs.size(); ++met_pairs_) {
+    Arrival& own = bodies_[object].arrival;
+    if (met_pairs_ == 0) own.met = static_cast<std::uint32_t>(arrived_.size());
+    const std::uint32_t first = first_pair_[object];
+    const std::uint32_t count = first_pair_[object + 1] - first;
+    for (; met_pairs_ < count; ++met_pairs_) {
       if (woken_.size() >= most_woken_) return;
-      const std::uint32_t pair = pairs[met_pairs_];
-      if (left_out_[pair]) continue;
-      const std::uint32_t other = object_a_[pair] == object ? object_b_[pair] : object_a_[pair];
-      if (bodies_[other].arrival.rank < bodies_[object].arrival.rank) woken_.push_back(pair);
+      const Arrival& other = bodies_[others_[first + met_pairs_]].arrival;
+      const bool met_before = other.rank < own.rank && own.rank < other.met;
+      if (met_before || other.rank >= own.met) continue;
+      const std::uint32_t pair = pairs_[first + met_pairs_];
+      if (!left_out_[pair]) woken_.push_back(pair);
     }
     met_pairs_ = 0;
     ++met_;
@@ -186,10 +197,10 @@ RowBounds BroadPhase::by_balls(std::uint32_t pair) noexcept {
 void BroadPhase::move_horizon(double to) noexcept {
   if (to > horizon_ && horizon_ > -kInfinity) {
     const double by = rounded_up(to - horizon_);
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i) wheels_.advance(i, by);
+    for (const std::uint32_t i : busy_) wheels_.advance(i, by);
     farthest_travel_ = by;
     horizon_ = to;
-    take_due(everyone_);
+    take_due(busy_);
     return;
   }
   horizon_ = to;

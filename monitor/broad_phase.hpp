@@ -67,6 +67,7 @@ class BroadPhase {
   // An object whose pairs have to be looked at for the first time: with those that came before.
   struct Arrival {
     std::uint32_t rank = ~0u;
+    std::uint32_t met = 0;  // in its turn it met those of lower rank than this
     bool here() const noexcept { return rank != ~0u; }
   };
   struct Body {
@@ -95,12 +96,13 @@ class BroadPhase {
   std::vector<std::uint32_t> object_a_, object_b_;  // by pair
   std::vector<std::uint8_t> left_out_;              // by pair
   Levels levels_;
-  std::vector<std::uint32_t> first_pair_, pairs_;  // pairs by object
+  std::vector<std::uint32_t> first_pair_, pairs_, others_;  // by object: pairs, and with whom
   WakeWheels wheels_;
   double horizon_ = -kInfinity;
   std::vector<std::uint32_t> woken_;
-  std::vector<std::uint32_t> everyone_;  // all objects
-  std::vector<std::uint32_t> arrived_;   // objects, in order; those before met_ have met all others
+  std::vector<std::uint32_t> busy_;      // objects with pairs that are not left out
+  std::vector<std::uint32_t> advanced_;  // those whose wheels have turned in this tick
+  std::vector<std::uint32_t> arrived_;   // objects, in order; those before met_ had their turn
   std::size_t met_ = 0, met_pairs_ = 0;
   double farthest_travel_ = 0.0;  // of any wheel this tick, m
   bool overdue_ = false;          // hooks that are due are still on the wheels

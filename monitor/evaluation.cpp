@@ -24,7 +24,8 @@ DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
                   table.tracking[row]);
 }
 
-void take_in(const DistanceResult& found, std::uint32_t row, Evaluation& evaluation) noexcept {
+void take_in(const DistanceResult& found, std::uint32_t row,
+             const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
@@ -38,22 +39,40 @@ void take_in(const DistanceResult& found, std::uint32_t row, Evaluation& evaluat
   closest.normal = turn * found.normal;
   table.status[row] = found.status;
   table.row_evaluated_cycle[row] = evaluation.cycle;
-  --evaluation.queries_left;
 }
 
 void query(std::uint32_t row, Evaluation& evaluation) noexcept {
   take_in(ask(row, evaluation), row, evaluation);
+  --evaluation.queries_left;
 }
 
-void carry(std::uint32_t pair, Evaluation& evaluation) noexcept {
+void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
 }
 
-// Nothing to choose between, and what was known before adds nothing to a tight answer.
-void evaluate_only_row(std::uint32_t pair, Evaluation& evaluation) noexcept {
+std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noexcept {
+  const auto first = table.lower.begin() + table.first_row[pair];
+  const auto end = table.lower.begin() + table.first_row[pair + 1];
+  return static_cast<std::uint32_t>(std::min_element(first, end) - table.lower.begin());
+}
+
+}  // namespace
+
+bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  const PairTable& table = evaluation.table;
+  return evaluation.objects[table.object_a[pair]].known() &&
+         evaluation.objects[table.object_b[pair]].known();
+}
+
+bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
+}
+
+// What was known before adds nothing to a tight answer.
+void settle(std::uint32_t pair, const DistanceResult& found,
+            const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const std::uint32_t row = table.first_row[pair];
-  const DistanceResult found = ask(row, evaluation);
   if (found.status == DistanceStatus::kConverged) {
     table.lower[row] = -kInfinity;
     table.upper[row] = kInfinity;
@@ -66,19 +85,12 @@ void evaluate_only_row(std::uint32_t pair, Evaluation& evaluation) noexcept {
   table.evaluated_cycle[pair] = evaluation.cycle;
 }
 
-std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noexcept {
-  const auto first = table.lower.begin() + table.first_row[pair];
-  const auto end = table.lower.begin() + table.first_row[pair + 1];
-  return static_cast<std::uint32_t>(std::min_element(first, end) - table.lower.begin());
-}
-
-}  // namespace
-
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   if (evaluation.queries_left == 0) return;
   if (table.first_row[pair + 1] - table.first_row[pair] == 1) {
-    evaluate_only_row(pair, evaluation);
+    settle(pair, ask(table.first_row[pair], evaluation), evaluation);
+    --evaluation.queries_left;
     return;
   }
   carry(pair, evaluation);

@@ -17,6 +17,15 @@ struct Evaluation {
   std::uint32_t queries_left;
 };
 
+// Both objects' poses are known.
+[[nodiscard]] bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept;
+// The pair was evaluated in this tick, all rows that matter.
+[[nodiscard]] bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept;
+
+// Takes in the answer to a query of a pair's only row, which brings the pair up to date. Does not
+// count the query.
+void settle(std::uint32_t pair, const DistanceResult& found, const Evaluation& evaluation) noexcept;
+
 // Brings an object pair up to date and evaluates it as far as the budget goes: the row that may be
 // closest, then every other one that may be closer still. Rows whose carried bounds prove that they
 // are not are left as they are: the pair's distance does not depend on them. Both objects are

@@ -1,6 +1,7 @@
 #include "monitor/triage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -40,14 +41,6 @@ std::uint32_t refreshed_per_tick(const Scene& scene) {
   return std::max(kLeastRefreshed, static_cast<std::uint32_t>(pairs));
 }
 
-std::vector<std::uint32_t> asked_pairs(const Scene& scene) {
-  std::vector<std::uint32_t> asked;
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (scene.pairs[p].publish || scene.evaluate_all) asked.push_back(p);
-  }
-  return asked;
-}
-
 std::uint32_t rows_of(std::uint32_t pair, const PairTable& table) noexcept {
   return table.first_row[pair + 1] - table.first_row[pair];
 }
@@ -57,16 +50,6 @@ std::uint32_t rows_of(std::span<const std::uint32_t> pairs, const PairTable& tab
                                [&table](std::uint32_t pair) { return rows_of(pair, table); });
 }
 
-bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  const PairTable& table = evaluation.table;
-  return evaluation.objects[table.object_a[pair]].known() &&
-         evaluation.objects[table.object_b[pair]].known();
-}
-
-bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
-}
-
 }  // namespace
 
 Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
@@ -74,13 +57,11 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
     : budget_(scene.budget),
       refresh_ticks_(ticks_of_refresh(scene)),
       per_tick_(refreshed_per_tick(scene)),
-      asked_(asked_pairs(scene)),
-      asked_rows_(rows_of(asked_, table)),
-      asked_every_tick_(asked_rows_ <= budget_),
+      asked_(scene, parts, table),
       counts_(scene),
       urgency_(scene, parts),
       broad_phase_(scene, parts, urgency_.levels(),
-                   asked_every_tick_ ? std::span(asked_) : std::span<const std::uint32_t>(),
+                   asked_.every_tick() ? asked_.pairs() : std::span<const std::uint32_t>(),
                    std::max(kLeastWoken, kWokenPerQuery * scene.budget)),
       queue_(scene.objects.size(), scene.pairs.size()),
       pool_(pool),
@@ -94,7 +75,8 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
                                    PairTable& table) noexcept {
   Evaluation evaluation{objects, parts, cycle, table, budget_};
   begin(stirred, evaluation);
-  if (asked_every_tick_) look_at_asked(has_room(table), evaluation);
+  asked_done_ = asked_.every_tick() && has_room(table);
+  if (asked_.every_tick()) look_at_asked(evaluation);
   look_at_awake(evaluation);
   find_horizon();
   settle_woken(evaluation);
@@ -102,7 +84,7 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
   evaluate_minimum(evaluation);
   evaluate_urgent(evaluation);
   // Pairs asked for that outnumber the budget must not starve the rest.
-  const bool covered = asked_.size() <= evaluation.queries_left;
+  const bool covered = asked_.pairs().size() <= evaluation.queries_left;
   if (covered) evaluate_asked(evaluation);
   refresh_stalest(evaluation);
   if (!covered) evaluate_asked(evaluation);
@@ -124,18 +106,13 @@ void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluatio
 
 // Whatever is urgent can be evaluated besides, so that it need not come first.
 bool Triage::has_room(const PairTable& table) const noexcept {
-  return rows_of(awake_, table) + rows_of(broad_phase_.woken(), table) <= budget_ - asked_rows_;
+  return rows_of(awake_, table) + rows_of(broad_phase_.woken(), table) <= budget_ - asked_.rows();
 }
 
-void Triage::look_at_asked(bool roomy, Evaluation& evaluation) noexcept {
-  scratch_.clear();
-  for (const std::uint32_t pair : asked_) {
-    if (is_known(pair, evaluation)) scratch_.push_back(pair);
-  }
-  if (roomy) {
-    evaluate_these(scratch_, evaluation);
-  } else {
-    for (const std::uint32_t pair : scratch_) look_at(pair, evaluation);
+void Triage::look_at_asked(Evaluation& evaluation) noexcept {
+  if (asked_done_) asked_.evaluate(pool_, evaluation);
+  for (const std::uint32_t pair : asked_.pairs()) {
+    if (is_known(pair, evaluation)) look_at(pair, evaluation);
   }
 }
 
@@ -262,7 +239,14 @@ void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
 }
 
 void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
+  std::array<bool, Urgency::kBins> filled{};
+  for (const std::uint32_t pair : current_) {
+    if (is_evaluated(pair, evaluation)) continue;
+    const std::size_t bin = urgency_.bin_of(pair, evaluation.objects, evaluation.table);
+    if (bin < Urgency::kBins) filled[bin] = true;
+  }
   for (std::size_t bin = 0; bin < Urgency::kBins; ++bin) {
+    if (!filled[bin]) continue;
     scratch_.clear();
     for (const std::uint32_t pair : current_) {
       if (is_evaluated(pair, evaluation)) continue;
@@ -276,9 +260,11 @@ void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
 
 // As far as the budget goes; where that was in the last tick, it begins in this one.
 void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
-  for (std::size_t i = 0; i < asked_.size() && evaluation.queries_left > 0; ++i) {
-    if (next_asked_ >= asked_.size()) next_asked_ = 0;
-    const std::uint32_t pair = asked_[next_asked_++];
+  if (asked_done_) return;
+  const auto pairs = asked_.pairs();
+  for (std::size_t i = 0; i < pairs.size() && evaluation.queries_left > 0; ++i) {
+    if (next_asked_ >= pairs.size()) next_asked_ = 0;
+    const std::uint32_t pair = pairs[next_asked_++];
     if (is_evaluated(pair, evaluation) || !is_known(pair, evaluation)) continue;
     evaluate_these({&pair, 1}, evaluation);
   }
@@ -357,8 +343,8 @@ std::uint64_t Triage::refreshed_cycle(std::uint32_t pair, const PairTable& table
 void Triage::find_oldest(const Evaluation& evaluation) noexcept {
   oldest_refresh_ = std::min(evaluation.cycle, queue_.oldest());
   if (!broad_phase_.everyone_met()) oldest_refresh_ = 0;
-  if (!asked_every_tick_) return;
-  for (const std::uint32_t pair : asked_) {
+  if (!asked_.every_tick() || asked_done_) return;
+  for (const std::uint32_t pair : asked_.pairs()) {
     if (!is_known(pair, evaluation)) continue;
     oldest_refresh_ = std::min(oldest_refresh_, evaluation.table.evaluated_cycle[pair]);
   }

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "monitor/asked_pairs.hpp"
 #include "monitor/broad_phase.hpp"
 #include "monitor/evaluation.hpp"
 #include "monitor/pair_counts.hpp"
@@ -65,7 +66,7 @@ class Triage {
   void follow_minimum() noexcept;
   void find_horizon() noexcept;
   void begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept;
-  void look_at_asked(bool roomy, Evaluation& evaluation) noexcept;
+  void look_at_asked(Evaluation& evaluation) noexcept;
   void look_at_awake(Evaluation& evaluation) noexcept;
   void settle_woken(Evaluation& evaluation) noexcept;
   void put_to_sleep(const Evaluation& evaluation) noexcept;
@@ -87,10 +88,8 @@ class Triage {
   const std::uint32_t budget_;
   const std::uint64_t refresh_ticks_;  // within which every pair is to be refreshed
   const std::uint32_t per_tick_;       // pairs to be refreshed a tick
-  std::vector<std::uint32_t> asked_;   // pairs whose figures somebody asked for
-  std::uint32_t asked_rows_ = 0;
-  // The budget covers those: they never sleep. Otherwise they do, and have their turns.
-  const bool asked_every_tick_;
+  AskedPairs asked_;
+  bool asked_done_ = false;     // those that are known were all evaluated
   std::size_t next_asked_ = 0;  // whose turn it is
   PairCounts counts_;
   Urgency urgency_;

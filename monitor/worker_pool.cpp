@@ -5,10 +5,7 @@
 namespace clearance {
 namespace {
 
-// A loop shorter than this is over before another thread has woken, which takes 5 to 50 us.
-constexpr std::uint32_t kLeastShared = 128;
-constexpr std::uint32_t kClaim = 16;  // indices at once: about 2 us of queries
-constexpr int kSpins = 2'000;         // about 50 us: the gaps between the loops of a tick
+constexpr int kSpins = 2'000;  // about 50 us: the gaps between the loops of a tick
 
 constexpr std::uint64_t kLoop = std::uint64_t{1} << 32;
 
@@ -40,13 +37,14 @@ WorkerPool::~WorkerPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void WorkerPool::run(std::uint32_t count, Call call, const void* context) noexcept {
-  if (threads_.empty() || count < kLeastShared) {
+void WorkerPool::run(std::uint32_t count, Share share, Call call, const void* context) noexcept {
+  if (threads_.empty() || count < share.least) {
     for (std::uint32_t i = 0; i < count; ++i) call(context, i);
     return;
   }
   call_.store(call, std::memory_order_relaxed);
   context_.store(context, std::memory_order_relaxed);
+  claim_.store(share.claim, std::memory_order_relaxed);
   done_.store(0, std::memory_order_relaxed);
   const std::uint64_t last = unclaimed_.load(std::memory_order_relaxed);
   unclaimed_.store(last - indices(last) + kLoop + count, std::memory_order_release);
@@ -63,7 +61,8 @@ bool WorkerPool::help() noexcept {
   while (indices(unclaimed) > 0) {
     const Call call = call_.load(std::memory_order_relaxed);
     const void* const context = context_.load(std::memory_order_relaxed);
-    const std::uint32_t taken = std::min(kClaim, indices(unclaimed));
+    const std::uint32_t taken =
+        std::min(claim_.load(std::memory_order_relaxed), indices(unclaimed));
     if (!unclaimed_.compare_exchange_weak(unclaimed, unclaimed - taken, std::memory_order_acq_rel,
                                           std::memory_order_acquire)) {
       continue;

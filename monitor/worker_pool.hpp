@@ -23,12 +23,18 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  // How a loop is shared: so many indices are claimed at once, and fewer than `least` are left to
+  // the caller.
+  struct Share {
+    std::uint32_t claim, least;
+  };
+
   // Calls work(i) once for each i < count, in no particular order and at the same time, and returns
   // when all are done. `work` is noexcept. One caller at a time.
   template <class Work>
-  void run(std::uint32_t count, const Work& work) noexcept {
+  void run(std::uint32_t count, Share share, const Work& work) noexcept {
     run(
-        count,
+        count, share,
         [](const void* context, std::uint32_t i) noexcept {
           (*static_cast<const Work*>(context))(i);
         },
@@ -38,7 +44,7 @@ class WorkerPool {
  private:
   using Call = void (*)(const void* context, std::uint32_t i) noexcept;
 
-  void run(std::uint32_t count, Call call, const void* context) noexcept;
+  void run(std::uint32_t count, Share share, Call call, const void* context) noexcept;
   void serve() noexcept;
   [[nodiscard]] bool help() noexcept;
   void wait_until_done(std::uint32_t count) noexcept;
@@ -48,6 +54,7 @@ class WorkerPool {
   std::atomic<std::uint64_t> unclaimed_{0};
   std::atomic<Call> call_{nullptr};
   std::atomic<const void*> context_{nullptr};
+  std::atomic<std::uint32_t> claim_{1};
   std::atomic<std::uint32_t> done_{0};
   std::atomic<std::uint32_t> bell_{0};  // rung for every loop, and at the end
   std::atomic<bool> stop_{false};

@@ -22,7 +22,7 @@ TEST(WorkerPool, DoesEachIndexOnceWhateverTheNumberOfWorkers) {
       const std::uint32_t count = loop * 7 % 1000;
       std::vector<std::uint32_t> times(count, 0);
       const auto work = [&times](std::uint32_t i) noexcept { ++times[i]; };
-      pool.run(count, work);
+      pool.run(count, {.claim = 1 + loop % 20, .least = 2}, work);
       ASSERT_EQ(times, std::vector<std::uint32_t>(count, 1)) << workers << " workers";
     }
   }

@@ -15,6 +15,7 @@ namespace {
 
 // Until everything is known and has been looked at once.
 constexpr int kStartUpTicks = 500;
+constexpr int kMostStartUpTicks = 5'000;     // after those, where it takes longer
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 constexpr std::int64_t kFirst = 1'000'000'000;
 
@@ -51,7 +52,7 @@ class Run {
   double start_up() {
     double longest = 0.0;
     const int ticks = crowd_.scene.evaluate_all ? 10 : kStartUpTicks;
-    for (tick_ = -ticks; tick_ < 0;) {
+    for (tick_ = -ticks; tick_ < 0 || (tick_ < kMostStartUpTicks && !report_->minimum_proved);) {
       prepare();
       longest = std::max(longest, tick());
     }
