@@ -50,23 +50,53 @@ void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
 }
 
-std::uint32_t row_of_least_lower(std::uint32_t pair, const PairTable& table) noexcept {
-  const auto first = table.lower.begin() + table.first_row[pair];
-  const auto end = table.lower.begin() + table.first_row[pair + 1];
-  return static_cast<std::uint32_t>(std::min_element(first, end) - table.lower.begin());
+// The row that was the closest, as far as is known, and mostly still is.
+std::uint32_t likely_row(std::uint32_t pair, const PairTable& table) noexcept {
+  const auto first = table.upper.begin() + table.first_row[pair];
+  const auto end = table.upper.begin() + table.first_row[pair + 1];
+  return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
+}
+
+// A row among others: brought up to date no more precisely than it takes to tell that it is not
+// the closest, else evaluated. False: that would have taken a query too many.
+bool settle_row(std::uint32_t row, double travelled, double smallest_upper,
+                Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  const double loose_lower = rounded_down(table.lower[row] - travelled);
+  if (loose_lower >= smallest_upper) {
+    table.lower[row] = loose_lower;
+    table.upper[row] = rounded_up(table.upper[row] + travelled);
+    return true;
+  }
+  const RowBounds now = bounds_now(row, travelled, evaluation.parts, table);
+  table.lower[row] = now.lower;
+  table.upper[row] = now.upper;
+  if (now.lower >= smallest_upper) return true;
+  if (evaluation.queries_left == 0) return false;
+  query(row, evaluation);
+  return true;
+}
+
+void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  PairTable& table = evaluation.table;
+  const double travelled = table.carried_cycle[pair] == evaluation.cycle
+                               ? 0.0
+                               : travelled_since(pair, evaluation.objects, table);
+  const std::uint32_t likely = likely_row(pair, table);
+  bool all_that_matter = settle_row(likely, travelled, kInfinity, evaluation);
+  double smallest_upper = table.upper[likely], least = table.lower[likely];
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    if (row == likely) continue;
+    if (!settle_row(row, travelled, smallest_upper, evaluation)) all_that_matter = false;
+    smallest_upper = std::min(smallest_upper, table.upper[row]);
+    least = std::min(least, table.lower[row]);
+  }
+  note_carried(pair, evaluation.objects, evaluation.cycle, table);
+  table.least_lower[pair] = least;
+  if (all_that_matter) table.evaluated_cycle[pair] = evaluation.cycle;
 }
 
 }  // namespace
-
-bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  const PairTable& table = evaluation.table;
-  return evaluation.objects[table.object_a[pair]].known() &&
-         evaluation.objects[table.object_b[pair]].known();
-}
-
-bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
-}
 
 // What was known before adds nothing to a tight answer.
 void settle(std::uint32_t pair, const DistanceResult& found,
@@ -86,29 +116,14 @@ void settle(std::uint32_t pair, const DistanceResult& found,
 }
 
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
+  const PairTable& table = evaluation.table;
   if (evaluation.queries_left == 0) return;
-  if (table.first_row[pair + 1] - table.first_row[pair] == 1) {
-    settle(pair, ask(table.first_row[pair], evaluation), evaluation);
-    --evaluation.queries_left;
+  if (table.first_row[pair + 1] - table.first_row[pair] > 1) {
+    evaluate_rows(pair, evaluation);
     return;
   }
-  carry(pair, evaluation);
-  const std::uint32_t likely = row_of_least_lower(pair, table);
-  query(likely, evaluation);
-  double smallest_upper = table.upper[likely];
-  bool all_that_matter = true;
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
-    if (row == likely || table.lower[row] >= smallest_upper) continue;
-    if (evaluation.queries_left == 0) {
-      all_that_matter = false;
-      break;
-    }
-    query(row, evaluation);
-    smallest_upper = std::min(smallest_upper, table.upper[row]);
-  }
-  table.least_lower[pair] = table.lower[row_of_least_lower(pair, table)];
-  if (all_that_matter) table.evaluated_cycle[pair] = evaluation.cycle;
+  settle(pair, ask(table.first_row[pair], evaluation), evaluation);
+  --evaluation.queries_left;
 }
 
 }  // namespace clearance

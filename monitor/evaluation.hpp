@@ -18,9 +18,15 @@ struct Evaluation {
 };
 
 // Both objects' poses are known.
-[[nodiscard]] bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept;
+[[nodiscard]] inline bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  const PairTable& table = evaluation.table;
+  return evaluation.objects[table.object_a[pair]].known() &&
+         evaluation.objects[table.object_b[pair]].known();
+}
 // The pair was evaluated in this tick, all rows that matter.
-[[nodiscard]] bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept;
+[[nodiscard]] inline bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
+}
 
 // Takes in the answer to a query of a pair's only row, which brings the pair up to date. Does not
 // count the query.

@@ -11,13 +11,6 @@
 namespace clearance {
 namespace {
 
-// How far the horizon is kept above the minimum: the farther, the more pairs are awake, the less
-// often one has to be woken when the minimum grows. m.
-constexpr double kHeadroom = 0.02;
-// The horizon follows a growing minimum by no more than this a tick while it is above it, m.
-constexpr double kHorizonStep = 0.002;
-constexpr int kMostRaises = 8;  // a tick
-
 // Waking a pair and looking at it costs as much as a query where memory is far, less where it is
 // near; pairs that are met for the first time are bounded by the same.
 constexpr std::size_t kWokenPerQuery = 2;
@@ -122,28 +115,6 @@ void Triage::look_at_awake(Evaluation& evaluation) noexcept {
   }
 }
 
-// The horizon stays a little above the minimum of the last tick.
-void Triage::follow_minimum() noexcept {
-  if (!(smallest_upper_ < kInfinity)) return;
-  const double horizon = broad_phase_.horizon();
-  const double best = smallest_upper_ + kHeadroom;
-  if (!(horizon > -kInfinity) || best < horizon - kHeadroom) {
-    broad_phase_.move_horizon(best);
-  } else if (best > horizon + 0.5 * kHeadroom) {
-    broad_phase_.move_horizon(std::min(best, horizon + kHorizonStep));
-  }
-}
-
-// The first one: the minimum of the pairs seen so far is not beyond it.
-void Triage::find_horizon() noexcept {
-  if (broad_phase_.horizon() > -kInfinity) return;
-  double smallest_upper = kInfinity;
-  for (const std::uint32_t pair : broad_phase_.woken()) {
-    smallest_upper = std::min(smallest_upper, broad_phase_.by_balls(pair).upper);
-  }
-  if (smallest_upper < kInfinity) broad_phase_.move_horizon(smallest_upper + kHeadroom);
-}
-
 void Triage::settle_woken(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.woken()) {
     if (is_known(pair, evaluation)) {
@@ -159,21 +130,6 @@ void Triage::settle_woken(Evaluation& evaluation) noexcept {
     awake_.push_back(pair);
   }
   broad_phase_.clear_woken();
-}
-
-// When the budget lasts, no pair that sleeps can be closer than the minimum afterwards.
-void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
-  evaluate_closest(evaluation);
-  double step = kHeadroom;
-  for (int i = 0; i < kMostRaises; ++i, step *= 2.0) {
-    const double horizon = broad_phase_.horizon();
-    const bool all_current = current_.size() == counts_.known();
-    if (all_current || smallest_upper_ <= horizon || !(horizon > -kInfinity)) return;
-    if (evaluation.queries_left == 0 || broad_phase_.pending()) return;
-    broad_phase_.move_horizon(std::min(smallest_upper_ + kHeadroom, horizon + step));
-    settle_woken(evaluation);
-    evaluate_closest(evaluation);
-  }
 }
 
 void Triage::list(std::uint32_t pair) noexcept {
@@ -197,45 +153,6 @@ void Triage::note_evaluated(std::uint32_t pair, const Evaluation& evaluation) no
   list(pair);
   if (!is_evaluated(pair, evaluation) || broad_phase_.left_out(pair)) return;
   queue_.refreshed(pair, evaluation.cycle);
-}
-
-// In batches that grow: one is mostly enough, and what is shared between workers must not depend on
-// how many they are.
-void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
-  const PairTable& table = evaluation.table;
-  const auto upper_of = [&table](std::uint32_t pair) {
-    return *std::min_element(table.upper.begin() + table.first_row[pair],
-                             table.upper.begin() + table.first_row[pair + 1]);
-  };
-  double smallest_upper = kInfinity;
-  for (const std::uint32_t pair : current_) {
-    smallest_upper = std::min(smallest_upper, upper_of(pair));
-  }
-  scratch_.clear();
-  for (const std::uint32_t pair : current_) {
-    const bool done = is_evaluated(pair, evaluation);
-    if (!done && table.least_lower[pair] < smallest_upper) scratch_.push_back(pair);
-  }
-  const auto later = [&table](std::uint32_t left, std::uint32_t right) {
-    return std::tie(table.least_lower[left], left) > std::tie(table.least_lower[right], right);
-  };
-  std::make_heap(scratch_.begin(), scratch_.end(), later);
-  auto end = scratch_.end();
-  for (std::ptrdiff_t size = 1; evaluation.queries_left > 0; size *= 2) {
-    auto first = end;
-    while (first != scratch_.begin() && end - first < size &&
-           table.least_lower[scratch_.front()] < smallest_upper) {
-      std::pop_heap(scratch_.begin(), first--, later);
-    }
-    if (first == end) break;
-    std::reverse(first, end);
-    evaluate_these({first, end}, evaluation);
-    for (auto it = first; it != end; ++it) {
-      smallest_upper = std::min(smallest_upper, upper_of(*it));
-    }
-    end = first;
-  }
-  smallest_upper_ = smallest_upper;
 }
 
 void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
