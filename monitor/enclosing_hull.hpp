@@ -1,8 +1,7 @@
-// The reduced model of an object of several parts: one convex polyhedron around all of them.
+// The reduced model of an object: one convex polyhedron of few facets around all its parts.
 //
 // Between the ball, which tells least and costs least, and the parts, every one of which has to be
-// asked about. An object of one part has none: asking that part costs about the same however many
-// facets it has (monitor/README.md).
+// asked about. An object of one part has none, however many facets that has (monitor/README.md).
 #pragma once
 
 #include <memory>
@@ -18,8 +17,8 @@ using EnclosingHull = std::shared_ptr<const ConvexPolyhedron>;
 // The object's parts in its frame. The object must stay where it is.
 [[nodiscard]] std::vector<PlacedShape> shapes_of(const Object& object);
 
-// One an object, in its frame; null for an object of one part, or with an unbounded one. Objects
-// of the same parts share theirs.
+// One an object, in its frame; null for an object of one part, or with an unbounded one. Objects of
+// the same parts share theirs.
 [[nodiscard]] std::vector<EnclosingHull> enclosing_hulls(const Scene& scene);
 
 }  // namespace clearance

@@ -104,6 +104,23 @@ void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, s
   table.carried_cycle[pair] = cycle;
 }
 
+void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& objects,
+           PairTable& table) noexcept {
+  const double travelled = travelled_since(pair, objects, table);
+  double least = kInfinity;
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    if (travelled > 0.0) {
+      table.lower[row] = rounded_down(table.lower[row] - travelled);
+      table.upper[row] = rounded_up(table.upper[row] + travelled);
+    }
+    table.lower[row] = std::max(table.lower[row], to);
+    least = std::min(least, table.lower[row]);
+  }
+  table.least_lower[pair] = least;
+  table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
+                            objects[table.object_b[pair]].travelled};
+}
+
 void forget(std::uint32_t pair, PairTable& table) noexcept {
   for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
     table.lower[row] = -kInfinity;

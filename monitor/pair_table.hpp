@@ -77,6 +77,12 @@ void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
 void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
                   PairTable& table) noexcept;
 
+// Takes note of a lower bound of the pair's distance for the poses in use, m. Its rows are carried
+// by travel alone, which costs a fraction of carry(): their balls are looked at by who asks for
+// them.
+void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& objects,
+           PairTable& table) noexcept;
+
 // Forgets a pair's bounds: nobody can say how far its objects have come.
 void forget(std::uint32_t pair, PairTable& table) noexcept;
 

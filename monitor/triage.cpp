@@ -56,6 +56,7 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
       broad_phase_(scene, parts, urgency_.levels(),
                    asked_.every_tick() ? asked_.pairs() : std::span<const std::uint32_t>(),
                    std::max(kLeastWoken, kWokenPerQuery * scene.budget)),
+      hulls_(scene, parts),
       queue_(scene.objects.size(), scene.pairs.size()),
       pool_(pool),
       is_current_(table.pairs(), 0) {
@@ -115,10 +116,27 @@ void Triage::look_at_awake(Evaluation& evaluation) noexcept {
   }
 }
 
+// Whether a lower bound of a known pair is `enough`: by its models from coarse to fine, short of
+// the parts. What proves pairs far may not starve those that are near: half of the budget is
+// theirs.
+template <class Enough>
+bool Triage::by_models(std::uint32_t pair, Evaluation& evaluation, const Enough& enough) noexcept {
+  const RowBounds balls = broad_phase_.by_balls(pair);
+  if (enough(balls.lower)) return true;
+  const bool hopeless = balls.upper <= broad_phase_.horizon();
+  if (hopeless || evaluation.queries_left <= (budget_ + 1) / 2) return false;
+  if (!hulls_.possible(pair, evaluation.table)) return false;
+  const double lower = hulls_.lower(pair, evaluation);
+  if (!enough(lower)) return false;
+  raise(pair, lower, evaluation.objects, evaluation.table);
+  return true;
+}
+
 void Triage::settle_woken(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.woken()) {
     if (is_known(pair, evaluation)) {
-      if (broad_phase_.sleep(pair, broad_phase_.by_balls(pair).lower)) {
+      const auto sleeps = [&](double lower) { return broad_phase_.sleep(pair, lower); };
+      if (by_models(pair, evaluation, sleeps)) {
         queue_.refreshed(pair, evaluation.cycle);
         continue;
       }
@@ -210,7 +228,8 @@ void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
 
 // False: the budget is used up.
 bool Triage::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  if (broad_phase_.is_far(pair, broad_phase_.by_balls(pair).lower)) {
+  const auto is_far = [&](double lower) { return broad_phase_.is_far(pair, lower); };
+  if (by_models(pair, evaluation, is_far)) {
     queue_.refreshed(pair, evaluation.cycle);
     return true;
   }

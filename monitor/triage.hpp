@@ -23,6 +23,7 @@
 #include "monitor/asked_pairs.hpp"
 #include "monitor/broad_phase.hpp"
 #include "monitor/evaluation.hpp"
+#include "monitor/hull_query.hpp"
 #include "monitor/pair_counts.hpp"
 #include "monitor/refresh_queue.hpp"
 #include "monitor/urgency.hpp"
@@ -54,8 +55,8 @@ class Triage {
   [[nodiscard]] bool pending() const noexcept { return broad_phase_.pending(); }
   [[nodiscard]] double pending_lower() const noexcept { return broad_phase_.pending_lower(); }
   [[nodiscard]] const PairCounts& counts() const noexcept { return counts_; }
-  // the tick in which a pair was last refreshed: evaluated, or proved far by the balls around its
-  // objects; 0: never;
+  // the tick in which a pair was last refreshed: evaluated, or proved far by the balls or the hulls
+  // around its objects; 0: never;
   [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair,
                                               const PairTable& table) const noexcept;
   // and the same of the stalest pair that is known; the cycle itself: none is stale. Exact, but
@@ -75,6 +76,9 @@ class Triage {
   void evaluate_urgent(Evaluation& evaluation) noexcept;
   void evaluate_asked(Evaluation& evaluation) noexcept;
   void refresh_stalest(Evaluation& evaluation) noexcept;
+  template <class Enough>
+  [[nodiscard]] bool by_models(std::uint32_t pair, Evaluation& evaluation,
+                               const Enough& enough) noexcept;
   [[nodiscard]] bool refresh(std::uint32_t pair, Evaluation& evaluation) noexcept;
   void evaluate_restless(Evaluation& evaluation) noexcept;
   void evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept;
@@ -94,6 +98,7 @@ class Triage {
   PairCounts counts_;
   Urgency urgency_;
   BroadPhase broad_phase_;
+  HullQuery hulls_;
   RefreshQueue queue_;  // of the pairs that the broad phase is told of
   WorkerPool& pool_;
   double smallest_upper_ = kInfinity;  // of the pairs looked at, but for those in turn, m

@@ -22,10 +22,10 @@ constexpr double kSpin = 2.0;    // rad/s for each m/s
 
 ConvexPolyhedron made(ShapeResult result) { return std::get<ConvexPolyhedron>(std::move(result)); }
 
-ConvexPolyhedron facet_ball(double radius) {
+ConvexPolyhedron facet_ball(double radius, int order = 6) {
   std::vector<HalfSpace> rows;
-  // A facet-ball of this order has its corners within 1.2 of its inscribed radius.
-  for (const Vec3& d : even_directions(6)) rows.push_back({d, radius / 1.2});
+  // A facet-ball of order 6 or more has its corners within 1.2 of its inscribed radius.
+  for (const Vec3& d : even_directions(order)) rows.push_back({d, radius / 1.2});
   return made(polyhedron_from_halfspaces(rows));
 }
 
@@ -101,8 +101,10 @@ Crowd orbiting_crowd(const OrbitingOptions& options) {
   crowd.scene.revision = count;
   const std::uint32_t side = grid_side(count);
   for (std::uint32_t i = 0; i < count; ++i) {
+    const double radius = draw.uniform(0.15, 0.28);
     crowd.scene.objects.push_back(
-        object_of("body_" + std::to_string(i), body(i, draw.uniform(0.15, 0.28), draw)));
+        object_of("body_" + std::to_string(i),
+                  options.order > 0 ? facet_ball(radius, options.order) : body(i, radius, draw)));
     crowd.scene.objects.back().max_speed *= std::max(1.0, options.speed);
     Crowd::Orbit orbit;
     orbit.object = i;

@@ -32,6 +32,7 @@ struct OrbitingOptions {
   std::uint32_t count = 100, moving = 100;
   double speed = 1.0;    // m/s; they spin at 2 rad/s for each
   double spacing = 1.0;  // of the grid, m; at least 1
+  int order = 0;         // all are facet-balls of this order; 0: of different kinds
 };
 
 // Boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of a cubic

@@ -181,12 +181,11 @@ void register_sweeps() {
     sweep("objects/" + std::to_string(count), {.count = count, .moving = count});
   }
   for (const char* speed : {"0.1", "0.3", "1", "3", "10"}) {
-    sweep(std::string("speed/") + speed,
-          {.count = 300, .moving = 300, .speed = std::stod(speed), .spacing = 1.0});
+    sweep(std::string("speed/") + speed, {.count = 300, .moving = 300, .speed = std::stod(speed)});
   }
   for (const char* spacing : {"1", "1.5", "2.2", "3.2", "4.6"}) {
     sweep(std::string("spacing/") + spacing,
-          {.count = 300, .moving = 300, .speed = 1.0, .spacing = std::stod(spacing)});
+          {.count = 300, .moving = 300, .spacing = std::stod(spacing)});
   }
 }
 
@@ -230,6 +229,8 @@ void register_ticks() {
   register_all("tick/100_all_moving_5k", {20'000, 2'000, 1'000}, all_moving(100));
   register_all("tick/300_all_moving_45k", {10'000, 200, 300}, all_moving(300));
   register_workers("tick/300_all_moving_45k", 500, all_moving(300));
+  register_all("tick/300_of_510_facets_45k", {10'000, 50, 100},
+               [] { return orbiting_crowd({.count = 300, .moving = 300, .order = 20}); });
   register_all("tick/warehouse_49k", {10'000, 100, 300}, [] { return warehouse_crowd(1000); });
   register_all("tick/1000_all_moving_500k", {5'000, 20, 100}, all_moving(1000));
   // Plain evaluation of these would take seconds a tick.
