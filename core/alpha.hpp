@@ -36,13 +36,13 @@ inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {
 inline Alpha within_facet(const ActiveSide& side, const Vec3& move) noexcept {
   Alpha best;
   const Facet& facet = side.facet();
-  for (std::int32_t i = facet.first_side; i < facet.first_side + facet.sides; ++i) {
-    const FacetSide& boundary = side.body().facet_sides[i];
+  for (std::int32_t i = 0; i < facet.sides; ++i) {
+    const FacetSide boundary = side.body().side_of(facet, i);
     const double speed = -boundary.inward.dot(move);
     if (!(speed > 0.0)) continue;
     const double gap = boundary.inward.dot(side.own()) - boundary.offset;
     if (!(gap < best.fraction * speed)) continue;
-    best = {fraction(gap, speed), side.body().facet_edges[i].edge};
+    best = {fraction(gap, speed), side.body().facet_edges[facet.first_side + i].edge};
   }
   return best;
 }

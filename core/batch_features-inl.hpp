@@ -1,6 +1,6 @@
-// The straight-line part of core/feature_walk.cpp, operation for operation, for as many pairs as a
-// vector has lanes: are these features the closest ones still, and where do they put the witness
-// points? Compiled once an instruction set.
+// The straight-line part of core/feature_walk-inl.hpp, operation for operation, for as many pairs
+// as a vector has lanes: are these features the closest ones still, and where do they put the
+// witness points? Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_FEATURES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_FEATURES_INL_HPP_
 #undef CLEARANCE_BATCH_FEATURES_INL_HPP_

@@ -59,21 +59,10 @@ bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
   }
 }
 
-// What repeats of the feature that `side` names: where it begins among all the body's, how often.
-struct Repeats {
-  std::int32_t first = 0, count = 0;
-};
-
-Repeats repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
-  if (side.dimension == 0) {
-    const Vertex& vertex = body.vertices[side.feature];
-    return {vertex.first_edge, vertex.edges};
-  }
-  if (side.dimension == 2) {
-    const Facet& facet = body.facets[side.feature];
-    return {facet.first_side, facet.sides};
-  }
-  return {};
+// How often what repeats of the feature does.
+std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
+  if (side.dimension == 0) return body.vertices[side.feature].edges;
+  return side.dimension == 2 ? body.facets[side.feature].sides : 0;
 }
 
 void put_feature(LaneWriter& to, const ConvexPolyhedron& body, const Side& side) noexcept {
@@ -84,13 +73,12 @@ void put_feature(LaneWriter& to, const ConvexPolyhedron& body, const Side& side)
 
 void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexPolyhedron& body,
                  const Side& side) noexcept {
-  const Repeats r = repeats(body, side);
   LaneWriter to(block, lane, row);
-  for (std::int32_t i = r.first; i < r.first + r.count; ++i) {
+  for (std::int32_t i = 0; i < repeats(body, side); ++i) {
     if (side.dimension == 0) {
-      to.put(body.outgoing[i]);
+      to.put(body.outgoing_of(body.vertices[side.feature], i));
     } else {
-      to.put(body.facet_sides[i]);
+      to.put(body.side_of(body.facets[side.feature], i));
     }
   }
 }
@@ -217,8 +205,8 @@ void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   const RepeatRows of_a = rows_of_a(block.kind), of_b = rows_of_b(block.kind);
   if (of_a.stride > 0) put_repeats(block, lane, of_a.row, a, state.a);
   if (of_b.stride > 0) put_repeats(block, lane, of_b.row, b, state.b);
-  block.repeats_a[lane] = static_cast<std::uint8_t>(repeats(a, state.a).count);
-  block.repeats_b[lane] = static_cast<std::uint8_t>(repeats(b, state.b).count);
+  block.repeats_a[lane] = static_cast<std::uint8_t>(repeats(a, state.a));
+  block.repeats_b[lane] = static_cast<std::uint8_t>(repeats(b, state.b));
   level(block, lane, of_a, block.repeats_a, block.most_a);
   level(block, lane, of_b, block.repeats_b, block.most_b);
   block.plain = block.plain && plain(a) && plain(b);

@@ -1,4 +1,4 @@
-// relative_pose() of core/pose.cpp, operation for operation, for as many pairs as a vector has
+// relative_pose(), operation for operation, for as many pairs as a vector has
 // lanes. Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_POSE_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_POSE_INL_HPP_
@@ -33,10 +33,8 @@ struct RelativePoses {
   Lanes rotation_error, translation_error;
 };
 
-// As Eigen multiplies a fixed 3 x 3 matrix: two rows as a packet, the third as a sum of its own.
 HWY_INLINE Points rotate(const Rotations& r, const Points& p) {
-  const Lanes yz = hn::Add(hn::Mul(r.z.y, p.y), hn::Mul(r.z.z, p.z));
-  return {dot(r.x, p), dot(r.y, p), hn::Add(hn::Mul(r.z.x, p.x), yz)};
+  return {dot(r.x, p), dot(r.y, p), dot(r.z, p)};
 }
 
 HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
@@ -106,7 +104,7 @@ HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b)
   return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
 }
 
-// The quick look of rounding.hpp.
+// At one component, which nearly always decides.
 HWY_INLINE LaneMask may_permute_axes(const Quaternions& q) {
   const Lanes w = hn::Abs(q.w);
   return hn::Or(hn::Or(hn::Eq(w, all(0.0)), hn::Eq(w, all(0.5))), hn::Eq(w, all(1.0)));
@@ -124,9 +122,9 @@ HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
   return hn::Or(hn::Eq(which(0.5), all(4.0)), one);
 }
 
-// settle_exactness() and what follows it. Equal orientations give the identity, to the sign of its
+// What is exact of relative_pose(). Equal orientations give the identity, to the sign of its
 // zeros.
-HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes between,
+HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
                                  RelativePoses& pose) {
   const Lanes zero = all(0.0), one = all(1.0);
   const LaneMask equal = equal_up_to_sign(a, b), a_permutes = permute_axes(a);
@@ -140,7 +138,7 @@ HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lan
   const LaneMask exact = hn::Or(equal, hn::And(a_permutes, permute_axes(b)));
   pose.rotation_error = hn::IfThenElse(exact, zero, pose.rotation_error);
   pose.translation_error = hn::IfThenElse(
-      a_permutes, hn::Mul(all(kPermutedTranslationError), between), pose.translation_error);
+      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
 }
 
 HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& world_from_b) {
@@ -148,9 +146,10 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
   const Quaternions& b = world_from_b.orientation;
   const Quaternions q = relative(a, b);
   const Points between = world_from_b.position - world_from_a.position;
-  const Lanes apart = norm(between), zero = all(0.0);
-  RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError),
-                    hn::Mul(all(kTranslationError), apart)};
+  const Lanes zero = all(0.0);
+  RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError), zero};
+  const Lanes apart = norm(out.translation);
+  out.translation_error = hn::Mul(all(kTranslationError), apart);
   const LaneMask no_turn =
       hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), hn::Or(no_turn, may_permute_axes(a))))) {

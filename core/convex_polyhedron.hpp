@@ -62,6 +62,34 @@ struct Vertex {
   std::int32_t edges;
 };
 
+// Rows of vectors, one row a feature, as vector registers read them: a row of n vectors is its n x,
+// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end.
+class VectorRows {
+ public:
+  explicit VectorRows(std::int32_t numbers) noexcept : numbers_(numbers) {}
+
+  // Before the first vector of a row, `first` vectors lie in the rows before it.
+  [[nodiscard]] const double* row(std::int32_t first) const noexcept {
+    return values_.data() + static_cast<std::ptrdiff_t>(first) * numbers_;
+  }
+  // Number k of vector i of a row of n.
+  [[nodiscard]] double number(std::int32_t first, std::int32_t n, std::int32_t i,
+                              std::int32_t k) const noexcept {
+    return row(first)[k * n + i];
+  }
+  void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
+    values_[static_cast<std::size_t>(first * numbers_ + k * n + i)] = to;
+  }
+  void resize(std::size_t vectors) {
+    values_.assign(vectors * static_cast<std::size_t>(numbers_) + kOverrun, 0.0);
+  }
+
+ private:
+  static constexpr std::size_t kOverrun = 3;
+  std::vector<double> values_;
+  std::int32_t numbers_;
+};
+
 // One side of a facet's polygon: inward.x >= offset in its plane.
 struct FacetSide {
   Vec3 inward;
@@ -87,8 +115,8 @@ struct ConvexPolyhedron {
   std::vector<Ray> rays;
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
-  std::vector<Vec3> outgoing;          // [i]: unit, along vertex_edges[i], away from the vertex
-  std::vector<FacetSide> facet_sides;  // [i]: of facet_edges[i]
+  VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex
+  VectorRows facet_sides{4};  // a row a facet: of facet_edges[i]
   StartTable start;
 
   // A point well inside (in the relative interior of a point or segment).
@@ -99,6 +127,30 @@ struct ConvexPolyhedron {
   double radius = 0.0;  // the body is the polyhedron plus a ball of this radius, m (exact)
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
+
+  // Unit, away from the vertex, along the i-th of its edges.
+  [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {
+    const auto number = [&](std::int32_t k) {
+      return outgoing.number(v.first_edge, v.edges, i, k);
+    };
+    return {number(0), number(1), number(2)};
+  }
+  void set_outgoing(const Vertex& v, std::int32_t i, const Vec3& to) noexcept {
+    for (std::int32_t k = 0; k < 3; ++k) outgoing.set(v.first_edge, v.edges, i, k, to[k]);
+  }
+  // The i-th of the facet's sides.
+  [[nodiscard]] FacetSide side_of(const Facet& f, std::int32_t i) const noexcept {
+    const auto number = [&](std::int32_t k) {
+      return facet_sides.number(f.first_side, f.sides, i, k);
+    };
+    return {{number(0), number(1), number(2)}, number(3)};
+  }
+  void set_side(const Facet& f, std::int32_t i, const FacetSide& to) noexcept {
+    for (std::int32_t k = 0; k < 3; ++k) {
+      facet_sides.set(f.first_side, f.sides, i, k, to.inward[k]);
+    }
+    facet_sides.set(f.first_side, f.sides, i, 3, to.offset);
+  }
 };
 
 }  // namespace clearance

@@ -1,5 +1,40 @@
-#include "core/distance.hpp"
+// Compiled once a vector width, as far as the walk goes.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/distance.cpp"
+#include "core/vector_widths.hpp"
+// That comes first.
+#include "core/feature_walk-inl.hpp"
+#include "core/radii.hpp"
 
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+
+// What the walk leaves open; radii included.
+DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                         const RelativePose& a_from_b, TrackingState& state) noexcept;
+
+namespace HWY_NAMESPACE {
+
+DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                const Pose& world_from_a, const Pose& world_from_b,
+                                TrackingState& state) {
+  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
+  DistanceResult result;
+  if (state.a.deep) {
+    result = distance(a, b, pose_of(a_from_b), state);
+  } else if (walk(a, b, a_from_b, state, result) == WalkEnd::kProved) {
+    add_radii(result, a, b);
+  } else {
+    result = by_search(a, b, pose_of(a_from_b), state);
+  }
+  return result;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +45,11 @@
 #include "core/overlap.hpp"
 #include "core/precision.hpp"
 #include "core/robust.hpp"
-#include "core/rounding.hpp"
 
 namespace clearance {
+
+HWY_EXPORT(tracked_distance);
+
 namespace {
 
 // What is known so far of the distance between the cores, slack not yet taken.
@@ -34,29 +71,6 @@ void prove_from_below(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
     if (bounds.upper - bounds.lower <= p.tight) return;
-  }
-}
-
-double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
-  return a.radius + b.radius;
-}
-
-// Witness points move from the cores' surfaces to the rounded bodies'.
-void add_radii(DistanceResult& r, const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
-  const double sum = radii(a, b);
-  if (sum == 0.0) return;
-  const double rounding = kRadiusRounding * (sum + std::abs(r.upper - sum));
-  r.distance -= sum;
-  r.lower -= sum + rounding;
-  r.upper -= sum - rounding;
-  if (std::isfinite(r.normal.x())) {
-    r.point_on_a += a.radius * r.normal;
-    r.point_on_b -= b.radius * r.normal;
-  }
-  if (r.upper < 0.0) {
-    r.status = DistanceStatus::kOverlapping;
-  } else if (r.lower <= 0.0 && r.status == DistanceStatus::kConverged) {
-    r.status = DistanceStatus::kTouching;
   }
 }
 
@@ -120,26 +134,6 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   return result;
 }
 
-// From the last features to their neighbours, where that settles it.
-bool by_walking(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const RelativePose& a_from_b,
-                TrackingState& state, DistanceResult& r) noexcept {
-  ClosestFeatures closest;
-  if (!walk_features(a, b, a_from_b, state, closest)) return false;
-  const Precision p = precision(a, b, a_from_b, closest.apart);
-  if (!(closest.proved > p.slack) || closest.apart - closest.proved > p.tight) return false;
-  r.distance = closest.apart;
-  r.lower = closest.proved - p.slack;
-  r.upper = closest.apart + p.slack;
-  r.normal = closest.normal;
-  r.point_on_a = closest.point_a;
-  r.point_on_b = closest.point_b;
-  r.status = DistanceStatus::kConverged;
-  r.iterations = static_cast<std::uint16_t>(closest.steps);
-  state.a.point = closest.point_a;
-  state.b.point = closest.own_b;
-  return true;
-}
-
 // The spheres around the frames' origins already say that they are far apart.
 bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                     const RelativePose& a_from_b, double far_away, DistanceResult& r) noexcept {
@@ -176,22 +170,36 @@ const char* name(DistanceStatus status) noexcept {
   return "";
 }
 
+DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                         const RelativePose& a_from_b, TrackingState& state) noexcept {
+  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  place(side_a, state.a, side_b);
+  place(side_b, state.b, side_a);
+  DistanceResult result = core_distance(side_a, side_b, a_from_b);
+  state = {side_a.tracked(), side_b.tracked()};
+  if (!(result.lower > 0.0)) measure_overlap(a, b, a_from_b, state, result);
+  add_radii(result, a, b);
+  return result;
+}
+
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
   DistanceResult result;
-  if (far_by_spheres(a, b, a_from_b, options.far_away, result)) return result;
-  if (!still_overlapping(a, b, a_from_b, state, result) &&
-      !by_walking(a, b, a_from_b, state, result)) {
-    ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-    place(side_a, state.a, side_b);
-    place(side_b, state.b, side_a);
-    result = core_distance(side_a, side_b, a_from_b);
-    state = {side_a.tracked(), side_b.tracked()};
-    if (!(result.lower > 0.0)) measure_overlap(a, b, a_from_b, state, result);
+  if (!far_by_spheres(a, b, a_from_b, options.far_away, result) &&
+      !still_overlapping(a, b, a_from_b, state, result) &&
+      walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+    return by_search(a, b, a_from_b, state);
   }
   add_radii(result, a, b);
   return result;
 }
 
+DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const Pose& world_from_a, const Pose& world_from_b,
+                        TrackingState& state) noexcept {
+  return HWY_DYNAMIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state);
+}
+
 }  // namespace clearance
+#endif

@@ -15,21 +15,19 @@
 
 namespace clearance {
 
-// The closest points of two cores and the direction between them; everything but own_b in frame A.
-struct ClosestFeatures {
-  Vec3 point_a, point_b;
-  Vec3 own_b;     // point_b in frame B
-  Vec3 normal;    // unit, from A to B
-  double apart;   // m: |point_b - point_a|
-  double proved;  // m: how far apart the direction proves the bodies, before the slack of Precision
-  int steps;
+enum class WalkEnd : std::uint8_t {
+  kLost,     // not settled, because rounding cannot tell, or the pair is another (two facets, two
+             // unbounded bodies), or the steps ran out
+  kSettled,  // these are the closest points; the direction between them proves less than the
+             // bodies' precision allows
+  kProved,   // the bodies are apart, and the bounds as close as rounding lets them be
 };
 
-// Moves the features of `state` as far as it gets; the points of `state` are not looked at. False:
-// not settled, because rounding cannot tell, or the pair is another (two facets, two unbounded
-// bodies), or the steps ran out.
-[[nodiscard]] bool walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                 const RelativePose& a_from_b, TrackingState& state,
-                                 ClosestFeatures& closest) noexcept;
+// Moves the features of `state` as far as it gets; its points are not looked at. Unless it is lost,
+// `result` (of the cores, without radii) and the points of `state` are those of the features it
+// ends at.
+[[nodiscard]] WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                    const RelativePose& a_from_b, TrackingState& state,
+                                    DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -30,11 +30,10 @@ inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
 
 inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
   const Vertex& vertex = side.vertex();
-  const Vec3* outgoing = side.body().outgoing.data() + vertex.first_edge;
   Lambda best;
   std::int32_t steepest = 0;
   for (std::int32_t i = 0; i < vertex.edges; ++i) {
-    const double rate = outgoing[i].dot(towards);
+    const double rate = side.body().outgoing_of(vertex, i).dot(towards);
     if (rate > best.rate) {
       best.rate = rate;
       steepest = i;

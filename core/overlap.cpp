@@ -71,11 +71,9 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
   RelativePose moved = a_from_b;
   moved.translation += (found.value + farther) * found.normal;
-  ClosestFeatures closest;
-  if (walk_features(a, b, moved, state, closest)) {
-    state.a.point = closest.point_a;
-    state.b.point = closest.own_b;
-    r.iterations = static_cast<std::uint16_t>(closest.steps);
+  DistanceResult apart;
+  if (walk_features(a, b, moved, state, apart) != WalkEnd::kLost) {
+    r.iterations = apart.iterations;
   } else {
     ActiveSide side_a(a, nullptr), side_b(b, &moved);
     if (!side_a.place_tracked(state.a)) side_a.place_cold(side_b.point_to_common(b.interior));

@@ -5,8 +5,11 @@
 // the derivation is in core/README.md, "Why the bounds hold in floating point".
 #pragma once
 
+#include <algorithm>
+
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
+#include "core/rounding.hpp"
 
 namespace clearance {
 
@@ -18,8 +21,36 @@ struct Precision {
   double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
 };
 
+// How well B's place as seen from A is known, and how far away it is (m).
+struct PlacePrecision {
+  double rotation_error, translation_error;  // as in RelativePose
+  double apart;                              // |translation|
+};
+
 // `farthest`: an upper bound of the distance (m), which limits where on an unbounded body to look.
-[[nodiscard]] Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                  const RelativePose& a_from_b, double farthest) noexcept;
+[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const PlacePrecision& b_in_a, double farthest) noexcept {
+  Precision p;
+  const double apart = b_in_a.apart;
+  double tight = kTightUlps[0];
+  p.reach_a = a.bounding_radius;
+  p.reach_b = b.bounding_radius;
+  if (!a.bounded()) p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
+  if (!b.bounded()) p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
+  if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
+  p.size = p.reach_a + p.reach_b + apart;
+  p.slack = kUlp * (kUlpsOnA * p.reach_a + kUlpsOnB * p.reach_b + kUlpsBetween * apart) +
+            a.position_error + b.position_error + b_in_a.rotation_error * p.reach_b +
+            b_in_a.translation_error + kUnderflow;
+  p.tight = tight * kUlp * p.size;
+  return p;
+}
+
+[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const RelativePose& a_from_b, double farthest) noexcept {
+  return precision(
+      a, b, {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation.norm()},
+      farthest);
+}
 
 }  // namespace clearance

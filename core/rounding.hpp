@@ -2,16 +2,12 @@
 // query.
 #pragma once
 
-#include <cmath>
-
-#include "core/vec.hpp"
-
 namespace clearance {
 
 // Half an ulp of 1: the largest relative error of one rounding.
 inline constexpr double kUlp = 0x1p-53;
 
-// Error of rotation_matrix() of pose.cpp in the 2-norm, for an exact quaternion. The common factor
+// Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
 // s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is
 // off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most 3: 9. The
 // subtraction from 1 on the diagonal: 2.
@@ -33,16 +29,6 @@ inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
 inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
-// One of the 24 unit quaternions with components 0, +-1/2, +-1: rotations that permute the axes.
-// Products of two of them, and their matrices, come out exact in doubles.
-[[nodiscard]] bool is_axis_permutation(const Eigen::Quaterniond& q) noexcept;
-
-// The same, after a look at one component that nearly always decides.
-[[nodiscard]] inline bool permutes_axes(const Eigen::Quaterniond& q) noexcept {
-  const double w = std::abs(q.w());
-  return (w == 0.0 || w == 0.5 || w == 1.0) && is_axis_permutation(q);
-}
-
 // Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them:
 // placing a point on its feature (3), rotating it (6), an edge that is not quite at right angles to
 // n (6); the sums, the product and the quotient (8).
@@ -53,7 +39,7 @@ inline constexpr double kUnderflow = 1e-150;
 
 // What rounding leaves between the bounds, by how many of the bodies are unbounded: errors of
 // direction grow along their rays. Measured on the hard cases of tests/: at most 5, 40 and 250.
-inline constexpr double kTightUlps[] = {8, 64, 320};
+inline constexpr double kTightUlps[] = {8.0, 64.0, 320.0};
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;

@@ -22,20 +22,34 @@ std::int32_t farthest(const ConvexPolyhedron& body, const Vec3& d, std::int32_t 
   return at;
 }
 
+void add_outgoing(ConvexPolyhedron& body) {
+  body.outgoing.resize(body.vertex_edges.size());
+  for (const Vertex& vertex : body.vertices) {
+    for (std::int32_t i = 0; i < vertex.edges; ++i) {
+      const EdgeUse& use = body.vertex_edges[vertex.first_edge + i];
+      const Vec3& direction = body.edges[use.edge].direction;
+      body.set_outgoing(vertex, i, use.side == 0 ? direction : Vec3(-direction));
+    }
+  }
+}
+
+void add_facet_sides(ConvexPolyhedron& body) {
+  body.facet_sides.resize(body.facet_edges.size());
+  for (const Facet& facet : body.facets) {
+    for (std::int32_t i = 0; i < facet.sides; ++i) {
+      const EdgeUse& use = body.facet_edges[facet.first_side + i];
+      const Edge& edge = body.edges[use.edge];
+      const Vec3& inward = edge.inward[use.side];
+      body.set_side(facet, i, {inward, inward.dot(edge.point)});
+    }
+  }
+}
+
 }  // namespace
 
 void add_walking_tables(ConvexPolyhedron& body) {
-  body.outgoing.clear();
-  for (const EdgeUse& use : body.vertex_edges) {
-    const Vec3& direction = body.edges[use.edge].direction;
-    body.outgoing.push_back(use.side == 0 ? direction : Vec3(-direction));
-  }
-  body.facet_sides.clear();
-  for (const EdgeUse& use : body.facet_edges) {
-    const Edge& edge = body.edges[use.edge];
-    const Vec3& inward = edge.inward[use.side];
-    body.facet_sides.push_back({inward, inward.dot(edge.point)});
-  }
+  add_outgoing(body);
+  add_facet_sides(body);
   if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
     return;
   }

@@ -20,8 +20,7 @@ DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
-  return distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part),
-                  table.tracking[row]);
+  return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, table.tracking[row]);
 }
 
 void take_in(const DistanceResult& found, std::uint32_t row,

@@ -2,9 +2,7 @@
 #include "core/batch.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
-#include <cstring>
 #include <set>
 #include <sstream>
 #include <string>
@@ -14,40 +12,10 @@
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
-
-// While it lives, new and old batches use one instruction set.
-class OnlyWith {
- public:
-  explicit OnlyWith(std::int64_t target) { choose(target); }
-  ~OnlyWith() { choose(0); }
-  OnlyWith(const OnlyWith&) = delete;
-  OnlyWith& operator=(const OnlyWith&) = delete;
-
- private:
-  static void choose(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-// One lane, two, four, eight, as far as this machine goes.
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all{HWY_SCALAR};
-  for (const std::int64_t target : {HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
-    if ((hwy::SupportedTargets() & target) != 0) all.push_back(target);
-  }
-  return all;
-}
-
-bool same_bits(const DistanceResult& r, const DistanceResult& s) {
-  const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
-  return same(r.distance, s.distance) && same(r.lower, s.lower) && same(r.upper, s.upper) &&
-         same(r.normal, s.normal) && same(r.point_on_a, s.point_on_a) &&
-         same(r.point_on_b, s.point_on_b) && r.status == s.status && r.iterations == s.iterations;
-}
 
 std::string text(const DistanceResult& r) {
   std::ostringstream out;
@@ -139,7 +107,7 @@ Motion crowd(std::uint64_t seed) {
 }
 
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesInACrowd) {
-  for (const std::int64_t target : targets()) {
+  for (const std::int64_t target : vector_widths()) {
     const OnlyWith only(target);
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       const Difference seen = follow(crowd(seed), "crowd " + std::to_string(seed));
@@ -172,7 +140,7 @@ Motion motions_of(const hard::MotionFamily& family) {
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesAlongHardMotions) {
   for (const hard::MotionFamily& family : hard::motion_families()) {
     const Motion motion = motions_of(family);
-    for (const std::int64_t target : targets()) {
+    for (const std::int64_t target : vector_widths()) {
       const OnlyWith only(target);
       follow(motion, family.name);
     }
@@ -194,7 +162,7 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOnHardCases) {
       poses.push_back(c.pose_b);
     }
     motion.poses.assign(3, poses);
-    for (const std::int64_t target : targets()) {
+    for (const std::int64_t target : vector_widths()) {
       const OnlyWith only(target);
       follow(motion, family.name);
     }
@@ -272,11 +240,11 @@ TEST(DistanceBatch, OfNoPairsGivesNoResults) {
 
 TEST(DistanceBatch, RunsOneLaneAndWiderOnesHere) {
   std::set<std::string> names;
-  for (const std::int64_t target : targets()) {
+  for (const std::int64_t target : vector_widths()) {
     const OnlyWith only(target);
     names.insert(DistanceBatch::instruction_set());
   }
-  EXPECT_EQ(names.size(), targets().size());
+  EXPECT_EQ(names.size(), vector_widths().size());
 }
 
 }  // namespace

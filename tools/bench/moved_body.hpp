@@ -29,13 +29,13 @@ class MovedBody {
     for (std::size_t i = 0; i < own_.vertices.size(); ++i) {
       moved_.vertices[i].position = point(own_.vertices[i].position);
     }
-    for (std::size_t i = 0; i < own_.outgoing.size(); ++i) {
-      moved_.outgoing[i] = rotation_ * own_.outgoing[i];
+    for (const Vertex& v : own_.vertices) {
+      for (std::int32_t i = 0; i < v.edges; ++i) {
+        moved_.set_outgoing(v, i, rotation_ * own_.outgoing_of(v, i));
+      }
     }
-    for (std::size_t i = 0; i < own_.facet_sides.size(); ++i) {
-      FacetSide& side = moved_.facet_sides[i];
-      side.inward = rotation_ * own_.facet_sides[i].inward;
-      side.offset = own_.facet_sides[i].offset + side.inward.dot(translation_);
+    for (const Facet& f : own_.facets) {
+      for (std::int32_t i = 0; i < f.sides; ++i) move_side(f, i);
     }
     moved_.interior = point(own_.interior);
   }
@@ -45,6 +45,12 @@ class MovedBody {
   }
 
  private:
+  void move_side(const Facet& facet, std::int32_t i) {
+    const FacetSide own = own_.side_of(facet, i);
+    const Vec3 inward = rotation_ * own.inward;
+    moved_.set_side(facet, i, {inward, own.offset + inward.dot(translation_)});
+  }
+
   const ConvexPolyhedron& own_;
   ConvexPolyhedron moved_;
   Mat3 rotation_;

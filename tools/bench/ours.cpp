@@ -15,7 +15,7 @@ class Ours {
   Ours(Shape a, Shape b) : a_(*a), b_(*b) {}
   void forget() { tracking_ = {}; }
   Answer query(const Pose& world_from_a, const Pose& world_from_b) {
-    const DistanceResult r = distance(a_, b_, relative_pose(world_from_a, world_from_b), tracking_);
+    const DistanceResult r = distance(a_, b_, world_from_a, world_from_b, tracking_);
     return {r.distance, r.status != DistanceStatus::kIterationLimit, r.iterations,
             r.upper - r.lower};
   }

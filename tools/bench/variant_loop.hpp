@@ -83,10 +83,11 @@ inline bool release_all(ActiveSide& side, const Vec3& towards_in_common, double 
   const Vertex& vertex = side.vertex();
   int rising = 0;
   std::int32_t other = kNone;
-  for (std::int32_t i = vertex.first_edge; i < vertex.first_edge + vertex.edges; ++i) {
-    if (!(side.body().outgoing[i].dot(towards) > least)) continue;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    if (!(side.body().outgoing_of(vertex, i).dot(towards) > least)) continue;
     ++rising;
-    if (side.body().vertex_edges[i].edge != best.index) other = side.body().vertex_edges[i].edge;
+    const std::int32_t edge = side.body().vertex_edges[vertex.first_edge + i].edge;
+    if (edge != best.index) other = edge;
   }
   if (rising == 1) {
     let_go(side, best);

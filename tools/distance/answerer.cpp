@@ -101,8 +101,7 @@ std::vector<DistanceResult> Answerer::run(const DistanceCase& question) {
     const Clock::time_point start = Clock::now();
     for (std::size_t k = 0; k < poses.size(); ++k) {
       if (cold_) state = {};
-      results[k] =
-          distance(question.a, question.b, relative_pose(poses[k].first, poses[k].second), state);
+      results[k] = distance(question.a, question.b, poses[k].first, poses[k].second, state);
     }
     time_ += Clock::now() - start;
     queries_ += poses.size();

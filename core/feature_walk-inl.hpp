@@ -1,0 +1,342 @@
+// The walk of core/feature_walk.hpp, compiled once a vector width: see core/quad-inl.hpp.
+#if defined(CLEARANCE_CORE_FEATURE_WALK) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_FEATURE_WALK
+#undef CLEARANCE_CORE_FEATURE_WALK
+#else
+#define CLEARANCE_CORE_FEATURE_WALK
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/feature_walk.hpp"
+#include "core/precision.hpp"
+#include "core/relative_quads-inl.hpp"
+#include "core/rounding.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+// Enough for 99.9 % of the tracked queries of the facet-ball workload; more is the loop's work.
+inline constexpr int kSteps = 24;
+
+enum class Step { kHolds, kMoved, kLost };
+
+using Side = TrackingState::Side;
+
+// The pair, and what a step that holds finds: the closest points and the direction between them.
+struct Walk {
+  HWY_INLINE Walk(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
+                  const RelativeQuads& pose, TrackingState& state)
+      : a(body_a), b(body_b), a_from_b(pose), on_a(state.a), on_b(state.b) {}
+
+  const ConvexPolyhedron& a;
+  const ConvexPolyhedron& b;
+  const RelativeQuads& a_from_b;
+  Side& on_a;
+  Side& on_b;
+  Quad point_a, point_b;  // frame A
+  Quad own_b;             // point_b in frame B
+  Quad normal;            // unit, from A to B, frame A
+  double apart;           // m: |point_b - point_a|
+  double proved;  // m: how far apart the direction proves the cores, before the slack of Precision
+};
+
+HWY_INLINE void to_vertex(Side& side, std::int32_t vertex) {
+  side.dimension = 0;
+  side.feature = vertex;
+}
+HWY_INLINE void to_edge(Side& side, std::int32_t edge) {
+  side.dimension = 1;
+  side.feature = edge;
+}
+HWY_INLINE void to_facet(Side& side, std::int32_t facet) {
+  side.dimension = 2;
+  side.feature = facet;
+}
+
+// The first lanes of four, at most.
+HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
+
+// How fast up to four of a row's n vectors, from number i on, rise along g.
+HWY_INLINE Quad rates(const double* row, std::int32_t n, std::int32_t i, const Quad (&g)[3]) {
+  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
+}
+
+// Does a vertex's every edge fall away along g, by more than -limit per unit length?
+HWY_INLINE bool all_fall(const ConvexPolyhedron& body, const Vertex& vertex, Quad g, double limit) {
+  const double* row = body.outgoing.row(vertex.first_edge);
+  const std::int32_t n = vertex.edges;
+  const Quad along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
+  unsigned rise = ~less(rates(row, n, 0, along), spread(limit)) & first_lanes(n);
+  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
+    rise |= ~less(rates(row, n, i, along), spread(limit)) & first_lanes(n - i);
+  }
+  return rise == 0;
+}
+
+// The steepest of a vertex's edges along g.
+struct Steepest {
+  double rate = -kInfinity;
+  std::int32_t at = 0;  // index into vertex_edges
+};
+
+inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
+                                      const Vec3& g) {
+  Steepest best;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const double rate = body.outgoing_of(vertex, i).dot(g);
+    if (rate > best.rate) best = {rate, vertex.first_edge + i};
+  }
+  return best;
+}
+HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
+  return steepest(body, vertex, vec3(g));
+}
+
+// How steeply the facets beside an edge rise along g; a segment's only edge has none.
+HWY_INLINE double steepest_side(const Edge& edge, Quad g) {
+  if (edge.facet[0] == kNone) return -kInfinity;
+  return std::max(dot(load3(edge.inward[0]), g), dot(load3(edge.inward[1]), g));
+}
+
+// From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
+// far end.
+inline void leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepest& way) {
+  const EdgeUse& use = body.vertex_edges[way.at];
+  const Edge& edge = body.edges[use.edge];
+  if (way.rate >= edge.end && edge.vertex[1 - use.side] != kNone) {
+    to_vertex(side, edge.vertex[1 - use.side]);
+  } else {
+    to_edge(side, use.edge);
+  }
+}
+
+inline Step leave_either(Walk& w, const Vertex& of_a, const Vertex& of_b, Quad g, Quad back,
+                         double limit) {
+  const Steepest on_a = steepest(w.a, of_a, g), on_b = steepest(w.b, of_b, back);
+  if (on_a.rate > -limit && on_a.rate >= on_b.rate)
+    return leave_vertex(w.a, w.on_a, on_a), Step::kMoved;
+  if (on_b.rate > -limit) return leave_vertex(w.b, w.on_b, on_b), Step::kMoved;
+  return Step::kLost;
+}
+
+HWY_INLINE Step vertex_vertex(Walk& w) {
+  const Vertex& of_a = w.a.vertices[w.on_a.feature];
+  const Vertex& of_b = w.b.vertices[w.on_b.feature];
+  w.point_a = load3(of_a.position);
+  w.own_b = load3(of_b.position);
+  w.point_b = point_to_a(w.a_from_b, w.own_b);
+  const Quad g = w.point_b - w.point_a, back = -direction_to_b(w.a_from_b, g);
+  const double apart = norm(g), limit = -kCertainRate * apart;
+  if (!all_fall(w.a, of_a, g, limit) || !all_fall(w.b, of_b, back, limit)) {
+    return leave_either(w, of_a, of_b, g, back, limit);
+  }
+  w.apart = w.proved = apart;
+  w.normal = g / spread(apart);
+  return Step::kHolds;
+}
+
+// One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
+// owner is B.
+template <bool kMoved>
+struct Owned {
+  Walk& w;
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& owner() const { return kMoved ? w.b : w.a; }
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other() const { return kMoved ? w.a : w.b; }
+  [[nodiscard]] HWY_INLINE Side& on_owner() const { return kMoved ? w.on_b : w.on_a; }
+  [[nodiscard]] HWY_INLINE Side& on_other() const { return kMoved ? w.on_a : w.on_b; }
+  [[nodiscard]] HWY_INLINE Quad point_in(Quad p) const {
+    return kMoved ? point_to_b(w.a_from_b, p) : point_to_a(w.a_from_b, p);
+  }
+  [[nodiscard]] HWY_INLINE Quad direction_out(Quad v) const {
+    return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
+  }
+  // What was found in the owner's frame; n: unit, from the owner towards the other.
+  HWY_INLINE void express(Quad on_the_owner, Quad on_the_other, Quad n) const {
+    w.point_a = kMoved ? on_the_other : on_the_owner;
+    w.own_b = kMoved ? on_the_owner : on_the_other;
+    w.point_b = point_to_a(w.a_from_b, w.own_b);
+    w.normal = kMoved ? -direction_to_a(w.a_from_b, n) : n;
+  }
+};
+
+template <bool kMoved>
+HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
+  const Edge& edge = o.owner().edges[o.on_owner().feature];
+  const Vertex& vertex = o.other().vertices[o.on_other().feature];
+  const Quad tip = load3(vertex.position), start = load3(edge.point), e = load3(edge.direction);
+  const Quad from_start = o.point_in(tip) - start;
+  const double s = dot(from_start, e);
+  if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]), Step::kMoved;
+  if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]), Step::kMoved;
+  const Quad rough = from_start - s * e;
+  const Quad g = rough - dot(rough, e) * e;  // what cancellation has left
+  const double apart = norm(g), limit = -kCertainRate * apart;
+  const double side = steepest_side(edge, g);
+  if (!(side < limit)) {
+    if (!(side > -limit)) return Step::kLost;
+    const bool left = dot(load3(edge.inward[0]), g) == side;
+    return to_facet(o.on_owner(), edge.facet[left ? 0 : 1]), Step::kMoved;
+  }
+  const Quad back = -o.direction_out(g);
+  if (!all_fall(o.other(), vertex, back, limit)) {
+    const Steepest away = steepest(o.other(), vertex, back);
+    if (!(away.rate > -limit)) return Step::kLost;
+    return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge), Step::kMoved;
+  }
+  o.w.apart = o.w.proved = apart;
+  o.express(start + s * e, tip, g / spread(apart));
+  return Step::kHolds;
+}
+
+// The side of the facet's polygon beyond which the tip lies farthest, as an edge; kNone: it lies
+// within.
+HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Quad tip) {
+  const double* row = body.facet_sides.row(facet.first_side);
+  const std::int32_t n = facet.sides;
+  const Quad at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
+  double least = 0.0;
+  std::int32_t beyond = kNone;
+  for (std::int32_t i = 0; i < n; i += 4) {
+    const Quad within = rates(row, n, i, at) - load4(row + 3 * n + i);
+    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
+    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
+      if (!(lane(within, k) < least)) continue;
+      least = lane(within, k);
+      beyond = body.facet_edges[facet.first_side + i + k].edge;
+    }
+  }
+  return beyond;
+}
+
+template <bool kMoved>
+HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
+  const Facet& facet = o.owner().facets[o.on_owner().feature];
+  const Vertex& vertex = o.other().vertices[o.on_other().feature];
+  const Quad own_tip = load3(vertex.position), n = load3(facet.normal);
+  const Quad tip = o.point_in(own_tip);
+  const double apart = dot(n, tip) - facet.offset;
+  if (!(apart > 0.0)) return Step::kLost;
+  const std::int32_t beyond = side_beyond(o.owner(), facet, tip);
+  if (beyond != kNone) return to_edge(o.on_owner(), beyond), Step::kMoved;
+  const Quad back = -o.direction_out(n);
+  if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
+    const Steepest away = steepest(o.other(), vertex, back);
+    const EdgeUse& use = o.other().vertex_edges[away.at];
+    const std::int32_t next = o.other().edges[use.edge].vertex[1 - use.side];
+    if (!(away.rate > kCertainRate) || next == kNone) return Step::kLost;
+    return to_vertex(o.on_other(), next), Step::kMoved;
+  }
+  o.w.apart = o.w.proved = apart;
+  o.express(tip - apart * n, own_tip, n);
+  return Step::kHolds;
+}
+
+// Where the line's closest point lies beyond an end of the edge, that end takes over.
+HWY_INLINE bool beyond_end(const Edge& edge, double at, Side& side) {
+  if (at > edge.begin && at < edge.end) return false;
+  to_vertex(side, edge.vertex[at > edge.begin ? 1 : 0]);
+  return true;
+}
+
+HWY_INLINE Step edge_edge(Walk& w) {
+  const Edge& first = w.a.edges[w.on_a.feature];
+  const Edge& second = w.b.edges[w.on_b.feature];
+  if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
+  const Quad e = load3(first.direction), own_f = load3(second.direction);
+  const Quad start_a = load3(first.point), own_start_b = load3(second.point);
+  const Quad f = direction_to_a(w.a_from_b, own_f);
+  const Quad start_b = point_to_a(w.a_from_b, own_start_b);
+  const Quad between = start_b - start_a, n = cross(e, f);
+  const double sine2 = dot(n, n);
+  if (!(sine2 > kCrossingSine2)) return Step::kLost;
+  const double cosine = dot(e, f), along_e = dot(between, e);
+  const double t = (cosine * along_e - dot(between, f)) / sine2;
+  const double s = along_e + cosine * t;
+  if (beyond_end(first, s, w.on_a) || beyond_end(second, t, w.on_b)) return Step::kMoved;
+  const double sine = std::sqrt(sine2), apart = dot(between, n) / sine;
+  w.normal = n / spread(std::copysign(sine, apart));
+  const Quad m = direction_to_b(w.a_from_b, w.normal);
+  const double on_a = steepest_side(first, w.normal), on_b = steepest_side(second, -m);
+  if (!(on_a < -kCertainRate) || !(on_b < -kCertainRate)) return Step::kLost;
+  w.point_a = start_a + s * e;
+  w.own_b = own_start_b + t * own_f;
+  w.point_b = start_b + t * f;
+  w.apart = norm(w.point_b - w.point_a);
+  // Along an edge the body may reach farther by what rounding tilts the normal.
+  w.proved = std::abs(apart) - 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
+                                      w.b.bounding_radius * std::abs(dot(w.normal, f)));
+  return Step::kHolds;
+}
+
+HWY_INLINE Step step(Walk& w) {
+  switch (w.on_a.dimension * 3 + w.on_b.dimension) {
+    case 0:
+      return vertex_vertex(w);
+    case 1:
+      return edge_vertex(Owned<true>{w});
+    case 2:
+      return facet_vertex(Owned<true>{w});
+    case 3:
+      return edge_vertex(Owned<false>{w});
+    case 4:
+      return edge_edge(w);
+    case 6:
+      return facet_vertex(Owned<false>{w});
+    default:
+      return Step::kLost;
+  }
+}
+
+HWY_INLINE bool exists(const ConvexPolyhedron& body, const Side& side) {
+  const std::size_t count = side.dimension == 0   ? body.vertices.size()
+                            : side.dimension == 1 ? body.edges.size()
+                            : side.dimension == 2 ? body.facets.size()
+                                                  : 0;
+  return static_cast<std::size_t>(static_cast<std::uint32_t>(side.feature)) < count;
+}
+
+// A vertex that is far out along `towards`; a body without vertices is one facet, or the loop's.
+HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
+  if (body.vertices.empty()) return to_facet(side, 0);
+  to_vertex(side, body.start.at(vec3(towards)));
+}
+
+HWY_INLINE WalkEnd conclude(const Walk& w, int steps, DistanceResult& r) {
+  const RelativeQuads& pose = w.a_from_b;
+  const Precision p =
+      precision(w.a, w.b, {pose.rotation_error, pose.translation_error, pose.apart}, w.apart);
+  r.distance = w.apart;
+  r.lower = w.proved - p.slack;
+  r.upper = w.apart + p.slack;
+  r.normal = vec3(w.normal);
+  r.point_on_a = vec3(w.point_a);
+  r.point_on_b = vec3(w.point_b);
+  r.status = DistanceStatus::kConverged;
+  r.iterations = static_cast<std::uint16_t>(steps);
+  w.on_a.point = vec3(w.point_a);
+  w.on_b.point = vec3(w.own_b);
+  const bool proved = w.proved > p.slack && w.apart - w.proved <= p.tight;
+  return proved ? WalkEnd::kProved : WalkEnd::kSettled;
+}
+
+HWY_INLINE WalkEnd walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const RelativeQuads& a_from_b, TrackingState& state, DistanceResult& r) {
+  if (!a.bounded() && !b.bounded()) return WalkEnd::kLost;
+  Walk w(a, b, a_from_b, state);
+  if (!exists(a, state.a) || !exists(b, state.b)) {
+    const Quad towards = point_to_a(a_from_b, load3(b.interior)) - load3(a.interior);
+    start(a, towards, state.a);
+    start(b, -direction_to_b(a_from_b, towards), state.b);
+  }
+  for (int steps = 1; steps <= kSteps; ++steps) {
+    const Step result = step(w);
+    if (result == Step::kHolds) return conclude(w, steps, r);
+    if (result == Step::kLost) return WalkEnd::kLost;
+  }
+  return WalkEnd::kLost;
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

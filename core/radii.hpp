@@ -1,0 +1,35 @@
+// From the cores to the bodies: each is its core plus a ball of its radius.
+#pragma once
+
+#include <cmath>
+
+#include "core/distance.hpp"
+#include "core/rounding.hpp"
+
+namespace clearance {
+
+[[nodiscard]] inline double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+  return a.radius + b.radius;
+}
+
+// Witness points move from the cores' surfaces to the rounded bodies'.
+inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
+                      const ConvexPolyhedron& b) noexcept {
+  const double sum = radii(a, b);
+  if (sum == 0.0) return;
+  const double rounding = kRadiusRounding * (sum + std::abs(r.upper - sum));
+  r.distance -= sum;
+  r.lower -= sum + rounding;
+  r.upper -= sum - rounding;
+  if (std::isfinite(r.normal.x())) {
+    r.point_on_a += a.radius * r.normal;
+    r.point_on_b -= b.radius * r.normal;
+  }
+  if (r.upper < 0.0) {
+    r.status = DistanceStatus::kOverlapping;
+  } else if (r.lower <= 0.0 && r.status == DistanceStatus::kConverged) {
+    r.status = DistanceStatus::kTouching;
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,4 @@
+// Includes the file that HWY_TARGET_INCLUDE names once a vector width, in a namespace each: two
+// doubles at the x86-64 baseline and on Arm, four with AVX2. Which one runs is decided at run time.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
