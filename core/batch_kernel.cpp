@@ -24,7 +24,7 @@ struct Slack {
   Lanes slack, tight;
 };
 
-// precision() of core/precision.cpp.
+// precision() of core/precision.hpp.
 HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses& pose,
                             Lanes farthest) {
   const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };

@@ -16,7 +16,7 @@ using oracle::ExactDistance;
 using oracle::Rational;
 
 // Relative to DistanceJudge::size. The proof of the bounds counts about 50 roundings of 2^-53 on
-// either side, 30 of them for the relative rotation (core/precision.cpp, core/pose.cpp): 1.2e-14
+// either side, 30 of them for the relative rotation (core/rounding.hpp): 1.2e-14
 // for both.
 constexpr double kTolerance = 1.5e-14;
 
