@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tools/bench/report/print.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/report/table.hpp"
@@ -28,13 +33,36 @@ std::string error(const Figure* f) {
   return print("%.0e (%.0f)", f->counted("max_error"), f->counted("compared"));
 }
 
+// "tick/NAME" and "sweep/WHAT/VALUE", but not what is compared with them.
 bool is_ours(const std::string& name) {
-  return !name.ends_with("/plain") && !name.ends_with("/fcl");
+  return name.find("/plain") == std::string::npos && !name.ends_with("/fcl");
+}
+
+struct Row {
+  std::string name;
+  const Figure* ours;
+};
+
+// Cells by their number of pairs; sweeps, each by its values, which are the ends of their names.
+std::vector<Row> sorted_rows(const Figures& figures, const std::string& prefix) {
+  std::vector<Row> rows;
+  for (const auto& [name, figure] : figures.rows()) {
+    if (name.starts_with(prefix) && is_ours(name)) rows.push_back({name, &figure});
+  }
+  const auto key = [](const Row& row) {
+    const std::size_t end = row.name.rfind('/') + 1;
+    const bool sweep = row.name.starts_with("sweep/");
+    return sweep ? std::make_pair(row.name.substr(0, end), std::stod(row.name.substr(end)))
+                 : std::make_pair(std::string(), row.ours->counted("pairs"));
+  };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const Row& left, const Row& right) { return key(left) < key(right); });
+  return rows;
 }
 
 void add_rows(const Figures& figures, const std::string& prefix, Table& table) {
-  for (const auto& [name, ours] : figures.rows()) {
-    if (!name.starts_with(prefix) || !is_ours(name)) continue;
+  for (const auto& [name, row] : sorted_rows(figures, prefix)) {
+    const Figure& ours = *row;
     const Figure* fcl = figures.at(name + "/fcl");
     table.row({name.substr(prefix.size()), print("%.0f", ours.counted("pairs")), three(ours),
                against(figures.at(name + "/plain"), ours), against(fcl, ours), error(fcl),
