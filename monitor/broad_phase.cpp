@@ -29,6 +29,7 @@ double share_of_a(double usual_a, double usual_b) noexcept {
 BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
                        std::span<const std::uint32_t> left_out, std::size_t most_woken)
     : most_woken_(most_woken),
+      most_met_(most_woken / 2),
       bodies_(scene.objects.size()),
       usual_travel_(scene.objects.size(), 0.0),
       left_out_(scene.pairs.size(), 0),
@@ -72,6 +73,7 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects,
                        std::span<const std::uint32_t> stirred, PairTable& table) noexcept {
   farthest_travel_ = 0.0;
   advanced_.clear();
+  const std::size_t arrived_before = arrived_.size();
   for (double& usual : usual_travel_) usual = usual > kRest ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : stirred) {
     const ObjectState& object = objects[i];
@@ -93,7 +95,9 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects,
     farthest_travel_ = std::max(farthest_travel_, rounded_up(by));
   }
   take_due(overdue_ ? busy_ : advanced_);
-  meet_arrivals();
+  // To take in an object that arrives costs as much as to meet a pair.
+  const std::size_t arrived = std::min(arrived_.size() - arrived_before, most_met_);
+  meet_arrivals(most_met_ - arrived);
 }
 
 void BroadPhase::arrive(std::uint32_t object, const ObjectState& state) noexcept {
@@ -117,15 +121,15 @@ void BroadPhase::wake(std::uint32_t pair) noexcept {
 
 // Every pair is met once: in the turn of the first of its objects, if the other is there by then;
 // so that pairs are met in the order in which they lie in memory when all objects come at once.
-void BroadPhase::meet_arrivals() noexcept {
-  while (!everyone_met()) {
+void BroadPhase::meet_arrivals(std::size_t most) noexcept {
+  for (most += woken_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
     Arrival& own = bodies_[object].arrival;
     if (met_pairs_ == 0) own.met = static_cast<std::uint32_t>(arrived_.size());
     const std::uint32_t first = first_pair_[object];
     const std::uint32_t count = first_pair_[object + 1] - first;
     for (; met_pairs_ < count; ++met_pairs_) {
-      if (woken_.size() >= most_woken_) return;
+      if (woken_.size() >= most) return;
       const Arrival& other = bodies_[others_[first + met_pairs_]].arrival;
       const bool met_before = other.rank < own.rank && own.rank < other.met;
       if (met_before || other.rank >= own.met) continue;

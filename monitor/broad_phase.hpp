@@ -24,7 +24,8 @@ class BroadPhase {
     std::vector<double> urgent;  // by object, m: awake where nearer than this of both together
   };
   // `left_out`: pairs that somebody looks at anyway, in ascending order. `most_woken`: pairs that
-  // may be woken a tick; the others wait, and pending() says so.
+  // may be woken a tick, half as many by meeting for the first time; the others wait, and pending()
+  // says so.
   BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
              std::span<const std::uint32_t> left_out, std::size_t most_woken);
 
@@ -83,13 +84,13 @@ class BroadPhase {
 
   void arrive(std::uint32_t object, const ObjectState& state) noexcept;
   void jump(std::uint32_t object, PairTable& table) noexcept;
-  void meet_arrivals() noexcept;
+  void meet_arrivals(std::size_t most) noexcept;
   void take_due(std::span<const std::uint32_t> objects) noexcept;
   [[nodiscard]] double level_of(std::uint32_t pair) const noexcept;
   void wake(std::uint32_t pair) noexcept;
   [[nodiscard]] const Ball& ball_of(Body& body) noexcept;
 
-  const std::size_t most_woken_;
+  const std::size_t most_woken_, most_met_;  // a tick
   std::vector<Body> bodies_;
   std::vector<double>
       usual_travel_;  // by object, m a tick, smoothed: divides slack, proves nothing

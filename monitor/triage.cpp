@@ -11,10 +11,10 @@
 namespace clearance {
 namespace {
 
-// Waking a pair and looking at it costs as much as a query where memory is far, less where it is
-// near; pairs that are met for the first time are bounded by the same.
+// Looking at a pair that was woken costs up to a query where memory is far, meeting one for the
+// first time up to two.
 constexpr std::size_t kWokenPerQuery = 2;
-constexpr std::size_t kLeastWoken = 1'000;
+constexpr std::size_t kLeastWoken = 2'000;
 
 constexpr std::uint32_t kLeastRefreshed = 16;  // pairs a tick
 // As many times more when some are overdue, having been out of sight.

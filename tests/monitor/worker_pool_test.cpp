@@ -42,7 +42,7 @@ class Crowd {
  public:
   explicit Crowd(std::uint32_t budget) : random_(81) {
     std::vector<Object> objects;
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < 36; ++i) {
       objects.push_back(test::moving("thin", {test::capsule(1.0, 0.01, random_.pose(0.3))}));
       if (i % 3 == 0) objects.back().parts.push_back(test::block(Vec3(0.05, 0.1, 0.02)));
       if (i % 2 == 0) objects.back().max_speed = 3.0;

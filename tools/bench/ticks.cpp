@@ -15,7 +15,7 @@ namespace clearance::bench {
 namespace {
 
 // Until everything is known and has been looked at once.
-constexpr int kStartUpTicks = 2'000;
+constexpr int kStartUpTicks = 3'000;
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 constexpr std::int64_t kFirst = 1'000'000'000;
 
