@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <optional>
 #include <utility>
@@ -23,10 +24,20 @@ constexpr std::uint32_t kRetry = 8;
 // Lanes of each kind that may be empty.
 constexpr std::size_t kMostHoles = 8;
 
-bool same_features(const TrackingState& s, const TrackingState& t) noexcept {
-  return s.a.dimension == t.a.dimension && s.a.feature == t.a.feature && s.a.deep == t.a.deep &&
-         s.b.dimension == t.b.dimension && s.b.feature == t.b.feature;
-}
+// What a pair's state says without its points.
+struct Features {
+  explicit Features(const TrackingState& s) noexcept
+      : dimension_a(s.a.dimension),
+        dimension_b(s.b.dimension),
+        deep(s.a.deep),
+        a(s.a.feature),
+        b(s.b.feature) {}
+  bool operator==(const Features&) const noexcept = default;
+
+  std::uint8_t dimension_a, dimension_b;
+  bool deep;
+  std::int32_t a, b;
+};
 
 }  // namespace
 
@@ -38,8 +49,8 @@ class DistanceBatch::Rounds {
         states_(pairs.size()),
         slots_(pairs.size(), kNowhere),
         results_(pairs.size() + 1),
-        blocks_((pairs.size() + kFeatureKinds * kMostHoles) / kBlockLanes + kFeatureKinds),
-        failed_(pairs.size()) {
+        blocks_((pairs.size() + kFeatureKinds * kMostHoles) / kBlockLanes + kFeatureKinds) {
+    failed_.reserve(pairs.size());
     loose_.reserve(pairs.size());
     free_.reserve(blocks_.size());
     for (Settled& s : settled_) {
@@ -52,10 +63,11 @@ class DistanceBatch::Rounds {
   std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept {
     assert(world_from_body.size() == bodies_.size());
     ++rounds_;
-    const std::size_t failures = judge_blocks(world_from_body);
-    single_queries_ = loose_.size() + failures;
+    judge_blocks(world_from_body);
+    list_failed();
+    single_queries_ = loose_.size() + failed_.size();
     ask_loose(world_from_body);
-    for (std::size_t i = 0; i < failures; ++i) ask_failed(failed_[i], world_from_body);
+    for (const std::uint32_t pair : failed_) ask_failed(pair, world_from_body);
     return {results_.data(), pairs_.size()};
   }
 
@@ -95,18 +107,30 @@ class DistanceBatch::Rounds {
     return settled_[static_cast<std::size_t>(kind)];
   }
 
-  std::size_t judge_blocks(std::span<const Pose> poses) noexcept {
+  void judge_blocks(std::span<const Pose> poses) noexcept {
     BatchRound round;
     round.blocks = blocks_.data();
     round.world_from_body = poses.data();
     round.results = results_.data();
-    round.failed = failed_.data();
-    round.no_pair = no_pair();
     for (std::size_t i = 0; i < kFeatureKinds; ++i) {
       round.lists[i] = {settled_[i].blocks.data(), settled_[i].blocks.size()};
     }
     run_batch(round);
-    return round.failures;
+  }
+
+  // Before any pair moves to another lane.
+  void list_failed() noexcept {
+    failed_.clear();
+    for (const Settled& of : settled_) {
+      for (const std::uint32_t index : of.blocks) {
+        const BatchBlock& from = blocks_[index];
+        unsigned lanes = from.failed & ((1U << from.lanes) - 1U);
+        for (; lanes != 0; lanes &= lanes - 1) {
+          const std::uint32_t pair = from.pair[static_cast<unsigned>(std::countr_zero(lanes))];
+          if (pair != no_pair()) failed_.push_back(pair);
+        }
+      }
+    }
   }
 
   void ask(std::uint32_t pair, std::span<const Pose> poses) noexcept {
@@ -119,9 +143,9 @@ class DistanceBatch::Rounds {
   void ask_loose(std::span<const Pose> poses) noexcept {
     std::size_t kept = 0;
     for (const std::uint32_t pair : loose_) {
-      const TrackingState before = states_[pair];
+      const Features before(states_[pair]);
       ask(pair, poses);
-      const bool stuck = same_features(before, states_[pair]) && (rounds_ + pair) % kRetry != 0;
+      const bool stuck = before == Features(states_[pair]) && (rounds_ + pair) % kRetry != 0;
       const auto kind = feature_kind(a(pair), b(pair), states_[pair]);
       if (kind && !stuck) {
         settle(pair, *kind);
@@ -137,9 +161,9 @@ class DistanceBatch::Rounds {
     const Slot slot = slots_[pair];
     state.a.point = last_point(block(slot), slot % kBlockLanes, kPointA);
     state.b.point = last_point(block(slot), slot % kBlockLanes, kPointB);
-    const TrackingState before = state;
+    const Features before(state);
     ask(pair, poses);
-    const bool stuck = same_features(before, state);
+    const bool stuck = before == Features(state);
     const auto kind = feature_kind(a(pair), b(pair), state);
     if (kind == block(slot).kind && !stuck) return fill(slot);
     vacate(slot);

@@ -71,8 +71,9 @@ struct alignas(64) BatchBlock {
   // block was empty. Every lane is filled up to the most, by repeating its last.
   std::array<std::uint8_t, kBlockLanes> repeats_a{}, repeats_b{};
   std::uint8_t most_a = 0, most_b = 0;
-  std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
-  bool plain = true;       // no body in it has been unbounded, a point, a segment, or with a radius
+  std::uint8_t lanes = 0;   // in use: [0, lanes), but for those that a pair has left
+  std::uint8_t failed = 0;  // of the last round: bit i, lane i is for distance()
+  bool plain = true;  // no body in it has been unbounded, a point, a segment, or with a radius
   FeatureKind kind = FeatureKind::kVertexVertex;
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
 };
@@ -87,15 +88,12 @@ struct BatchRound {
     std::size_t count = 0;
   };
   std::array<List, kFeatureKinds> lists;
-  std::uint32_t no_pair = 0;        // BatchBlock::pair of lanes not in use
-  std::uint32_t* failed = nullptr;  // out: pairs that are distance()'s
-  std::size_t failures = 0;
 };
 
 // Judges every lane: where the features of the last query are the closest still and the bounds are
-// tight, writes what distance() would, bit for bit; the pairs of the others are listed as failed.
+// tight, writes what distance() would, bit for bit; the others are marked as failed.
 // Picks the widest vectors that the machine has; the results do not depend on it.
-void run_batch(BatchRound& round) noexcept;
+void run_batch(const BatchRound& round) noexcept;
 
 // The instruction set that run_batch uses here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", "SCALAR".
 [[nodiscard]] const char* batch_instruction_set() noexcept;

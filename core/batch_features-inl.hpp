@@ -17,6 +17,8 @@ namespace HWY_NAMESPACE {
 
 // As ClosestFeatures, where `holds`; elsewhere anything.
 struct Closest {
+  HWY_INLINE Closest() {}  // as of Points
+
   LaneMask holds;
   Points point_a, point_b, own_b, normal;
   Lanes apart, proved;

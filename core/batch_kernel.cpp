@@ -10,8 +10,6 @@
 // Keep this order: foreach_target first.
 #include <hwy/highway.h>
 
-#include <bit>
-
 #include "core/batch_block.hpp"
 #include "core/batch_features-inl.hpp"
 #include "core/precision.hpp"
@@ -83,6 +81,9 @@ HWY_INLINE Answers conclude(const Closest& c, const Slack& p) {
   return r;
 }
 
+// A result begins with twelve numbers, from `distance` to `point_on_b`.
+static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
+
 HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
                       DistanceResult* results) {
   double* to[kWidth];
@@ -92,12 +93,9 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
     result.status = DistanceStatus::kConverged;
     result.iterations = 1;
   }
-  store_columns(r.distance, r.lower, to, 0);
-  store_columns(r.upper, r.normal.x, to, 2);
-  store_columns(r.normal.y, r.normal.z, to, 4);
-  store_columns(r.point_a.x, r.point_a.y, to, 6);
-  store_columns(r.point_a.z, r.point_b.x, to, 8);
-  store_columns(r.point_b.y, r.point_b.z, to, 10);
+  store_columns({{r.distance, r.lower, r.upper, r.normal.x}}, to, 0);
+  store_columns({{r.normal.y, r.normal.z, r.point_a.x, r.point_a.y}}, to, 4);
+  store_columns({{r.point_a.z, r.point_b.x, r.point_b.y, r.point_b.z}}, to, 8);
 }
 
 template <FeatureKind kKind>
@@ -132,15 +130,8 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   return bits[0];
 }
 
-HWY_INLINE void list_failures(const BatchBlock& block, std::size_t lanes, BatchRound& round) {
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const std::uint32_t pair = block.pair[static_cast<std::size_t>(std::countr_zero(lanes))];
-    if (pair != round.no_pair) round.failed[round.failures++] = pair;
-  }
-}
-
 template <FeatureKind kKind>
-void judge_list(BatchRound& round) {
+void judge_list(const BatchRound& round) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
@@ -148,11 +139,11 @@ void judge_list(BatchRound& round) {
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {
       good |= judge<kKind>(block, first, round) << first;
     }
-    list_failures(block, ~good & ((std::size_t{1} << block.lanes) - 1), round);
+    block.failed = static_cast<std::uint8_t>(~good);
   }
 }
 
-void judge_all(BatchRound& round) {
+void judge_all(const BatchRound& round) {
   judge_list<FeatureKind::kVertexVertex>(round);
   judge_list<FeatureKind::kVertexEdge>(round);
   judge_list<FeatureKind::kEdgeVertex>(round);
@@ -173,7 +164,7 @@ namespace clearance {
 HWY_EXPORT(judge_all);
 HWY_EXPORT(instruction_set);
 
-void run_batch(BatchRound& round) noexcept { HWY_DYNAMIC_DISPATCH(judge_all)(round); }
+void run_batch(const BatchRound& round) noexcept { HWY_DYNAMIC_DISPATCH(judge_all)(round); }
 
 const char* batch_instruction_set() noexcept { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
 

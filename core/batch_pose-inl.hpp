@@ -42,20 +42,17 @@ HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
           dot({r.x.z, r.y.z, r.z.z}, p)};
 }
 
-// A pose is eight numbers in pairs: position and one that means nothing, x, y, z, w.
+// A pose is eight numbers: position, one that means nothing, x, y, z, w.
 static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == 16);
 static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
 
 HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
   const double* rows[kWidth];
   for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
-  Poses out;
-  Lanes nothing;
-  load_columns(rows, 0, out.position.x, out.position.y);
-  load_columns(rows, 2, out.position.z, nothing);
-  load_columns(rows, 4, out.orientation.x, out.orientation.y);
-  load_columns(rows, 6, out.orientation.z, out.orientation.w);
-  return out;
+  const Columns position = load_columns(rows, 0), orientation = load_columns(rows, 4);
+  return {
+      {position.column[0], position.column[1], position.column[2]},
+      {orientation.column[0], orientation.column[1], orientation.column[2], orientation.column[3]}};
 }
 
 // conj(a) * b
