@@ -19,7 +19,7 @@ using Slot = std::uint32_t;
 constexpr Slot kNowhere = ~Slot{0};
 
 // Rounds between two attempts of vector code at features of which it could not tell.
-constexpr std::uint32_t kRetry = 8;
+constexpr std::uint32_t kRetry = 64;
 
 // Lanes of each kind that may be empty.
 constexpr std::size_t kMostHoles = 8;
@@ -134,8 +134,8 @@ class DistanceBatch::Rounds {
   }
 
   void ask(std::uint32_t pair, std::span<const Pose> poses) noexcept {
-    const RelativePose a_from_b = relative_pose(poses[pairs_[pair].a], poses[pairs_[pair].b]);
-    results_[pair] = distance(a(pair), b(pair), a_from_b, states_[pair]);
+    results_[pair] =
+        distance(a(pair), b(pair), poses[pairs_[pair].a], poses[pairs_[pair].b], states_[pair]);
   }
 
   // Those that have come to features that vector code can judge are loose no longer; where it just

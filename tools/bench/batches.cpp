@@ -75,8 +75,8 @@ class OneByOne {
   std::span<const DistanceResult> step(const Fleet& fleet) {
     for (std::size_t i = 0; i < results_.size(); ++i) {
       const auto [a, b] = fleet.pairs[i];
-      results_[i] = distance(*fleet.shapes[a], *fleet.shapes[b], fleet.poses[a], fleet.poses[b],
-                             states_[i]);
+      results_[i] =
+          distance(*fleet.shapes[a], *fleet.shapes[b], fleet.poses[a], fleet.poses[b], states_[i]);
     }
     return results_;
   }
