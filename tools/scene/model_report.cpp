@@ -25,10 +25,11 @@ std::size_t bytes_of(const std::vector<T>& values) {
 }
 
 Size size_of(const ConvexPolyhedron& p) {
+  const std::size_t walking =
+      (3 * p.vertex_edges.size() + 4 * p.facet_edges.size()) * sizeof(double);
   const std::size_t tables = bytes_of(p.facets) + bytes_of(p.edges) + bytes_of(p.vertices) +
                              bytes_of(p.facet_edges) + bytes_of(p.vertex_edges) +
-                             bytes_of(p.anchors) + bytes_of(p.rays) + bytes_of(p.outgoing) +
-                             bytes_of(p.facet_sides);
+                             bytes_of(p.anchors) + bytes_of(p.rays) + walking;
   return {p.facets.size(), p.vertices.size(), sizeof p + tables};
 }
 
