@@ -24,6 +24,12 @@ double share_of_a(double usual_a, double usual_b) noexcept {
   return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
 }
 
+// How far from where it is now the object may have been since the last tick, m. After a leap every
+// zone of it says so itself.
+double strayed_since(const ObjectState& object) noexcept {
+  return object.unseen_since + (object.leapt ? 0.0 : object.travel_since());
+}
+
 }  // namespace
 
 BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
@@ -101,7 +107,7 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects,
 }
 
 void BroadPhase::arrive(std::uint32_t object, const ObjectState& state) noexcept {
-  bodies_[object].pose = &state.pose;
+  bodies_[object].state = &state;
   bodies_[object].arrival.rank = static_cast<std::uint32_t>(arrived_.size());
   arrived_.push_back(object);
 }
@@ -160,8 +166,8 @@ double BroadPhase::pending_lower() const noexcept {
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const double near = std::max(horizon_, levels_.urgent[a] + levels_.urgent[b]);
-  const double unseen = bodies_[a].may_have_moved + bodies_[b].may_have_moved;
-  return std::max(near, levels_.zones[pair] + unseen) + kSumError;
+  const double since = strayed_since(*bodies_[a].state) + strayed_since(*bodies_[b].state);
+  return std::max(near, levels_.zones[pair] + since) + kSumError;
 }
 
 bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
@@ -186,7 +192,7 @@ bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
 }
 
 const Ball& BroadPhase::ball_of(Body& body) noexcept {
-  if (!body.placed) body.ball_in_world = placed(body.ball, *body.pose);
+  if (!body.placed) body.ball_in_world = placed(body.ball, body.state->pose);
   body.placed = true;
   return body.ball_in_world;
 }

@@ -2,7 +2,8 @@
 //
 // A pair is asleep while its lower bound, carried by what its two objects have really travelled,
 // cannot be below the horizon (no smaller than the minimum over all pairs, if that is proved), and,
-// counting what late ones may have moved unseen, cannot be below what a zone watches it for. It has
+// counting what late ones may have moved unseen, neither is nor since the last tick has been below
+// what a zone watches it for. It has
 // a hook on the wake wheels of both objects; the slack above those levels is divided between the
 // two. All other pairs are awake: looked at in every tick.
 #pragma once
@@ -73,8 +74,8 @@ class BroadPhase {
   };
   struct Body {
     EnclosingBall ball;
-    Ball ball_in_world;  // while `placed`
-    const Pose* pose = nullptr;
+    Ball ball_in_world;                  // while `placed`
+    const ObjectState* state = nullptr;  // once it has arrived
     bool placed = false;
     bool fixed = false;
     bool idle = true;             // all its pairs are left out

@@ -6,6 +6,7 @@ namespace clearance {
 
 void ClosestPair::add(std::uint32_t pair, const PairSummary& summary) noexcept {
   lower_ = std::min(lower_, summary.lower);
+  lower_since_ = std::min(lower_since_, summary.lower_since);
   if (summary.status == PairStatus::kUnknown) return;
 
   const bool tight = is_evaluated(summary.status) && summary.status != PairStatus::kLoose;
@@ -28,8 +29,9 @@ void ClosestPair::add(std::uint32_t pair, const PairSummary& summary) noexcept {
   summary_ = summary;
 }
 
-void ClosestPair::add_rest(double lower) noexcept {
+void ClosestPair::add_rest(double lower, double lower_since) noexcept {
   lower_ = std::min(lower_, lower);
+  lower_since_ = std::min(lower_since_, lower_since);
   rest_lower_ = std::min(rest_lower_, lower);
 }
 

@@ -7,15 +7,6 @@
 namespace clearance {
 namespace {
 
-// The query's bounds are for the poses as the query used them; the table's for the exact ones. What
-// was carried is true as well, and a query that was cut short may know less.
-void tighten(const DistanceResult& found, double placing_error, double& lower,
-             double& upper) noexcept {
-  const bool exact = placing_error == 0.0;
-  lower = std::max(lower, exact ? found.lower : rounded_down(found.lower - placing_error));
-  upper = std::min(upper, exact ? found.upper : rounded_up(found.upper + placing_error));
-}
-
 DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
@@ -28,7 +19,10 @@ void take_in(const DistanceResult& found, std::uint32_t row,
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
-  tighten(found, placing_error(a, b), table.lower[row], table.upper[row]);
+  // What was carried is true as well, and a query that was cut short may know less.
+  const RowBounds bounds = for_exact_poses(found, a, b);
+  table.lower[row] = std::max(table.lower[row], bounds.lower);
+  table.upper[row] = std::min(table.upper[row], bounds.upper);
 
   const Mat3& turn = a.world_from_part_rotation;
   ClosestPoints& closest = table.closest[row];
@@ -96,6 +90,13 @@ void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
 }
 
 }  // namespace
+
+RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
+                          const PlacedPart& b) noexcept {
+  const double error = placing_error(a, b);
+  if (error == 0.0) return {found.lower, found.upper};
+  return {rounded_down(found.lower - error), rounded_up(found.upper + error)};
+}
 
 // What was known before adds nothing to a tight answer.
 void settle(std::uint32_t pair, const DistanceResult& found,

@@ -32,6 +32,10 @@ struct Evaluation {
 // count the query.
 void settle(std::uint32_t pair, const DistanceResult& found, const Evaluation& evaluation) noexcept;
 
+// The bounds that a query tells are for the poses as it used them; these are for the exact ones.
+[[nodiscard]] RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
+                                        const PlacedPart& b) noexcept;
+
 // Brings an object pair up to date and evaluates it as far as the budget goes: the row that may be
 // closest, then every other one that may be closer still. Rows whose carried bounds prove that they
 // are not are left as they are: the pair's distance does not depend on them. Both objects are

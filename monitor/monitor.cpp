@@ -16,6 +16,22 @@
 #include "monitor/zone_round.hpp"
 
 namespace clearance {
+namespace {
+
+class LargestTwo {
+ public:
+  void add(double length) noexcept {
+    if (length <= second_) return;
+    second_ = std::min(most_, length);
+    most_ = std::max(most_, length);
+  }
+  [[nodiscard]] double sum() const noexcept { return rounded_up(most_ + second_); }
+
+ private:
+  double most_ = 0.0, second_ = 0.0;
+};
+
+}  // namespace
 
 struct Monitor::State {
   const Scene& scene;
@@ -24,7 +40,9 @@ struct Monitor::State {
   std::vector<double> reach;              // by object: as EnclosingBall::reach, m
   std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
   std::vector<std::uint32_t> stirred;     // objects of which this tick knows something else
-  double most_unseen = 0.0;  // that any two known objects, both together, may have moved, m
+  // Of any two known objects together: how far they may have moved unseen, and may have been from
+  // where they are now since the last tick, m.
+  double most_unseen = 0.0, most_strayed = 0.0;
   PairTable table;
   WorkerPool pool;
   Triage triage;
@@ -46,8 +64,8 @@ struct Monitor::State {
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
   [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
-  [[nodiscard]] double rest_lower() const noexcept;
-  [[nodiscard]] double pending_lower() const noexcept;
+  [[nodiscard]] Clearance rest() const noexcept;
+  [[nodiscard]] Clearance pending() const noexcept;
 };
 
 Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
@@ -61,7 +79,9 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   s.move();            // objects  -> parts: where each is, how far it moved
   s.look_at_inputs();
   // parts    -> table: every bound true for these poses, or provably not worth a look
-  s.report.queries = s.triage.evaluate_due(s.objects, s.stirred, s.parts, s.report.cycle, s.table);
+  s.zones.begin(s.report.zones);
+  s.report.queries =
+      s.triage.evaluate_due(s.objects, s.stirred, s.parts, s.report.cycle, s.zones, s.table);
   s.report_pairs();  // table    -> report
   s.report_counts();
   s.report_whole();
@@ -169,7 +189,7 @@ void Monitor::State::move() noexcept {
 
 void Monitor::State::look_at_inputs() noexcept {
   bool any = false;
-  double most = 0.0, second = 0.0;
+  LargestTwo unseen, strayed;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const ObjectState& object = objects[i];
     if (scene.objects[i].fixed || !object.seen) continue;
@@ -178,18 +198,21 @@ void Monitor::State::look_at_inputs() noexcept {
     report.oldest_pose_ns =
         any ? std::min(report.oldest_pose_ns, object.stamp_ns) : object.stamp_ns;
     any = true;
-    if (!object.known() || object.may_have_moved <= second) continue;
-    second = std::min(most, object.may_have_moved);
-    most = std::max(most, object.may_have_moved);
+    if (!object.known()) continue;
+    unseen.add(object.may_have_moved);
+    // Of a body that nobody can bound, short of a leap, no pair sleeps.
+    const double travel = object.travel_since();
+    const double bounded = travel < kInfinity ? travel : 0.0;
+    strayed.add(object.leapt ? kInfinity : rounded_up(object.unseen_since + bounded));
   }
-  most_unseen = rounded_up(most + second);
+  most_unseen = unseen.sum();
+  most_strayed = strayed.sum();
 }
 
 // Every pair that was looked at is summed up once.
 void Monitor::State::report_pairs() noexcept {
   closest = {};
   report.evaluated = 0;
-  zones.begin(report.zones);
   for (PairReport& published : report.pairs) {
     const std::uint32_t pair = published.pair;
     const PairSummary state = summary(pair);
@@ -217,27 +240,40 @@ void Monitor::State::report_counts() noexcept {
 }
 
 void Monitor::State::report_whole() noexcept {
-  if (triage.current().size() < triage.counts().known()) closest.add_rest(rest_lower());
-  zones.finish(objects, triage.pending() ? pending_lower() : kInfinity, report.cycle, report.zones);
+  if (triage.current().size() < triage.counts().known()) {
+    const Clearance others = rest();
+    closest.add_rest(others.now, others.since);
+  }
+  zones.finish(objects, pending(), report.cycle, report.zones);
 
   report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
+  report.lower_all_since = report.unknown > 0 ? -kInfinity : closest.lower_since();
   report.minimum_known = closest.known();
   report.minimum_proved = closest.proved() && report.stale == 0 && report.unknown == 0;
   report.minimum = closest.known() ? report_pair(closest.pair()) : unknown_report();
 }
 
-// Of the pairs that are asleep, or that wait to be looked at, for where their objects may be.
-double Monitor::State::rest_lower() const noexcept {
-  const double asleep = rounded_down(triage.horizon() - most_unseen);
-  return triage.pending() ? std::min(asleep, pending_lower()) : asleep;
+// How far apart the pairs that are asleep, or that wait to be looked at, are for where their
+// objects may be; no margins subtracted.
+Clearance Monitor::State::rest() const noexcept {
+  const Clearance waiting = pending();
+  const double asleep = triage.horizon();
+  return {.now = std::min(rounded_down(asleep - most_unseen), waiting.now),
+          .since = std::min(rounded_down(asleep - most_strayed), waiting.since)};
 }
 
-double Monitor::State::pending_lower() const noexcept {
-  return rounded_down(triage.pending_lower() - most_unseen);
+Clearance Monitor::State::pending() const noexcept {
+  if (!triage.pending()) return {};
+  const double lower = triage.pending_lower();
+  return {.now = rounded_down(lower - most_unseen), .since = rounded_down(lower - most_strayed)};
 }
 
 PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
-  return summary_of(pair, objects, parts, report.cycle, table);
+  PairSummary summary = summary_of(pair, objects, parts, report.cycle, table);
+  const PassageBounds passage = triage.passage(pair);
+  summary.lower_since = std::min(summary.lower, std::max(summary.lower_since, passage.lower));
+  summary.upper_since = std::min(summary.upper_since, passage.upper);
+  return summary;
 }
 
 PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {

@@ -1,5 +1,6 @@
 #include "monitor/object_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,7 +54,7 @@ ObjectState initial_state(const Object& object) noexcept {
   ObjectState state;
   if (!object.fixed) return state;
   state.seen = state.seen_last_tick = true;
-  state.pose = state.pose_last_tick = object.world_from_object;
+  state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
   state.age_ns = 0;
   state.twist_known = true;  // at rest
   return state;
@@ -87,10 +88,13 @@ void accept(const Object& object, const PoseSample& sample, ObjectState& state) 
 
 void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept {
   if (object.fixed || !state.seen) return;
+  const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
+  state.began = !(unseen_before < kInfinity);
   state.moved = !state.seen_last_tick || !same(state.pose_last_tick, state.pose);
   state.motion = state.moved && state.seen_last_tick
                      ? motion_between(state.pose_last_tick, state.pose)
                      : Motion{};
+  state.pose_before = state.began ? state.pose : state.pose_last_tick;
   state.pose_last_tick = state.pose;
   state.seen_last_tick = true;
 
@@ -98,11 +102,16 @@ void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noex
   state.late = state.age_ns > object.age_limit_ns;
   const double age_s = static_cast<double>(state.age_ns) * 1e-9;
   state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
+  state.unseen_since =
+      state.began ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }
 
 void travel(double reach, ObjectState& state) noexcept {
   state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
+  state.travelled_before = state.travelled;
+  state.leapt = false;
   if (!(state.travel < kJump)) {
+    state.leapt = !state.began && (reach < kInfinity || !(state.motion.shift < kJump));
     state.travel = kInfinity;
   } else if (state.travel > 0.0) {
     state.travelled = rounded_up(state.travelled + state.travel);

@@ -17,10 +17,14 @@ struct ObjectState {
   bool seen = false;            // some pose is in use; always so for a fixed object
   bool late = false;            // that pose is older than the object's limit
   bool moved = false;           // it is not that of the last tick
+  bool began = false;           // nothing was known of it at the last tick
+  bool leapt = false;           // something was, but that is farther off than anything moves
   double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
+  double unseen_since = 0.0;    // the larger of that at the last tick, if known then, and now, m
   // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
-  // and in all, leaving out the ticks in which nobody could. Both m, set by travel().
-  double travel = 0.0, travelled = 0.0;
+  // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
+  // m, set by travel().
+  double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
   // As sent; the orientation is normalised where it is used.
@@ -34,12 +38,16 @@ struct ObjectState {
   std::array<std::uint64_t, kRejects> rejected{};
 
   Pose pose_last_tick;
+  Pose pose_before;  // the one in use at the last tick; after `began`, now
   bool seen_last_tick = false;
 
   // Whether anything can be said about where it is now.
   [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
   // Whether `twist` is how it moves now: a late object may do anything since its stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
+
+  // As `travel`, since the last tick or since something has been known of it, m.
+  [[nodiscard]] double travel_since() const noexcept { return began ? 0.0 : travel; }
 };
 
 // Before any input: a fixed object stands where the scene says.

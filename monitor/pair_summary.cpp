@@ -1,6 +1,7 @@
 #include "monitor/pair_summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "monitor/closing.hpp"
@@ -24,6 +25,16 @@ PairStatus status_of(DistanceStatus status) noexcept {
       break;
   }
   return PairStatus::kLoose;
+}
+
+// Both ends of the way bound what lies between: a pair that has come `there` cannot have been
+// nearer than its distance before less `there`, nor than its distance now less what is left of
+// `travel`.
+double lower_between(double before, double now, double travel) noexcept {
+  if (!(travel < kInfinity)) return now < kInfinity ? -kInfinity : now;
+  const double halfway = 0.5 * (before + now - travel);
+  const double lower = std::max({halfway, before - travel, now - travel});
+  return std::min(now, rounded_down(lower - (std::abs(now) + travel) * 0x1p-50));
 }
 
 // The row with the smallest upper bound, evaluated ones before all others.
@@ -57,11 +68,23 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
 PairReport unknown_report() noexcept {
   PairReport report;
   report.status = PairStatus::kUnknown;
-  report.lower = -kInfinity;
+  report.lower = report.lower_since = -kInfinity;
   report.upper = kInfinity;
   report.distance = report.closing_speed = report.time_to_contact = kNan;
   report.witness_a = report.witness_b = report.normal = Vec3::Constant(kNan);
   return report;
+}
+
+double lower_since_last_tick(std::uint32_t pair, double lower,
+                             const std::vector<ObjectState>& objects, std::uint64_t cycle,
+                             const PairTable& table) noexcept {
+  const ObjectState& a = objects[table.object_a[pair]];
+  const ObjectState& b = objects[table.object_b[pair]];
+  if (a.began || b.began) return lower;
+  if (a.leapt || b.leapt) return -kInfinity;
+  const double travel = a.travel + b.travel;
+  if (travel == 0.0) return lower;
+  return lower_between(lower_last_tick(pair, objects, cycle, table), lower, rounded_up(travel));
 }
 
 PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
@@ -82,8 +105,15 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
     summary.lower = std::min(summary.lower, now.lower);
     summary.upper = std::min(summary.upper, now.upper);
   }
+  summary.lower_since = lower_since_last_tick(pair, summary.lower, objects, cycle, table);
+  summary.upper_since = summary.upper;
   summary.row = closest_row(first, end, table);
   summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
+  const double unseen_since = a.unseen_since + b.unseen_since;
+  if (unseen_since > 0.0) {
+    summary.lower_since = rounded_down(summary.lower_since - rounded_up(unseen_since));
+    summary.upper_since = rounded_up(summary.upper_since + rounded_up(unseen_since));
+  }
   if (!a.late && !b.late) {
     summary.status = evaluated_status(first, end, summary.row, cycle, table);
     return summary;
@@ -108,6 +138,7 @@ PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& 
 
   report.status = summary.status;
   report.lower = summary.lower;
+  report.lower_since = summary.lower_since;
   report.upper = summary.upper;
   const ClosestPoints& closest = table.closest[summary.row];
   report.part_a = parts[table.part_a[summary.row]].index_in_object;

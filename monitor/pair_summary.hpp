@@ -12,6 +12,9 @@ namespace clearance {
 struct PairSummary {
   PairStatus status = PairStatus::kUnknown;
   double lower = -kInfinity, upper = kInfinity;  // for where the objects may be now, m
+  // Since the last tick (PairReport::lower_since): never nearer than this, m.
+  double lower_since = -kInfinity;
+  double upper_since = kInfinity;  // at some instant no farther apart than this, m
   std::uint32_t row = 0;  // the closest part pair, as far as is known: smallest upper bound
   std::uint64_t evaluated_cycle = 0;  // of that row; 0: no row ever was
 };
@@ -20,6 +23,12 @@ struct PairSummary {
 [[nodiscard]] PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
                                      const std::vector<PlacedPart>& parts, std::uint64_t cycle,
                                      const PairTable& table) noexcept;
+
+// A known pair's distance since the last tick, from its bounds at both ends of the way; for the
+// poses in use, those of this tick telling `lower`, m.
+[[nodiscard]] double lower_since_last_tick(std::uint32_t pair, double lower,
+                                           const std::vector<ObjectState>& objects,
+                                           std::uint64_t cycle, const PairTable& table) noexcept;
 
 // What is published of it.
 [[nodiscard]] PairReport report_on(const Scene& scene, std::uint32_t pair,

@@ -49,6 +49,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   carried_at.resize(pairs());
   carried_cycle.assign(pairs(), 0);
   least_lower.assign(pairs(), -kInfinity);
+  lower_before.assign(pairs(), -kInfinity);
   evaluated_cycle.assign(pairs(), 0);
   lower.assign(rows(), -kInfinity);
   upper.assign(rows(), kInfinity);
@@ -64,6 +65,18 @@ double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objec
   const double sum = between(then.a, objects[table.object_a[pair]].travelled) +
                      between(then.b, objects[table.object_b[pair]].travelled);
   return rounded_up(sum);
+}
+
+double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                       std::uint64_t cycle, const PairTable& table) noexcept {
+  if (table.carried_cycle[pair] == cycle) return table.lower_before[pair];
+  const Travelled& then = table.carried_at[pair];
+  const double before_a = objects[table.object_a[pair]].travelled_before;
+  const double before_b = objects[table.object_b[pair]].travelled_before;
+  if (then.a > before_a || then.b > before_b) return -kInfinity;  // its bounds are of this tick
+  const double travelled = between(then.a, before_a) + between(then.b, before_b);
+  const double lower = table.least_lower[pair];
+  return travelled > 0.0 ? rounded_down(lower - rounded_up(travelled)) : lower;
 }
 
 RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<PlacedPart>& parts,
@@ -86,6 +99,7 @@ void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
            const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
   if (table.carried_cycle[pair] == cycle) return;
   const double travelled = travelled_since(pair, objects, table);
+  note_carried(pair, objects, cycle, table);
   double least = kInfinity;
   for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
     const RowBounds now = bounds_now(row, travelled, parts, table);
@@ -94,11 +108,11 @@ void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
     least = std::min(least, now.lower);
   }
   table.least_lower[pair] = least;
-  note_carried(pair, objects, cycle, table);
 }
 
 void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
                   PairTable& table) noexcept {
+  table.lower_before[pair] = lower_last_tick(pair, objects, cycle, table);
   table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
                             objects[table.object_b[pair]].travelled};
   table.carried_cycle[pair] = cycle;
@@ -126,7 +140,7 @@ void forget(std::uint32_t pair, PairTable& table) noexcept {
     table.lower[row] = -kInfinity;
     table.upper[row] = kInfinity;
   }
-  table.least_lower[pair] = -kInfinity;
+  table.least_lower[pair] = table.lower_before[pair] = -kInfinity;
 }
 
 }  // namespace clearance

@@ -39,6 +39,7 @@ struct PairTable {
   std::vector<Travelled> carried_at;           // when its rows were last brought up to date
   std::vector<std::uint64_t> carried_cycle;    // the tick in which that was; 0: never
   std::vector<double> least_lower;             // over its rows then, m
+  std::vector<double> lower_before;            // for the poses of the tick before that, m
   std::vector<std::uint64_t> evaluated_cycle;  // when all rows that matter last were; 0: never
 
   // By row.
@@ -63,6 +64,11 @@ struct PairTable {
 [[nodiscard]] double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
                                      const PairTable& table) noexcept;
 
+// The pair's distance at the tick before `cycle` was at least this, m, if its objects were known
+// then.
+[[nodiscard]] double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                     std::uint64_t cycle, const PairTable& table) noexcept;
+
 // A row's bounds for the poses in use, both objects having been seen: looser by what they have
 // travelled, but never looser than the parts' balls tell.
 [[nodiscard]] RowBounds bounds_now(std::uint32_t row, double travelled,
@@ -73,7 +79,8 @@ struct PairTable {
 void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
            const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
 
-// Takes note that a pair's rows are up to date, after its bounds were found anew.
+// Takes note that a pair's rows are up to date, before least_lower is: that is still known of the
+// pair as it was.
 void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
                   PairTable& table) noexcept;
 

@@ -108,8 +108,11 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
 }
 
 void place(const ObjectState& object, PlacedPart& part) noexcept {
-  if (!object.moved && part.placed) return;
-  compose_with_error(object.pose, part);
+  if (object.moved || !part.placed) place_at(object.pose, part);
+}
+
+void place_at(const Pose& world_from_object, PlacedPart& part) noexcept {
+  compose_with_error(world_from_object, part);
   part.world_from_part_rotation = part.world_from_part.orientation.normalized().toRotationMatrix();
   part.ball_in_world = place_ball(part);
   part.placed = true;

@@ -45,6 +45,9 @@ struct PlacedPart {
 // Puts a part where its object, which has been seen, is in this tick.
 void place(const ObjectState& object, PlacedPart& part) noexcept;
 
+// Puts a part where it is when its object has this pose.
+void place_at(const Pose& world_from_object, PlacedPart& part) noexcept;
+
 // How far this tick's poses of two parts, as the queries use them, can bring the parts nearer to
 // each other or farther apart than the exact poses do, m.
 [[nodiscard]] double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept;

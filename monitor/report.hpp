@@ -35,6 +35,12 @@ struct PairReport {
   // Signed, margins not subtracted. Distance, witnesses and normal are those of `evaluated_cycle`.
   double distance = 0.0;
   double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
+  // Holds at every instant since the last tick, for objects that went from the pose in use then to
+  // this one's straight and evenly, turning evenly about one axis, the shorter way (README.md,
+  // "Between two ticks"); less e for objects that strayed from that way by e, both together. A late
+  // object also strays by what it may have moved unseen. Of a pair that was not known at the last
+  // tick: as `lower`. -infinity when unknown, or when an object leapt 10 km.
+  double lower_since = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where there is none
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
@@ -50,13 +56,18 @@ struct PairReport {
 };
 
 struct ZoneReport {
-  // Some pair's lower bound less both margins is, or has been within the hysteresis, too small. An
-  // unknown pair's lower bound is -infinity: nobody can say that it is outside.
+  // Some pair's lower_since less both margins is, or has been within the hysteresis, too small: so
+  // what came too near and was gone again between two ticks has entered, for this tick. An unknown
+  // pair's lower bound is -infinity: nobody can say that it is outside.
   bool active = false;
-  bool proved = false;            // every pair was evaluated, or proved outside, this tick
-  bool changed = false;           // this tick
-  std::uint32_t pair = 0;         // the pair with the smallest (lower - margins)
-  double clearance = 0.0;         // that figure, m
+  // Every pair was proved outside since the last tick, or evaluated, or proved to have been inside.
+  bool proved = false;
+  bool changed = false;  // this tick
+  // The pair with the smallest (lower - margins); where all of those are outside and the zone is
+  // active for what was between the ticks, the one with the smallest (lower_since - margins).
+  std::uint32_t pair = 0;
+  double clearance = 0.0;         // the smallest (lower - margins), m
+  double clearance_since = 0.0;   // the smallest (lower_since - margins), m
   std::uint64_t since_cycle = 0;  // when `active` last changed; 0: never
 };
 
@@ -73,7 +84,8 @@ struct Report {
   // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and
   // no pair is unknown or stale.
   bool minimum_proved = false;
-  double lower_all = 0.0;  // every pair's true distance is at least this
+  double lower_all = 0.0;        // every pair's true distance is at least this
+  double lower_all_since = 0.0;  // and this at every instant since the last tick: see lower_since
   // Object pairs; each is one of the last four.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick

@@ -58,6 +58,7 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
                    std::max(kLeastWoken, kWokenPerQuery * scene.budget)),
       hulls_(scene, parts),
       queue_(scene.objects.size(), scene.pairs.size()),
+      passages_(std::min<std::size_t>(scene.pairs.size(), scene.budget)),
       pool_(pool),
       is_current_(table.pairs(), 0) {
   for (auto* list : {&awake_, &current_, &scratch_}) list->reserve(table.pairs());
@@ -66,7 +67,7 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
 std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
                                    std::span<const std::uint32_t> stirred,
                                    const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                                   PairTable& table) noexcept {
+                                   const ZoneRound& zones, PairTable& table) noexcept {
   Evaluation evaluation{objects, parts, cycle, table, budget_};
   begin(stirred, evaluation);
   asked_done_ = asked_.every_tick() && has_room(table);
@@ -77,12 +78,15 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
 
   evaluate_minimum(evaluation);
   evaluate_urgent(evaluation);
+  decide_passages(zones, evaluation);
   // Pairs asked for that outnumber the budget must not starve the rest.
   const bool covered = asked_.pairs().size() <= evaluation.queries_left;
   if (covered) evaluate_asked(evaluation);
   refresh_stalest(evaluation);
   if (!covered) evaluate_asked(evaluation);
   evaluate_restless(evaluation);
+  decide_passages(zones, evaluation);
+  passages_.finish();
   put_to_sleep(evaluation);
   find_oldest(evaluation);
   return budget_ - evaluation.queries_left;
@@ -91,6 +95,8 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
 void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : current_) is_current_[pair] = 0;
   current_.clear();
+  passages_.begin();
+  passages_decided_ = 0;
   counts_.update(evaluation.objects, stirred);
   for (const std::uint32_t object : counts_.regained()) queue_.regain(object);
   queue_.bring_back(broad_phase_, evaluation.objects, evaluation.table);
@@ -190,6 +196,14 @@ void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
       }
     }
     evaluate_stalest(scratch_, evaluation);
+  }
+}
+
+// Of those looked at since the last time. Of pairs that had their turn little may be known from the
+// last tick.
+void Triage::decide_passages(const ZoneRound& zones, Evaluation& evaluation) noexcept {
+  for (; passages_decided_ < current_.size(); ++passages_decided_) {
+    passages_.decide(current_[passages_decided_], zones, evaluation);
   }
 }
 

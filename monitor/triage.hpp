@@ -8,11 +8,12 @@
 //     bound; the horizon below which pairs are awake follows that;
 //  2. bins by the number of ticks until contact, or a zone's threshold, can be reached (urgency):
 //     the first bins every tick, nearest first;
-//  3. published pairs, if the budget covers them after all;
-//  4. a share of all pairs, asleep or not, the stalest first, so that each is refreshed in time: by
+//  3. pairs that are outside their zones, but may have been inside since the last tick (passages);
+//  4. published pairs, if the budget covers them after all;
+//  5. a share of all pairs, asleep or not, the stalest first, so that each is refreshed in time: by
 //     the balls around its objects where these prove it far, else by an evaluation; then published
 //     pairs in turn, where the budget does not cover them;
-//  5. pairs that a tighter bound may put to sleep.
+//  6. pairs that a tighter bound may put to sleep.
 // Order and outcome depend on the inputs only: no clock, no addresses, no number of workers.
 #pragma once
 
@@ -25,6 +26,7 @@
 #include "monitor/evaluation.hpp"
 #include "monitor/hull_query.hpp"
 #include "monitor/pair_counts.hpp"
+#include "monitor/passage_round.hpp"
 #include "monitor/refresh_queue.hpp"
 #include "monitor/urgency.hpp"
 #include "monitor/worker_pool.hpp"
@@ -39,11 +41,11 @@ class Triage {
 
   // Carries what has to be carried and evaluates what is due; returns how many queries that took,
   // at most Scene::budget. `stirred`: at least the objects that have moved, or of which something
-  // else is known than in the last tick.
+  // else is known than in the last tick. `zones` have begun this tick.
   std::uint32_t evaluate_due(const std::vector<ObjectState>& objects,
                              std::span<const std::uint32_t> stirred,
                              const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                             PairTable& table) noexcept;
+                             const ZoneRound& zones, PairTable& table) noexcept;
 
   // As of the last evaluate_due():
   // the pairs that were looked at, each once, and brought up to date. The others that are known are
@@ -55,6 +57,10 @@ class Triage {
   [[nodiscard]] bool pending() const noexcept { return broad_phase_.pending(); }
   [[nodiscard]] double pending_lower() const noexcept { return broad_phase_.pending_lower(); }
   [[nodiscard]] const PairCounts& counts() const noexcept { return counts_; }
+  // what looking closer at the time since the last tick has told of a pair;
+  [[nodiscard]] PassageBounds passage(std::uint32_t pair) const noexcept {
+    return passages_.of(pair);
+  }
   // the tick in which a pair was last refreshed: evaluated, or proved far by the balls or the hulls
   // around its objects; 0: never;
   [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair,
@@ -74,6 +80,7 @@ class Triage {
   void evaluate_minimum(Evaluation& evaluation) noexcept;
   void evaluate_closest(Evaluation& evaluation) noexcept;
   void evaluate_urgent(Evaluation& evaluation) noexcept;
+  void decide_passages(const ZoneRound& zones, Evaluation& evaluation) noexcept;
   void evaluate_asked(Evaluation& evaluation) noexcept;
   void refresh_stalest(Evaluation& evaluation) noexcept;
   template <class Enough>
@@ -100,6 +107,8 @@ class Triage {
   BroadPhase broad_phase_;
   HullQuery hulls_;
   RefreshQueue queue_;  // of the pairs that the broad phase is told of
+  PassageRound passages_;
+  std::size_t passages_decided_ = 0;  // of current_
   WorkerPool& pool_;
   double smallest_upper_ = kInfinity;  // of the pairs looked at, but for those in turn, m
   std::uint64_t oldest_refresh_ = 0;

@@ -41,6 +41,18 @@ void ZoneRound::begin(const std::vector<ZoneReport>& reports) noexcept {
   }
 }
 
+double ZoneRound::undecided(std::uint32_t pair, double lower, double lower_since) const noexcept {
+  const ObjectPair& objects = scene_.pairs[pair];
+  const double margins =
+      scene_.objects[objects.first].margin + scene_.objects[objects.second].margin;
+  double farthest = -kInfinity;
+  for (const std::uint32_t zone : zones_of(pair)) {
+    const double level = rounded_up(updates_[zone].outside_from() + rounded_up(margins));
+    if (lower_since < level && level <= lower) farthest = std::max(farthest, level);
+  }
+  return farthest;
+}
+
 void ZoneRound::add(std::uint32_t pair, const PairSummary& summary) noexcept {
   for (const std::uint32_t zone : zones_of(pair)) {
     updates_[zone].add(pair, summary);
@@ -48,18 +60,21 @@ void ZoneRound::add(std::uint32_t pair, const PairSummary& summary) noexcept {
   }
 }
 
-void ZoneRound::finish(const std::vector<ObjectState>& objects, double pending_lower,
+void ZoneRound::finish(const std::vector<ObjectState>& objects, const Clearance& pending,
                        std::uint64_t cycle, std::vector<ZoneReport>& reports) noexcept {
   for (std::size_t z = 0; z < updates_.size(); ++z) {
     ZoneUpdate& update = updates_[z];
     if (added_[z] < scene_.zones[z].pairs.size()) {
-      const double pending = rounded_down(pending_lower - most_margins_[z]);
-      update.add_rest(std::min(update.well_outside(), pending), reports[z].pair);
+      const auto least = [&](double lower) {
+        return std::min(update.well_outside(), rounded_down(lower - most_margins_[z]));
+      };
+      update.add_rest({.now = least(pending.now), .since = least(pending.since)}, reports[z].pair);
     }
-    const auto unknown =
-        std::find_if(members_[z].begin(), members_[z].end(),
-                     [&](const Member& member) { return !objects[member.object].known(); });
-    if (unknown != members_[z].end()) update.add_rest(-kInfinity, unknown->pair);
+    for (const Member& member : members_[z]) {
+      const ObjectState& object = objects[member.object];
+      if (!object.known()) update.add_rest({-kInfinity, -kInfinity}, member.pair);
+      if (object.leapt) update.add_rest({.since = -kInfinity}, member.pair);
+    }
     update.finish(cycle, reports[z]);
   }
 }

@@ -18,13 +18,19 @@ class ZoneRound {
   // Before the pairs: takes the last tick's reports.
   void begin(const std::vector<ZoneReport>& reports) noexcept;
 
+  [[nodiscard]] bool has(std::uint32_t pair) const noexcept { return !zones_of(pair).empty(); }
+  // The farthest distance below which the pair is inside a zone, of the zones that it is outside of
+  // with `lower`, m, but not with `lower_since`. -infinity: there is none.
+  [[nodiscard]] double undecided(std::uint32_t pair, double lower,
+                                 double lower_since) const noexcept;
+
   // A pair that is awake.
   void add(std::uint32_t pair, const PairSummary& summary) noexcept;
 
-  // What was not added: farther than its zones watch for, at least `pending_lower` apart where that
-  // is less, or unknown.
-  void finish(const std::vector<ObjectState>& objects, double pending_lower, std::uint64_t cycle,
-              std::vector<ZoneReport>& reports) noexcept;
+  // What was not added: farther than its zones watch for since the last tick, at least `pending`
+  // apart where that is less (margins not subtracted), or unknown.
+  void finish(const std::vector<ObjectState>& objects, const Clearance& pending,
+              std::uint64_t cycle, std::vector<ZoneReport>& reports) noexcept;
 
  private:
   // An object of a zone, and one of its pairs there.

@@ -7,8 +7,15 @@
 
 namespace clearance {
 
+// What is certain of a pair or of several, both margins subtracted, m.
+struct Clearance {
+  double now = kInfinity;
+  double since = kInfinity;  // at every instant since the last tick
+};
+
 // Takes a zone's report from the last tick to this one, pair by pair. Active when some pair's
-// clearance is below enter_below; no longer when every pair's is above leave_above.
+// clearance since the last tick is below enter_below; no longer when every pair's is above
+// leave_above.
 class ZoneUpdate {
  public:
   ZoneUpdate(const Scene& scene, const Zone& zone, const ZoneReport& before) noexcept;
@@ -16,11 +23,14 @@ class ZoneUpdate {
   // One of the zone's pairs.
   void add(std::uint32_t pair, const PairSummary& summary) noexcept;
 
-  // Pairs of the zone that need not be named one by one: each at least `clearance`, margins
-  // subtracted. `pair` is one of them.
-  void add_rest(double clearance, std::uint32_t pair) noexcept;
+  // Pairs of the zone that need not be named one by one: each has at least this clearance. `pair`
+  // is one of them.
+  void add_rest(const Clearance& clearance, std::uint32_t pair) noexcept;
 
   void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
+
+  // The least clearance that is outside, m.
+  [[nodiscard]] double outside_from() const noexcept;
 
   // The least that a pair has which is outside whatever the hysteresis says, m.
   [[nodiscard]] double well_outside() const noexcept;
@@ -28,14 +38,16 @@ class ZoneUpdate {
  private:
   // The pair could neither enter the zone nor keep it active.
   [[nodiscard]] bool outside(double clearance) const noexcept;
-  void take(double clearance, std::uint32_t pair) noexcept;
+  [[nodiscard]] bool proves(const Clearance& clearance, double margins,
+                            const PairSummary& summary) const noexcept;
+  void take(const Clearance& clearance, std::uint32_t pair) noexcept;
 
   const Scene* scene_;
   const Zone* zone_;
   bool was_active_;
-  bool any_ = false, proved_ = true;
-  double clearance_ = kInfinity;  // m
-  std::uint32_t pair_;
+  bool proved_ = true;
+  Clearance least_;
+  std::uint32_t pair_, pair_since_;  // whose clearances those are
 };
 
 }  // namespace clearance

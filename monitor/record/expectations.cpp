@@ -22,6 +22,18 @@ std::string zone_names(const Scene& scene) {
   return names.empty() ? "none" : one_of(names);
 }
 
+std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& report) {
+  const Zone& zone = scene.zones[id];
+  const bool between =
+      report.clearance >= zone.enter_below && report.clearance_since < zone.enter_below;
+  const std::string what = between
+                               ? " was between two ticks not proved to have more clearance than " +
+                                     metres(report.clearance_since)
+                               : " has a clearance of " + metres(report.clearance);
+  return "zone '" + zone.name + "' is active: " + pair_name(scene, report.pair) + what +
+         " (its lower bound less both margins)";
+}
+
 }  // namespace
 
 Expectations::Expectations(const Scene& scene, std::optional<double> min_distance,
@@ -54,9 +66,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
     const ZoneReport& zone = report.zones[expected.zone];
     if (expected.broken || !zone.active) continue;
     expected.broken = true;
-    broken.push_back("zone '" + scene_.zones[expected.zone].name +
-                     "' is active: " + pair_name(scene_, zone.pair) + " has a clearance of " +
-                     metres(zone.clearance) + " (its lower bound less both margins)");
+    broken.push_back(entered(scene_, expected.zone, zone));
   }
   return broken;
 }

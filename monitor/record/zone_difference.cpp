@@ -24,15 +24,21 @@ States changes_of(const States& recorded, std::uint32_t zone) {
   return changes;
 }
 
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
 bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
   return a.cycle == b.cycle && a.active == b.active && a.pair == b.pair &&
-         std::bit_cast<std::uint64_t>(a.clearance) == std::bit_cast<std::uint64_t>(b.clearance);
+         same_bits(a.clearance, b.clearance) && same_bits(a.clearance_since, b.clearance_since);
 }
 
 std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
-  std::array<char, 64> clearance;
-  std::snprintf(clearance.data(), clearance.size(), " at tick %llu, clearance %.17g m",
-                static_cast<unsigned long long>(state.cycle), state.clearance);
+  std::array<char, 120> clearance;
+  std::snprintf(clearance.data(), clearance.size(),
+                " at tick %llu, clearance %.17g m, since the last tick %.17g m",
+                static_cast<unsigned long long>(state.cycle), state.clearance,
+                state.clearance_since);
   const std::string pair = pair_name(scene, state.pair);
   return std::string(state.active ? "active" : "inactive") + clearance.data() + " (" + pair + ")";
 }

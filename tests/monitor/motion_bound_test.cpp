@@ -48,9 +48,25 @@ TEST(MotionBound, EqualPosesAreExactlyNoMotionEvenOfUnboundedBodies) {
   EXPECT_EQ(moved_at_most(motion_between(pose, pose), kInfinity), 0.0);
 }
 
-TEST(MotionBound, AHalfTurnMovesAPointByItsDiameterAtMost) {
+TEST(MotionBound, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
+  Random random(4);
+  for (int i = 0; i < 5000; ++i) {
+    const Pose before = random.pose(5.0);
+    const Vec3 axis = random.vec(1.0), shift = random.vec(1.0);
+    const double angle = random.in(-3.14, 3.14), part = random.in(0.0, 1.0);
+    Pose between = turned(before, axis, part * angle), after = turned(before, axis, angle);
+    between.position += part * shift;
+    after.position += shift;
+    const Vec3 x = random.vec(2.0);
+    const double there = (transform(between, x) - transform(before, x)).norm();
+    const double on = (transform(after, x) - transform(between, x)).norm();
+    ASSERT_LE(there + on, moved_at_most(motion_between(before, after), x.norm()) + 1e-13);
+  }
+}
+
+TEST(MotionBound, AHalfTurnIsTwoQuarterTurnsAtMost) {
   const Pose spun = turned({}, Vec3(1.0, -2.0, 0.5), M_PI);
-  EXPECT_EQ(motion_between({}, spun).chord, 2.0);
+  EXPECT_NEAR(motion_between({}, spun).turn, 2.0 * std::sqrt(2.0), 1e-12);
 }
 
 TEST(MotionBound, TheOppositeQuaternionIsTheSameOrientation) {

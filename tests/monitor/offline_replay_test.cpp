@@ -357,7 +357,9 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
     ASSERT_TRUE(csv.close());
     const std::string text = read_text(folder / "t.csv");
     EXPECT_EQ(1 + 5 * (all ? 3 : 2), std::ranges::count(text, '\n'));
-    EXPECT_THAT(text, HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,ax"));
+    EXPECT_THAT(
+        text,
+        HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax"));
     EXPECT_THAT(text, HasSubstr("\n1,1700000000000000000,hand,tool,converged,"));
   }
 }

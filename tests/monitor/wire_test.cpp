@@ -138,12 +138,14 @@ TYPED_TEST(EveryTopic, RefusesTrailingBytesOfAnotherLayout) {
 }
 
 TEST(Cdr, ReadsBigEndianWriters) {
-  // ZoneState {zone 2, "stop", active, not proved, pair 5, clearance 0.5, since 7, cycle 9, now 1}
+  // ZoneState {zone 2, "stop", active, not proved, pair 5, clearance 0.5 and
+  // 0.25, since 7, cycle 9, now 1}
   constexpr unsigned char kBytes[] = {
       0,    0,    0, 0,  // encapsulation: XCDR1, big-endian
       0,    0,    0, 2, 0, 0, 0, 5, 's', 't', 'o', 'p', 0, 1, 0, 0,  //
       0,    0,    0, 5, 0, 0, 0, 0,                                  // pair, padding to 8
       0x3f, 0xe0, 0, 0, 0, 0, 0, 0,                                  // 0.5
+      0x3f, 0xd0, 0, 0, 0, 0, 0, 0,                                  // 0.25
       0,    0,    0, 0, 0, 0, 0, 7, 0,   0,   0,   0,   0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0, 1};
   Sample<clearance_msg_ZoneState> zone;
   CdrDecoder decoder;
@@ -154,6 +156,7 @@ TEST(Cdr, ReadsBigEndianWriters) {
   EXPECT_FALSE(zone->proved);
   EXPECT_EQ(5u, zone->pair);
   EXPECT_EQ(0.5, zone->clearance);
+  EXPECT_EQ(0.25, zone->clearance_since);
   EXPECT_EQ(7u, zone->since_cycle);
   EXPECT_EQ(9u, zone->cycle);
   EXPECT_EQ(1, zone->now_ns);
@@ -246,12 +249,13 @@ TEST(Convert, ZoneStateCarriesNameAndTickAndCutsAnOverlongName) {
   report.cycle = 5;
   report.now_ns = 6;
   report.zones.resize(1);
-  report.zones[0] = {true, true, true, 2, 0.04, 3};
+  report.zones[0] = {true, true, true, 2, 0.04, 0.03, 3};
   Sample<clearance_msg_ZoneState> zone;
   to_wire(scene, report, 0, *zone);
   EXPECT_EQ(std::string(64, 'z'), zone->name);
   EXPECT_TRUE(zone->active);
   EXPECT_EQ(0.04, zone->clearance);
+  EXPECT_EQ(0.03, zone->clearance_since);
   EXPECT_EQ(3u, zone->since_cycle);
   EXPECT_EQ(5u, zone->cycle);
   EXPECT_EQ(6, zone->now_ns);

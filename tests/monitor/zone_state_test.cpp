@@ -21,8 +21,13 @@ class ZoneState : public testing::Test {
   // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
   const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
     ZoneUpdate update(scene_, zone_, report_);
-    update.add(0, {.status = status, .lower = first + 0.03, .upper = kInfinity});
-    update.add(1, {.status = status, .lower = second + 0.03, .upper = kInfinity});
+    return tick({.status = status, .lower = first + 0.03, .lower_since = first + 0.03},
+                {.status = status, .lower = second + 0.03, .lower_since = second + 0.03});
+  }
+  const ZoneReport& tick(const PairSummary& first, const PairSummary& second) {
+    ZoneUpdate update(scene_, zone_, report_);
+    update.add(0, first);
+    update.add(1, second);
     update.finish(++cycle_, report_);
     return report_;
   }
@@ -65,6 +70,22 @@ TEST_F(ZoneState, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEnter
   tick(0.05, 0.3);
   EXPECT_FALSE(tick(0.12, 0.3, PairStatus::kCarried).proved);
   EXPECT_TRUE(report_.active);
+}
+
+TEST_F(ZoneState, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
+  const auto status = PairStatus::kConverged;
+  const PairSummary nearest{.status = status, .lower = 0.23, .lower_since = 0.23};
+  PairSummary passing{.status = status, .lower = 0.53, .lower_since = 0.08, .upper_since = 0.09};
+  EXPECT_TRUE(tick(nearest, passing).active);
+  EXPECT_EQ(report_.pair, 1u);
+  EXPECT_NEAR(report_.clearance, 0.2, 1e-12) << "of the other pair, and of now";
+  EXPECT_NEAR(report_.clearance_since, 0.05, 1e-12);
+  EXPECT_TRUE(report_.proved) << "it was there";
+  EXPECT_FALSE(tick(nearest, nearest).active);
+  EXPECT_EQ(report_.pair, 0u);
+  passing.upper_since = 0.5;
+  EXPECT_TRUE(tick(nearest, passing).active);
+  EXPECT_FALSE(report_.proved) << "it may have been there";
 }
 
 TEST_F(ZoneState, AnUnknownPairIsNotOutside) {

@@ -113,7 +113,8 @@ void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
       .add(", ")
       .add(fmt::format("{} unknown", report.unknown),
            report.unknown != 0 ? Style::kWarning : Style::kPlain)
-      .add(fmt::format("; all at least {:.4f} m", report.lower_all));
+      .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m", report.lower_all,
+                       report.lower_all_since));
 }
 
 void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {

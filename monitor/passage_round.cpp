@@ -1,0 +1,67 @@
+#include "monitor/passage_round.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/pair_summary.hpp"
+#include "monitor/rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// At the rows that the objects' travel leaves open; no more of them once one was nearer.
+PassageBounds look_closer(std::uint32_t pair, double level, double travel,
+                          Evaluation& evaluation) noexcept {
+  const PairTable& table = evaluation.table;
+  PassageBounds all{.lower = kInfinity};
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    PassageBounds bounds{.lower = rounded_down(table.lower[row] - travel)};
+    const bool matters = bounds.lower < level && !(all.upper < level);
+    if (matters && evaluation.queries_left >= Passage::kLeastQueries) {
+      const PassageBounds found = Passage(row, evaluation).decide(level, evaluation);
+      bounds.lower = std::max(bounds.lower, found.lower);
+      bounds.upper = found.upper;
+    }
+    all.lower = std::min(all.lower, bounds.lower);
+    all.upper = std::min(all.upper, bounds.upper);
+  }
+  return all;
+}
+
+}  // namespace
+
+void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
+                          Evaluation& evaluation) noexcept {
+  const PairTable& table = evaluation.table;
+  const std::vector<ObjectState>& objects = evaluation.objects;
+  const ObjectState& a = objects[table.object_a[pair]];
+  const ObjectState& b = objects[table.object_b[pair]];
+  const double travel = rounded_up(a.travel + b.travel);
+  if (travel == 0.0 || a.began || b.began || a.leapt || b.leapt) return;
+  if (!zones.has(pair) || decided_.size() == decided_.capacity()) return;
+
+  const double unseen_now = rounded_up(a.may_have_moved + b.may_have_moved);
+  const double unseen = rounded_up(a.unseen_since + b.unseen_since);
+  const double now = rounded_down(table.least_lower[pair] - unseen_now);
+  const double known =
+      lower_since_last_tick(pair, table.least_lower[pair], objects, evaluation.cycle, table);
+  PassageBounds bounds{.lower = rounded_down(known - unseen)};
+  double level = zones.undecided(pair, now, bounds.lower);
+  if (!(level > -kInfinity)) return;
+  while (level > -kInfinity && evaluation.queries_left >= Passage::kLeastQueries) {
+    const PassageBounds found = look_closer(pair, rounded_up(level + unseen), travel, evaluation);
+    bounds.lower = std::max(bounds.lower, rounded_down(found.lower - unseen));
+    bounds.upper = std::min(bounds.upper, rounded_up(found.upper + unseen));
+    level = zones.undecided(pair, std::nextafter(level, -kInfinity), bounds.lower);
+  }
+  decided_.push_back({pair, bounds});
+}
+
+void PassageRound::finish() noexcept { std::ranges::sort(decided_, {}, &Decided::pair); }
+
+PassageBounds PassageRound::of(std::uint32_t pair) const noexcept {
+  const auto found = std::ranges::lower_bound(decided_, pair, {}, &Decided::pair);
+  return found == decided_.end() || found->pair != pair ? PassageBounds{} : found->bounds;
+}
+
+}  // namespace clearance

@@ -1,0 +1,38 @@
+// Which pairs are outside their zones now, but may have been inside between two ticks? Those are
+// looked at closer, until it is decided or the budget ends.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/passage.hpp"
+#include "monitor/zone_round.hpp"
+
+namespace clearance {
+
+class PassageRound {
+ public:
+  // `most`: pairs that a tick can look at closer.
+  explicit PassageRound(std::size_t most) { decided_.reserve(most); }
+
+  void begin() noexcept { decided_.clear(); }
+
+  // A known pair whose rows are up to date; once a tick.
+  void decide(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept;
+
+  // After the last of them.
+  void finish() noexcept;
+
+  // What looking closer has told about a pair this tick, for where its objects may have been.
+  // Nothing: infinite.
+  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept;
+
+ private:
+  struct Decided {
+    std::uint32_t pair;
+    PassageBounds bounds;
+  };
+  std::vector<Decided> decided_;  // by pair, once finished
+};
+
+}  // namespace clearance

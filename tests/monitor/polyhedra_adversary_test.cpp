@@ -1,0 +1,317 @@
+// The whole tick against brute force on cells of polyhedra, moved by somebody who means harm.
+//
+// Oracle: the core, asked cold about every pair in every tick and at instants between the ticks,
+// positions and orientations interpolated by Eigen; it knows nothing of broad phase, triage, motion
+// bounds and passages. Longer runs: CLEARANCE_TICKS=25000 monitor_tests
+// --gtest_filter='*PolyhedraAdv*' is a million ticks.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/distance.hpp"
+#include "monitor/monitor.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+using test::Random;
+
+constexpr double kRounding = 1e-11;  // of the oracle's own poses, m; 10 km from the origin 1e-8
+
+int ticks_of_a_run() {
+  const char* asked = std::getenv("CLEARANCE_TICKS");
+  return asked != nullptr ? std::atoi(asked) : 60;
+}
+
+enum class Style {
+  kCrawl,
+  kSpin,
+  kTeleport,
+  kDart,
+  kBullets,
+  kCrowd,
+  kAway,
+  kLate,
+  kAllLate,
+  kLost,
+};
+
+Part hull(Random& random, double size, const Pose& offset) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 12; ++i) points.push_back(random.vec(size));
+  return {"hull", test::made(polyhedron_from_vertices(points)), offset};
+}
+
+// Needles, plates, hulls and a body in two pieces, a floor; two zones.
+Scene polyhedra(Random& random) {
+  const Part needle = test::block({0.4, 0.004, 0.004}, random.pose(0.1));
+  std::vector<Object> objects;
+  for (int i = 0; i < 3; ++i) {
+    objects.push_back(test::moving("needle", {needle}));
+    objects.push_back(test::moving("hull", {hull(random, 0.15, random.pose(0.1))}));
+  }
+  objects.push_back(test::moving("two", {hull(random, 0.1, random.pose(0.3)), needle}));
+  objects.push_back(test::moving("plate", {test::block({0.3, 0.3, 0.002})}));
+  objects.push_back(test::fixed("floor", {test::floor()}, test::at(0, 0, -1.2)));
+  for (int i = 0; i < 3; ++i) {
+    objects.push_back(test::fixed("wall", {test::block({0.4, 0.4, 0.002})}, random.pose(1.0)));
+  }
+  for (std::size_t i = 0; i < objects.size(); i += 2) {
+    objects[i].max_speed = 3.0;
+    objects[i].margin = 0.005;
+  }
+  Scene scene = test::cell_of(std::move(objects));
+  scene.zones = {test::zone_over(scene, 0.0, 0.02), test::zone_over(scene, 0.2, 0.25)};
+  scene.zones[0].pairs.resize(40);
+  scene.zones[1].pairs.erase(scene.zones[1].pairs.begin(), scene.zones[1].pairs.begin() + 20);
+  for (std::size_t p = 0; p < scene.pairs.size(); p += 7) scene.pairs[p].publish = true;
+  return scene;
+}
+
+Pose between(const Pose& from, const Pose& to, double s) {
+  Pose pose;
+  pose.position = from.position + s * (to.position - from.position);
+  pose.orientation = from.orientation.normalized().slerp(s, to.orientation.normalized());
+  return pose;
+}
+
+// Where everything is, what the monitor is told of it, and what it must not deny.
+class Adversary {
+ public:
+  Adversary(const Scene& scene, Style style, std::uint64_t seed)
+      : scene_(scene), style_(style), random_(seed), objects_(scene.objects.size()) {
+    for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+      Told& object = objects_[i];
+      object.pose = scene.objects[i].fixed ? scene.objects[i].world_from_object : random_.pose(1.0);
+      object.sent = object.now = object.before = object.pose;
+      object.velocity = random_.vec(0.3);
+      object.known = scene.objects[i].fixed;
+    }
+  }
+
+  const Report& tick(Monitor& monitor) {
+    now_ns_ += kTick;
+    ++tick_;
+    std::vector<PoseSample> samples;
+    for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+      Told& object = objects_[i];
+      if (scene_.objects[i].fixed) continue;
+      move(object);
+      if (silent(object)) continue;
+      object.sent = object.pose;
+      samples.push_back(test::sample(i, object.pose, now_ns_));
+    }
+    const Report& report = monitor.tick(samples, now_ns_);
+    for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+      Told& object = objects_[i];
+      const InputAge age = monitor.input_age(i);
+      object.before = object.now;
+      object.now = age.stale ? object.pose : object.sent;
+      object.known_before = object.known;
+      object.known = age.age_ns >= 0 && !(age.stale && scene_.objects[i].max_speed == kInfinity);
+    }
+    return report;
+  }
+
+  // For the poses in use, and wherever late objects are; `s`: of the way since the last tick.
+  [[nodiscard]] double truth(std::uint32_t pair, double s = 1.0) const {
+    const auto& [a, b, publish] = scene_.pairs[pair];
+    const Pose pose_a = between(objects_[a].before, objects_[a].now, s);
+    const Pose pose_b = between(objects_[b].before, objects_[b].now, s);
+    double least = kInfinity;
+    for (const Part& part_a : scene_.objects[a].parts) {
+      for (const Part& part_b : scene_.objects[b].parts) {
+        TrackingState cold;
+        const DistanceResult found =
+            distance(part_a.shape, part_b.shape,
+                     relative_pose(compose(pose_a, part_a.object_from_part),
+                                   compose(pose_b, part_b.object_from_part)),
+                     cold);
+        least = std::min(least, found.distance);
+      }
+    }
+    return least;
+  }
+  // Something is claimed about the time since the last tick.
+  [[nodiscard]] bool has_way(std::uint32_t pair) const {
+    const auto& [a, b, publish] = scene_.pairs[pair];
+    return objects_[a].known_before && objects_[b].known_before && objects_[a].known &&
+           objects_[b].known;
+  }
+  [[nodiscard]] double rounding() const { return style_ == Style::kAway ? 1e-8 : kRounding; }
+  double anywhen() { return random_.in(0.0, 1.0); }
+
+ private:
+  struct Told {
+    Pose pose;         // where it is
+    Pose sent;         // as the monitor was told last
+    Pose now, before;  // what the monitor's bounds are about, in this tick and the last
+    Vec3 velocity;     // m a tick, of bullets
+    int silence = 0;   // ticks
+    bool known = false, known_before = false;
+  };
+
+  bool silent(Told& object) {
+    const double chance = random_.in(0, 1);
+    if (style_ == Style::kLost) return chance < 0.3;
+    if (style_ == Style::kAllLate) return tick_ % 90 > 30;
+    if (style_ != Style::kLate) return false;
+    if (object.silence == 0 && chance < 0.01) object.silence = static_cast<int>(random_.in(1, 80));
+    return object.silence > 0 && --object.silence > 0;
+  }
+
+  void move(Told& object) {
+    Pose& pose = object.pose;
+    switch (style_) {
+      case Style::kLate:  // every point keeps to 3 m/s
+      case Style::kAllLate:
+      case Style::kCrawl:
+        pose.position += random_.vec(0.0005);
+        turn(pose, 0.0005);
+        return;
+      case Style::kSpin:
+        turn(pose, 0.6);
+        return;
+      case Style::kTeleport:
+        pose.position += random_.vec(1e-4);
+        if (random_.in(0, 1) < 0.03) pose = random_.pose(1.0);
+        return;
+      case Style::kLost:
+      case Style::kDart:
+        if (tick_ % 20 > 16) pose.position += random_.vec(0.4);
+        keep_near(pose);
+        return;
+      case Style::kBullets:  // through everything, tumbling, and back
+        for (int i = 0; i < 3; ++i) {
+          if (std::abs(pose.position[i] + object.velocity[i]) > 1.5) object.velocity[i] *= -1.0;
+        }
+        pose.position += object.velocity;
+        turn(pose, 0.1);
+        return;
+      case Style::kCrowd: {
+        const Vec3 centre(std::sin(0.01 * tick_), std::cos(0.013 * tick_), 0.0);
+        pose.position += 0.02 * (centre - pose.position) + random_.vec(0.02);
+        turn(pose, 0.01);
+        return;
+      }
+      case Style::kAway:  // farther than what is added up, and back
+        pose.position += random_.vec(0.001);
+        if (random_.in(0, 1) < 0.01) pose = random_.pose(random_.in(0, 1) < 0.3 ? 3e4 : 1.0);
+        return;
+    }
+  }
+  static void keep_near(Pose& pose) { pose.position = pose.position.cwiseMax(-1.5).cwiseMin(1.5); }
+  void turn(Pose& pose, double angle) {
+    const Vec3 axis = random_.vec(1.0).normalized();
+    pose.orientation = Eigen::AngleAxisd(random_.in(-angle, angle), axis) * pose.orientation;
+    pose.orientation.normalize();
+  }
+
+  const Scene& scene_;
+  const Style style_;
+  Random random_;
+  std::vector<Told> objects_;
+  int tick_ = 0;
+  std::int64_t now_ns_ = kStart;
+};
+
+// Of one tick, as brute force finds it.
+struct Truth {
+  std::vector<double> now, since;  // by pair; since: at the least of the instants that were tried
+};
+
+constexpr int kInstants = 3;  // tried in between, for every pair
+
+Truth brute_force(const Scene& scene, Adversary& adversary) {
+  Truth truth;
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    truth.now.push_back(adversary.truth(p));
+    double since = truth.now.back();
+    for (int i = 0; i < kInstants && adversary.has_way(p); ++i) {
+      since = std::min(since, adversary.truth(p, adversary.anywhen()));
+    }
+    truth.since.push_back(since);
+  }
+  return truth;
+}
+
+void judge_zone(const Scene& scene, const Zone& zone, const ZoneReport& report,
+                const std::vector<double>& since, double rounding) {
+  double least = kInfinity;
+  std::uint32_t pair = 0;
+  for (const std::uint32_t p : zone.pairs) {
+    const ObjectPair& objects = scene.pairs[p];
+    const double margins =
+        scene.objects[objects.first].margin + scene.objects[objects.second].margin;
+    if (since[p] - margins < least) pair = p;
+    least = std::min(least, since[p] - margins);
+  }
+  const bool was_active = report.active != report.changed;
+  ASSERT_LE(report.clearance_since, least + rounding) << "pair " << pair;
+  ASSERT_LE(report.clearance_since, report.clearance);
+  ASSERT_TRUE(report.active || least + rounding >= zone.enter_below) << "pair " << pair;
+  ASSERT_TRUE(report.active || !was_active || least + rounding > zone.leave_above);
+}
+
+using StyleAndBudget = std::tuple<Style, std::uint32_t>;
+class PolyhedraAdversaries : public testing::TestWithParam<StyleAndBudget> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Monitor, PolyhedraAdversaries,
+    testing::Combine(testing::Values(Style::kCrawl, Style::kSpin, Style::kTeleport, Style::kDart,
+                                     Style::kBullets, Style::kCrowd, Style::kAway, Style::kLate,
+                                     Style::kAllLate, Style::kLost),
+                     testing::Values(0u, 3u, 40u, 400u)));
+
+TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoEntryMissed) {
+  const auto [style, budget] = GetParam();
+  Random random(171);
+  Scene scene = polyhedra(random);
+  scene.budget = budget;
+  Monitor monitor(scene);
+  Adversary adversary(scene, style, 172 + budget);
+  const int ticks = ticks_of_a_run();
+  for (int t = 0; t < ticks; ++t) {
+    const Report& report = adversary.tick(monitor);
+    ASSERT_LE(report.queries, budget);
+    const double rounding = adversary.rounding();
+    const Truth truth = brute_force(scene, adversary);
+    double least = kInfinity, least_since = kInfinity;
+    for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+      const PairReport pair = monitor.pair(p);
+      ASSERT_LE(pair.lower, truth.now[p] + rounding) << "tick " << t << " pair " << p;
+      ASSERT_GE(pair.upper, truth.now[p] - rounding) << "tick " << t << " pair " << p;
+      ASSERT_LE(pair.lower_since, truth.since[p] + rounding) << "tick " << t << " pair " << p;
+      ASSERT_LE(pair.lower_since, pair.lower) << "tick " << t << " pair " << p;
+      least = std::min(least, truth.now[p]);
+      least_since = std::min(least_since, truth.since[p]);
+      if (pair.status == PairStatus::kUnknown) continue;
+      ASSERT_LE(report.cycle - monitor.refreshed_cycle(p), report.oldest_evaluation_cycles)
+          << "tick " << t << " pair " << p;
+    }
+    ASSERT_LE(report.lower_all, least + rounding) << "tick " << t;
+    ASSERT_LE(report.lower_all_since, least_since + rounding) << "tick " << t;
+    if (report.minimum_proved) {
+      ASSERT_NEAR(truth.now[report.minimum.pair], least, rounding) << "tick " << t;
+      ASSERT_LE(report.minimum.lower, least + rounding) << "tick " << t;
+      ASSERT_GE(report.minimum.upper, least - rounding) << "tick " << t;
+    }
+    for (std::size_t z = 0; z < scene.zones.size(); ++z) {
+      judge_zone(scene, scene.zones[z], report.zones[z], truth.since, rounding);
+      if (HasFatalFailure()) FAIL() << "tick " << t << " zone " << z;
+    }
+    // 16 pairs a tick have their turn, and nobody was out of sight.
+    const bool all_seen = style != Style::kLate && style != Style::kAllLate;
+    if (budget == 400 && all_seen && t > 30) {
+      ASSERT_LE(report.oldest_evaluation_cycles, 16u) << "tick " << t;
+      // Leagues away, rounding is wider than what tells two pairs apart.
+      ASSERT_TRUE(report.minimum_proved || style == Style::kAway) << "tick " << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance
