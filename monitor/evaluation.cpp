@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "monitor/carried_direction.hpp"
 #include "monitor/rounding.hpp"
 
 namespace clearance {
@@ -30,6 +31,7 @@ void take_in(const DistanceResult& found, std::uint32_t row,
   closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
   closest.witness_b = turn * found.point_on_b + a.world_from_part.position;
   closest.normal = turn * found.normal;
+  table.gap[row] = kept_gap(bounds.lower, closest.normal, a, b);
   table.status[row] = found.status;
   table.row_evaluated_cycle[row] = evaluation.cycle;
 }

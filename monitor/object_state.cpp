@@ -94,8 +94,10 @@ void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noex
   state.motion = state.moved && state.seen_last_tick
                      ? motion_between(state.pose_last_tick, state.pose)
                      : Motion{};
-  state.pose_before = state.began ? state.pose : state.pose_last_tick;
-  state.pose_last_tick = state.pose;
+  if (state.moved) {
+    state.pose_before = state.began ? state.pose : state.pose_last_tick;
+    state.pose_last_tick = state.pose;
+  }
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
@@ -109,6 +111,7 @@ void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noex
 void travel(double reach, ObjectState& state) noexcept {
   state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
   state.travelled_before = state.travelled;
+  if (state.motion.turn > 0.0) state.turned = rounded_up(state.turned + state.motion.turn);
   state.leapt = false;
   if (!(state.travel < kJump)) {
     state.leapt = !state.began && (reach < kInfinity || !(state.motion.shift < kJump));

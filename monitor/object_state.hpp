@@ -25,6 +25,7 @@ struct ObjectState {
   // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
   // m, set by travel().
   double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
+  double turned = 0.0;       // Motion::turn, in all
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
   // As sent; the orientation is normalised where it is used.
@@ -38,7 +39,7 @@ struct ObjectState {
   std::array<std::uint64_t, kRejects> rejected{};
 
   Pose pose_last_tick;
-  Pose pose_before;  // the one in use at the last tick; after `began`, now
+  Pose pose_before;  // while it has moved: the one in use at the last tick; after `began`, now
   bool seen_last_tick = false;
 
   // Whether anything can be said about where it is now.

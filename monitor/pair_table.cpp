@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "monitor/carried_direction.hpp"
 #include "monitor/rounding.hpp"
 
 namespace clearance {
@@ -57,6 +58,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   status.assign(rows(), DistanceStatus::kIterationLimit);
   tracking.resize(rows());
   closest.resize(rows());
+  gap.assign(rows(), -kInfinity);
 }
 
 double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
@@ -86,8 +88,14 @@ RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<Plac
     bounds.lower = rounded_down(bounds.lower - travelled);
     bounds.upper = rounded_up(bounds.upper + travelled);
   }
-  const Ball& a = parts[table.part_a[row]].ball_in_world;
-  const Ball& b = parts[table.part_b[row]].ball_in_world;
+  const PlacedPart& part_a = parts[table.part_a[row]];
+  const PlacedPart& part_b = parts[table.part_b[row]];
+  if (travelled > 0.0 && table.gap[row] > -kInfinity) {
+    const Vec3& normal = table.closest[row].normal;
+    bounds.lower = std::max(bounds.lower, lower_along(normal, table.gap[row], part_a, part_b));
+  }
+  const Ball& a = part_a.ball_in_world;
+  const Ball& b = part_b.ball_in_world;
   const double centres = (a.centre - b.centre).norm();
   const double radii = rounded_up(a.radius + b.radius);
   bounds.lower = std::max(bounds.lower, rounded_down(rounded_down(centres) - radii));

@@ -49,6 +49,7 @@ struct PairTable {
   std::vector<DistanceStatus> status;
   std::vector<TrackingState> tracking;
   std::vector<ClosestPoints> closest;
+  std::vector<double> gap;  // kept_gap() of the last evaluation along closest.normal, m
 
   PairTable(const Scene& scene, const std::vector<PlacedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {

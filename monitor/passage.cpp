@@ -13,13 +13,6 @@ constexpr double kDirectionError = 0x1p-44;
 // Nearer instants tell nothing apart.
 constexpr double kLeastGap = 0x1p-20;
 
-// A direction that separates bounded bodies, or one from a half-space, does so wherever they are
-// shifted, by as much more or less as they are shifted along it. Other unbounded bodies may be
-// separated by a direction of which rounding leaves open how far along their rays it holds.
-bool keeps_direction(const ConvexPolyhedron& shape) noexcept {
-  return shape.bounded() || (shape.facets.size() == 1 && shape.edges.empty());
-}
-
 struct Meeting {
   double value, at;
 };
@@ -44,7 +37,7 @@ Passage::Passage(std::uint32_t row, const Evaluation& evaluation) noexcept
       b_(evaluation.parts[evaluation.table.part_b[row]]),
       way_a_(way_of(evaluation.objects[a_.object])),
       way_b_(way_of(evaluation.objects[b_.object])),
-      directed_(keeps_direction(*a_.shape) && keeps_direction(*b_.shape)),
+      directed_(a_.keeps_direction && b_.keeps_direction),
       tracking_(evaluation.table.tracking[row]) {
   place_on_way(way_a_, 0.0, a_);
   place_on_way(way_b_, 0.0, b_);

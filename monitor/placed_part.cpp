@@ -43,6 +43,10 @@ double reach_of(const Part& part) noexcept {
   return rounded_up(rounded_up(farthest) + error + part.shape.position_error + part.shape.radius);
 }
 
+bool is_half_space(const ConvexPolyhedron& shape) noexcept {
+  return shape.facets.size() == 1 && shape.edges.empty();
+}
+
 double extent_of(const ConvexPolyhedron& shape) noexcept {
   if (!shape.bounded()) return kInfinity;
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
@@ -101,6 +105,7 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
       placed.reach = reach_of(part);
       placed.extent = extent_of(part.shape);
       placed.ball_in_part = ball_around(part.shape);
+      placed.keeps_direction = part.shape.bounded() || is_half_space(part.shape);
       parts.push_back(placed);
     }
   }
@@ -108,6 +113,7 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
 }
 
 void place(const ObjectState& object, PlacedPart& part) noexcept {
+  part.turned = object.turned;
   if (object.moved || !part.placed) place_at(object.pose, part);
 }
 

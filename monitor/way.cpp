@@ -39,7 +39,7 @@ double swept(double turn, double arm) noexcept { return turn == 0.0 ? 0.0 : turn
 }  // namespace
 
 Way way_of(const ObjectState& object) noexcept {
-  Way way{.from = object.pose_before, .to = object.pose};
+  Way way{.from = object.moved ? object.pose_before : object.pose, .to = object.pose};
   way.shift = way.to.position - way.from.position;
   way.turns = way.from.orientation.coeffs() != way.to.orientation.coeffs();
   if (way.turns) way.turn = turn_between(way.from.orientation, way.to.orientation);

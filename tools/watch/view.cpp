@@ -92,7 +92,8 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add(feed.pair_name(pair), Style::kBold);
   lines.emplace_back(width)
       .add("          ")
-      .add(fmt::format("in [{:.6f}, {:.6f}] m  ", pair.lower, pair.upper))
+      .add(fmt::format("in [{:.6f}, {:.6f}] m, since the last tick at least {:.6f} m  ", pair.lower,
+                       pair.upper, pair.lower_since))
       .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
            report.minimum_proved ? Style::kGood : Style::kWarning);
   lines.emplace_back(width).add(fmt::format("          {}  normal ({:.2f} {:.2f} {:.2f})",
