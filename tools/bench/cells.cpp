@@ -80,9 +80,8 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
     for (std::size_t i = 0; i < load.pairs.size(); ++i) {
       const PartPair& p = load.pairs[i];
       if (!tracked) tracking[i] = {};
-      const DistanceResult r =
-          distance(*p.a, *p.b, compose(world[p.object_a], p.a_in_object),
-                   compose(world[p.object_b], p.b_in_object), tracking[i]);
+      const DistanceResult r = distance(*p.a, *p.b, compose(world[p.object_a], p.a_in_object),
+                                        compose(world[p.object_b], p.b_in_object), tracking[i]);
       sum += r.distance;
       widest = std::max(widest, r.upper - r.lower);
       iterations += r.iterations;
