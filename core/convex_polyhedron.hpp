@@ -85,7 +85,7 @@ class VectorRows {
   }
 
  private:
-  static constexpr std::size_t kOverrun = 3;
+  static constexpr std::size_t kOverrun = 4;  // a point has a row of none
   std::vector<double> values_;
   std::int32_t numbers_;
 };
