@@ -3,6 +3,7 @@
 #include "core/alpha.hpp"
 #include "core/delta.hpp"
 #include "core/lambda.hpp"
+#include "core/rounding.hpp"
 #include "core/towards.hpp"
 
 namespace clearance {
@@ -15,10 +16,6 @@ constexpr std::uint16_t kIterations = 1000;
 // than the rounding of their ends, as where four planes all but meet. More of them mean that
 // rounding goes in circles.
 constexpr int kLevelSteps = 12;
-
-// Unit vectors are off by 2^-52 and their products by three roundings more: a rate beyond this, per
-// unit of distance, has the sign that exact arithmetic would give.
-constexpr double kCertain = 0x1p-50;
 
 // One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
 // that would take them apart, both go the same fraction of the way, which cannot. True if nothing
@@ -70,7 +67,7 @@ Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
     }
     const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
     const double best = std::max(of_a.rate, of_b.rate);
-    if (best * best < kCertain * kCertain * distance2) return ended(Dqp3End::kOptimal);
+    if (best * best < kCertainRate * kCertainRate * distance2) return ended(Dqp3End::kOptimal);
     if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
     if (of_a.rate >= of_b.rate) {
       release(a, of_a);

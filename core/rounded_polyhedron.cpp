@@ -4,6 +4,7 @@
 
 #include "core/exact_rounding.hpp"
 #include "core/exact_solid.hpp"
+#include "core/rounding.hpp"
 #include "core/walking_tables.hpp"
 
 namespace clearance::exact {
@@ -11,8 +12,6 @@ namespace {
 
 // Beyond this, squares and products of the queries could overflow.
 constexpr double kLargestCoordinate = 1e100;
-constexpr double kHalfUlp = 0x1p-53;
-
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Rounds the solid's numbers and keeps the largest error made.
@@ -44,7 +43,7 @@ class Rounder {
  private:
   static double error_of(const Rounded& rounded) {
     if (rounded.exact) return 0.0;
-    return std::max(kHalfUlp * std::abs(rounded.value), std::numeric_limits<double>::min());
+    return std::max(kUlp * std::abs(rounded.value), std::numeric_limits<double>::min());
   }
 
   void note(double error) { error_ = std::max(error_, error); }

@@ -44,7 +44,8 @@ inline constexpr double kTightUlps[] = {8.0, 64.0, 320.0};
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
 
-// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give.
+// Unit vectors are off by 2^-52 and their products by three roundings more: a rate of approach
+// beyond this, per unit length, has the sign that exact arithmetic would give.
 inline constexpr double kCertainRate = 0x1p-50;
 
 // Edges nearer to parallel than this (the sine's square) have no direction across both that is

@@ -7,6 +7,7 @@
 
 #include "config/cell_file.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/shared/simulated_samples.hpp"
 
 namespace clearance {
 namespace {
@@ -44,15 +45,9 @@ TEST(WarehouseCell, NothingTouches) {
     Scene scene = scene_of({.objects = objects});
     scene.budget = 1'000'000;  // everything, in every tick
     Monitor monitor(scene);
-    std::vector<PoseAt> poses;
-    std::vector<PoseSample> samples;
     for (int step = 0; step < 300; ++step) {
       const std::int64_t now = 1'000'000'000 + 100'000'000 * static_cast<std::int64_t>(step);
-      poses_at(scene, 0.1 * step, poses);
-      samples.clear();
-      for (const PoseAt& at : poses) {
-        samples.push_back({at.object, now, at.world_from_object, at.twist, true});
-      }
+      const std::vector<PoseSample> samples = simulated_samples(scene, 0.1 * step, now);
       const Report& report = monitor.tick(samples, now);
       ASSERT_TRUE(report.minimum_proved);
       ASSERT_GT(report.minimum.lower, 0.01)

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "monitor/monitor.hpp"
+#include "tests/monitor/adversary_motion.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -87,11 +88,10 @@ class Adversary {
     switch (style_) {
       case Style::kLate:  // every point keeps to 3 m/s
       case Style::kCrawl:
-        pose.position += random_.vec(0.0005);
-        turn(pose, 0.0005);
+        test::crawl(random_, pose);
         return;
       case Style::kSpin:
-        turn(pose, 0.3);
+        test::turn(random_, 0.3, pose);
         return;
       case Style::kTeleport:
         pose.position += random_.vec(1e-4);
@@ -100,23 +100,15 @@ class Adversary {
       case Style::kDart:
         if (tick_ % 60 > 56) pose.position += random_.vec(0.3);
         return;
-      case Style::kCrowd: {
-        const Vec3 centre(std::sin(0.01 * tick_), std::cos(0.013 * tick_), 0.0);
-        pose.position += 0.02 * (centre - pose.position) + random_.vec(0.02);
+      case Style::kCrowd:
+        test::crowd(random_, tick_, pose);
         return;
-      }
       case Style::kAway:  // farther than what is added up, and back
         pose.position += random_.vec(0.001);
         if (random_.in(0, 1) < 0.003) pose = random_.pose(random_.in(0, 1) < 0.3 ? 3e4 : 2.5);
         return;
     }
   }
-  void turn(Pose& pose, double angle) {
-    const Vec3 axis = random_.vec(1.0).normalized();
-    pose.orientation = Eigen::AngleAxisd(random_.in(-angle, angle), axis) * pose.orientation;
-    pose.orientation.normalize();
-  }
-
   const Scene& scene_;
   const Style style_;
   Random random_;

@@ -13,6 +13,7 @@
 #include "monitor/monitor.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/simulated_samples.hpp"
 
 namespace clearance {
 namespace {
@@ -111,17 +112,11 @@ TEST(HullQuery, HidesNoPairThatMattersFromTheTick) {
   everything.evaluate_all = true;
   everything.budget = 1'000'000;
   Monitor monitor(scene), judge(everything);
-  std::vector<PoseAt> poses;
-  std::vector<PoseSample> samples;
   int proved = 0;
   constexpr int kTicks = 3000;
   for (int t = 0; t < kTicks; ++t) {
     const std::int64_t now = 1'000'000'000 + 1'000'000 * static_cast<std::int64_t>(t);
-    poses_at(scene, 0.01 * t, poses);
-    samples.clear();
-    for (const PoseAt& at : poses) {
-      samples.push_back({at.object, now, at.world_from_object, at.twist, true});
-    }
+    const std::vector<PoseSample> samples = simulated_samples(scene, 0.01 * t, now);
     const Report& report = monitor.tick(samples, now);
     const Report& truth = judge.tick(samples, now);
     ASSERT_TRUE(truth.minimum_proved);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/monitor.hpp"
+#include "tests/monitor/adversary_motion.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -15,13 +16,6 @@ namespace {
 using test::kStart;
 using test::kTick;
 using test::Random;
-
-Pose between(const Pose& from, const Pose& to, double s) {
-  Pose pose;
-  pose.position = from.position + s * (to.position - from.position);
-  pose.orientation = from.orientation.normalized().slerp(s, to.orientation.normalized());
-  return pose;
-}
 
 struct Motion2 {
   std::array<Pose, 2> from, to;
@@ -59,7 +53,7 @@ class TwoOnTheirWay {
   [[nodiscard]] DistanceResult truth(double s) const {
     std::array<Pose, 2> world_from_part;
     for (std::size_t i = 0; i < 2; ++i) {
-      world_from_part[i] = compose(between(motion_.from[i], motion_.to[i], s),
+      world_from_part[i] = compose(test::between(motion_.from[i], motion_.to[i], s),
                                    scene_.objects[i].parts[0].object_from_part);
     }
     TrackingState cold;

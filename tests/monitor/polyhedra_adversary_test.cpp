@@ -10,6 +10,8 @@
 
 #include "core/distance.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/monitor/adversary_motion.hpp"
+#include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -71,13 +73,6 @@ Scene polyhedra(Random& random) {
   return scene;
 }
 
-Pose between(const Pose& from, const Pose& to, double s) {
-  Pose pose;
-  pose.position = from.position + s * (to.position - from.position);
-  pose.orientation = from.orientation.normalized().slerp(s, to.orientation.normalized());
-  return pose;
-}
-
 // Where everything is, what the monitor is told of it, and what it must not deny.
 class Adversary {
  public:
@@ -119,21 +114,9 @@ class Adversary {
   // For the poses in use, and wherever late objects are; `s`: of the way since the last tick.
   [[nodiscard]] double truth(std::uint32_t pair, double s = 1.0) const {
     const auto& [a, b, publish] = scene_.pairs[pair];
-    const Pose pose_a = between(objects_[a].before, objects_[a].now, s);
-    const Pose pose_b = between(objects_[b].before, objects_[b].now, s);
-    double least = kInfinity;
-    for (const Part& part_a : scene_.objects[a].parts) {
-      for (const Part& part_b : scene_.objects[b].parts) {
-        TrackingState cold;
-        const DistanceResult found =
-            distance(part_a.shape, part_b.shape,
-                     relative_pose(compose(pose_a, part_a.object_from_part),
-                                   compose(pose_b, part_b.object_from_part)),
-                     cold);
-        least = std::min(least, found.distance);
-      }
-    }
-    return least;
+    const Pose pose_a = test::between(objects_[a].before, objects_[a].now, s);
+    const Pose pose_b = test::between(objects_[b].before, objects_[b].now, s);
+    return test::fresh_distance(scene_.objects[a], pose_a, scene_.objects[b], pose_b).upper;
   }
   // Something is claimed about the time since the last tick.
   [[nodiscard]] bool has_way(std::uint32_t pair) const {
@@ -169,11 +152,10 @@ class Adversary {
       case Style::kLate:  // every point keeps to 3 m/s
       case Style::kAllLate:
       case Style::kCrawl:
-        pose.position += random_.vec(0.0005);
-        turn(pose, 0.0005);
+        test::crawl(random_, pose);
         return;
       case Style::kSpin:
-        turn(pose, 0.6);
+        test::turn(random_, 0.6, pose);
         return;
       case Style::kTeleport:
         pose.position += random_.vec(1e-4);
@@ -189,14 +171,12 @@ class Adversary {
           if (std::abs(pose.position[i] + object.velocity[i]) > 1.5) object.velocity[i] *= -1.0;
         }
         pose.position += object.velocity;
-        turn(pose, 0.1);
+        test::turn(random_, 0.1, pose);
         return;
-      case Style::kCrowd: {
-        const Vec3 centre(std::sin(0.01 * tick_), std::cos(0.013 * tick_), 0.0);
-        pose.position += 0.02 * (centre - pose.position) + random_.vec(0.02);
-        turn(pose, 0.01);
+      case Style::kCrowd:
+        test::crowd(random_, tick_, pose);
+        test::turn(random_, 0.01, pose);
         return;
-      }
       case Style::kAway:  // farther than what is added up, and back
         pose.position += random_.vec(0.001);
         if (random_.in(0, 1) < 0.01) pose = random_.pose(random_.in(0, 1) < 0.3 ? 3e4 : 1.0);
@@ -204,12 +184,6 @@ class Adversary {
     }
   }
   static void keep_near(Pose& pose) { pose.position = pose.position.cwiseMax(-1.5).cwiseMin(1.5); }
-  void turn(Pose& pose, double angle) {
-    const Vec3 axis = random_.vec(1.0).normalized();
-    pose.orientation = Eigen::AngleAxisd(random_.in(-angle, angle), axis) * pose.orientation;
-    pose.orientation.normalize();
-  }
-
   const Scene& scene_;
   const Style style_;
   Random random_;

@@ -9,8 +9,8 @@
 
 #include "config/cell_file.hpp"
 #include "config/simulation.hpp"
-#include "core/distance.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -22,29 +22,6 @@ Scene shipped(const std::string& name) {
   const CellResult read =
       read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells" / name);
   return std::get<Scene>(read);
-}
-
-// Distance of two objects, as far as the queries can tell.
-struct Truth {
-  double lower = kInfinity, upper = kInfinity;
-};
-
-Truth fresh_distance(const Object& a, const Pose& world_from_a, const Object& b,
-                     const Pose& world_from_b) {
-  Truth truth;
-  for (const Part& part_a : a.parts) {
-    for (const Part& part_b : b.parts) {
-      TrackingState cold;
-      const DistanceResult found =
-          distance(part_a.shape, part_b.shape,
-                   relative_pose(compose(world_from_a, part_a.object_from_part),
-                                 compose(world_from_b, part_b.object_from_part)),
-                   cold);
-      truth.lower = std::min(truth.lower, found.lower);
-      truth.upper = std::min(truth.upper, found.upper);
-    }
-  }
-  return truth;
 }
 
 // A cell in its simulated motion.
@@ -68,10 +45,10 @@ class SimulatedCell {
     return monitor.tick(samples_, now_ns);
   }
 
-  [[nodiscard]] Truth truth(std::uint32_t pair) const {
+  [[nodiscard]] test::DistanceBounds truth(std::uint32_t pair) const {
     const auto [a, b, publish] = scene.pairs[pair];
-    return fresh_distance(scene.objects[a], world_from_object_[a], scene.objects[b],
-                          world_from_object_[b]);
+    return test::fresh_distance(scene.objects[a], world_from_object_[a], scene.objects[b],
+                                world_from_object_[b]);
   }
 
   Scene scene;
@@ -105,9 +82,9 @@ TEST_P(ShippedCells, EveryBoundHoldsAndTheProvedMinimumIsTheMinimum) {
     const Report& report = cell.tick(monitor, run.step_s * t);
     ASSERT_LE(report.queries, run.budget);
     ASSERT_EQ(report.evaluated + report.carried, report.pairs_total);
-    Truth least;
+    test::DistanceBounds least;
     for (std::uint32_t p = 0; p < report.pairs_total; ++p) {
-      const Truth truth = cell.truth(p);
+      const test::DistanceBounds truth = cell.truth(p);
       const PairReport pair = monitor.pair(p);
       ASSERT_LE(pair.lower, truth.upper) << "tick " << t << " pair " << p;
       ASSERT_GE(pair.upper, truth.lower) << "tick " << t << " pair " << p;

@@ -63,6 +63,17 @@ class RecordReplay : public testing::Test {
   int replay(const std::vector<std::string>& more) {
     return run(kReplay, with({"--offline", "--cell", path("cell.yaml"), path("run.mcap")}, more));
   }
+  // run.mcap over DDS into again.mcap, slowly.
+  void publish_and_record_again(std::string& recorder_output) {
+    const auto where = dds_arguments(own_dds());
+    ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
+    ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
+        << output;
+    recorder.signal(SIGINT);
+    const int status = recorder.wait();
+    recorder_output = recorder.output();
+    ASSERT_EQ(0, status) << recorder_output;
+  }
 
   ScratchFolder folder;
   std::string output;
@@ -203,12 +214,8 @@ TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {
 TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
   const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
   record_run(scene, folder / "run.mcap", {.ticks = 300, .nearest = 0.05});
-  const auto where = dds_arguments(own_dds());
-  ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
-  ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
-      << output;
-  recorder.signal(SIGINT);
-  ASSERT_EQ(0, recorder.wait()) << recorder.output();
+  std::string recorder_output;
+  ASSERT_NO_FATAL_FAILURE(publish_and_record_again(recorder_output));
   const std::vector<Kept> sent = messages_of(folder / "run.mcap");
   const std::vector<Kept> received = messages_of(folder / "again.mcap");
   for (const TopicKind kind : {TopicKind::kCatalogue, TopicKind::kPoses, TopicKind::kDistances}) {
@@ -245,16 +252,11 @@ TEST_F(RecordReplay, RecorderTellsWhatItMissed) {
   };
   std::erase_if(messages, is_lost);
   write_messages(folder / "run.mcap", messages);
-  const auto where = dds_arguments(own_dds());
-  ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
-  ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
-      << output;
-  recorder.signal(SIGINT);
-  ASSERT_EQ(0, recorder.wait()) << recorder.output();
-  EXPECT_THAT(recorder.output(), HasSubstr("2 of the batches of source 'arm' are missing"));
-  EXPECT_THAT(recorder.output(),
-              HasSubstr("the first of the batches of source 'cell' here is number 2"));
-  EXPECT_THAT(recorder.output(), HasSubstr("1 of the reports of the daemon are missing"));
+  std::string recorder;
+  ASSERT_NO_FATAL_FAILURE(publish_and_record_again(recorder));
+  EXPECT_THAT(recorder, HasSubstr("2 of the batches of source 'arm' are missing"));
+  EXPECT_THAT(recorder, HasSubstr("the first of the batches of source 'cell' here is number 2"));
+  EXPECT_THAT(recorder, HasSubstr("1 of the reports of the daemon are missing"));
 }
 
 TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {

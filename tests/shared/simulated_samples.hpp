@@ -1,0 +1,22 @@
+// What a simulated cell's moving objects would report.
+#pragma once
+
+#include <vector>
+
+#include "config/simulation.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance {
+
+[[nodiscard]] inline std::vector<PoseSample> simulated_samples(const Scene& scene, double t_s,
+                                                               std::int64_t now_ns) {
+  std::vector<PoseAt> poses;
+  poses_at(scene, t_s, poses);
+  std::vector<PoseSample> samples;
+  for (const PoseAt& at : poses) {
+    samples.push_back({at.object, now_ns, at.world_from_object, at.twist, true});
+  }
+  return samples;
+}
+
+}  // namespace clearance
