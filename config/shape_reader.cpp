@@ -11,8 +11,8 @@
 namespace clearance {
 namespace {
 
-const std::array<std::string, 7> kKinds = {"box",        "sphere",     "capsule", "prism",
-                                           "polyhedron", "half_space", "mesh"};
+const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
+                                                "polyhedron", "half_space", "mesh"};
 
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
@@ -42,11 +42,11 @@ std::vector<Vec3> scaled(const std::vector<Vec3>& vertices, const Vec3& scale, L
 
 }  // namespace
 
-std::span<const std::string> ShapeReader::kinds() { return kKinds; }
+std::span<const std::string> ShapeReader::kinds() { return kShapeKinds; }
 
 std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
   NamedShape found{"", nullptr, {}};
-  for (const std::string& kind : kKinds) {
+  for (const std::string& kind : kShapeKinds) {
     const YamlNode* node = map.optional(kind);
     if (node == nullptr) continue;
     if (found.node != nullptr) {
@@ -59,7 +59,7 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   }
   if (found.node == nullptr) {
     if (map.is_map()) {
-      quantities_.complaints().add(at, "found no shape; expected one of " + one_of(kKinds));
+      quantities_.complaints().add(at, "found no shape; expected one of " + one_of(kShapeKinds));
     }
     return std::nullopt;
   }

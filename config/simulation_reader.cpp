@@ -13,7 +13,7 @@
 namespace clearance {
 namespace {
 
-const std::array<std::string, 2> kKinds = {"revolute", "prismatic"};
+const std::array<std::string, 2> kJointKinds = {"revolute", "prismatic"};
 constexpr Range kFrequencies{.least = 0.0, .most = 10'000.0};  // Hz
 
 class SimulationReader {
@@ -77,7 +77,7 @@ JointKind SimulationReader::read_kind(MapReader& map) const {
   const auto text = read_text(*node, "revolute or prismatic", complaints_);
   if (text && *text != "revolute" && *text != "prismatic") {
     complaints_.add(*node, "found " + describe(*node) + "; expected revolute or prismatic" +
-                               did_you_mean(*text, kKinds));
+                               did_you_mean(*text, kJointKinds));
   }
   return text == "prismatic" ? JointKind::kPrismatic : JointKind::kRevolute;
 }

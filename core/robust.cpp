@@ -13,7 +13,7 @@ namespace {
 constexpr int kRounds = 64;
 
 // A point of the difference body B - A, and where it comes from.
-struct Corner {
+struct DifferenceCorner {
   Vec3 a;     // in frame A
   WideVec b;  // in frame A
   WideVec difference;
@@ -26,12 +26,12 @@ class DifferenceBody {
       : a_(a), b_(b), pose_(a_from_b), p_(p) {}
 
   // The corner farthest along -n, n in the common frame.
-  [[nodiscard]] Corner corner(const Vec3& n) const noexcept {
+  [[nodiscard]] DifferenceCorner corner(const Vec3& n) const noexcept {
     return make(farthest(a_.body(), n, p_.reach_a),
                 farthest(b_.body(), -b_.direction_to_own(n), p_.reach_b));
   }
-  [[nodiscard]] Corner make(const Vec3& a, const Vec3& b_own) const noexcept {
-    Corner c{a, to_common(b_own), {}};
+  [[nodiscard]] DifferenceCorner make(const Vec3& a, const Vec3& b_own) const noexcept {
+    DifferenceCorner c{a, to_common(b_own), {}};
     c.difference = c.b - wide(c.a);
     return c;
   }
@@ -68,7 +68,7 @@ class DifferenceBody {
 class Simplex {
  public:
   // False when it is there already: no progress is possible.
-  bool add(const Corner& c) noexcept {
+  bool add(const DifferenceCorner& c) noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
       if (corners_[i].a == c.a && narrow(corners_[i].b) == narrow(c.b)) return false;
     }
@@ -102,7 +102,7 @@ class Simplex {
   }
 
  private:
-  std::array<Corner, 4> corners_;
+  std::array<DifferenceCorner, 4> corners_;
   std::array<double, 4> weights_{};
   std::size_t size_ = 0;
 };
@@ -133,7 +133,7 @@ void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     }
     improve_upper(r, simplex, length, p.slack);
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
-    const Corner next = body.corner(n);
+    const DifferenceCorner next = body.corner(n);
     const double level = separation({n}, a, b, p);
     if (level - p.slack > r.lower) {
       r.lower = level - p.slack;

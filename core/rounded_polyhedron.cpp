@@ -12,7 +12,6 @@ namespace {
 
 // Beyond this, squares and products of the queries could overflow.
 constexpr double kLargestCoordinate = 1e100;
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Rounds the solid's numbers and keeps the largest error made.
 class Rounder {

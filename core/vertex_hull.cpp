@@ -9,8 +9,6 @@
 namespace clearance::exact {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 Integer4 homogeneous(const Vec3& point) {
   return integer_multiple({point.x(), point.y(), point.z(), 1.0});
 }

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {
@@ -30,7 +31,6 @@ ConvexPolyhedron half_space(const Vec3& normal, double offset) {
   return made(polyhedron_from_halfspaces({&row, 1}));
 }
 
-Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
 Pose turned(const Vec3& position, double angle, const Vec3& axis) {
   return {position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))};
 }

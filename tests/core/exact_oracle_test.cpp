@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using oracle::Body;
 using oracle::exact_distance;
 using oracle::ExactDistance;
-
-Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
 
 Body corners(const Body& box) {
   const Vec3 h(box.rows[0].offset, box.rows[2].offset, box.rows[4].offset);

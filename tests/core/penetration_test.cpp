@@ -10,13 +10,12 @@
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {
 
 using oracle::Body;
-
-Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
 
 ConvexPolyhedron made(const Body& body) { return std::get<ConvexPolyhedron>(model(body)); }
 ConvexPolyhedron cube() { return made(hard::box(Vec3::Constant(0.5))); }

@@ -25,7 +25,7 @@ std::vector<Integer> to_integers(const Vector& v) {
   return out;
 }
 
-Integer dot(const std::vector<Integer>& a, const std::vector<Integer>& b) {
+Integer row_product(const std::vector<Integer>& a, const std::vector<Integer>& b) {
   Integer sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
@@ -131,9 +131,9 @@ struct ExactBody::Program {
     int best = -1;
     Integer best_slack, best_slope;
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const Integer slope = dot(rows[r].normal, edge);
+      const Integer slope = row_product(rows[r].normal, edge);
       if (slope <= 0) continue;
-      const Integer slack = rows[r].offset * from.w - dot(rows[r].normal, from.x);
+      const Integer slack = rows[r].offset * from.w - row_product(rows[r].normal, from.x);
       if (best < 0 || slack * best_slope < best_slack * slope) {
         best = static_cast<int>(r);
         best_slack = slack;
@@ -159,7 +159,7 @@ struct ExactBody::Program {
     Vector x = start;
     for (std::size_t r = 0; r < rows.size() && basis.size() < dimension; ++r) {
       const Point at = homogeneous(x);
-      if (dot(rows[r].normal, at.x) == rows[r].offset * at.w) hold(static_cast<int>(r));
+      if (row_product(rows[r].normal, at.x) == rows[r].offset * at.w) hold(static_cast<int>(r));
     }
     while (basis.size() < dimension) {
       const Point at = homogeneous(x);
@@ -170,8 +170,8 @@ struct ExactBody::Program {
         row = blocking_row(at, edge);
       }
       if (row < 0) throw std::logic_error("the body contains a line");
-      const Rational step(rows[row].offset * at.w - dot(rows[row].normal, at.x),
-                          at.w * dot(rows[row].normal, edge));
+      const Rational step(rows[row].offset * at.w - row_product(rows[row].normal, at.x),
+                          at.w * row_product(rows[row].normal, edge));
       for (std::size_t k = 0; k < dimension; ++k) x[k] += step * Rational(edge[k]);
       for (Rational& v : x) v.canonicalize();
       hold(row);
@@ -308,7 +308,7 @@ Support ExactBody::support(const IntegerVec& direction) {
 bool ExactBody::rows_hold_at(const RationalVec& x) const {
   const Point at = Program::homogeneous({x[0], x[1], x[2]});
   for (std::size_t r = 0; r < given_rows_; ++r) {
-    if (dot(rows_[r].normal, at.x) > rows_[r].offset * at.w) return false;
+    if (row_product(rows_[r].normal, at.x) > rows_[r].offset * at.w) return false;
   }
   return true;
 }

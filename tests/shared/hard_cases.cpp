@@ -286,26 +286,26 @@ HardCase odd_poses(Random& random) {
   return c;
 }
 
-constexpr CaseFamily kFamilies[] = {{"random", random_pair},
-                                    {"facet_balls", facet_balls},
-                                    {"parallel_boxes", parallel_boxes},
-                                    {"edges", edges},
-                                    {"slivers", slivers},
-                                    {"tips", tips},
-                                    {"badly_described", badly_described},
-                                    {"sizes", sizes},
-                                    {"far_from_origin", far_from_origin},
-                                    {"lattices", lattices},
-                                    {"deep", deep},
-                                    {"floors", floors},
-                                    {"without_end", without_end},
-                                    {"links", links},
-                                    {"round", round_bodies},
-                                    {"odd_poses", odd_poses}};
+constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
+                                        {"facet_balls", facet_balls},
+                                        {"parallel_boxes", parallel_boxes},
+                                        {"edges", edges},
+                                        {"slivers", slivers},
+                                        {"tips", tips},
+                                        {"badly_described", badly_described},
+                                        {"sizes", sizes},
+                                        {"far_from_origin", far_from_origin},
+                                        {"lattices", lattices},
+                                        {"deep", deep},
+                                        {"floors", floors},
+                                        {"without_end", without_end},
+                                        {"links", links},
+                                        {"round", round_bodies},
+                                        {"odd_poses", odd_poses}};
 
 }  // namespace
 
-std::span<const CaseFamily> case_families() { return kFamilies; }
+std::span<const CaseFamily> case_families() { return kCaseFamilies; }
 
 void set_gap(HardCase& c, double gap) {
   const oracle::ExactDistance now = oracle::exact_distance(c.a, c.pose_a, c.b, c.pose_b);

@@ -148,7 +148,7 @@ HardMotion roll(Random& random, int steps) {
   return m;
 }
 
-constexpr MotionFamily kFamilies[] = {
+constexpr MotionFamily kMotionFamilies[] = {
     {"flyby", flyby},           {"spin", spin},       {"teleport", teleport}, {"slide", slide},
     {"stationary", stationary}, {"through", through}, {"graze", graze},       {"roll", roll}};
 
@@ -202,7 +202,7 @@ std::string json_head(const std::string& id, const std::string& family, const st
 
 }  // namespace
 
-std::span<const MotionFamily> motion_families() { return kFamilies; }
+std::span<const MotionFamily> motion_families() { return kMotionFamilies; }
 
 std::string json_line(const std::string& id, const std::string& family, const HardCase& c) {
   std::ostringstream out;
