@@ -17,7 +17,7 @@ const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "cap
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
 // What a shape has to be like so that it can be one, beyond what is checked number by number.
-std::string expectation(const std::string& kind) {
+std::string solid_needs(const std::string& kind) {
   if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
   if (kind == "prism") {
     return "a base of at least three corners, not all in one line, and a lower z below the upper";
@@ -68,7 +68,7 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   if (const auto* error = std::get_if<ShapeError>(&*result)) {
     quantities_.complaints().add(*found.node,
                                  "found a " + found.kind + " that is not a solid convex body (" +
-                                     error->reason + "); expected " + expectation(found.kind));
+                                     error->reason + "); expected " + solid_needs(found.kind));
     return std::nullopt;
   }
   found.shape = std::get<ConvexPolyhedron>(std::move(*result));

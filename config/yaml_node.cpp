@@ -47,7 +47,7 @@ const std::array<Remedy, 13> kRemedies{{
     {kTooManyCopies, "fewer"},
 }};
 
-std::string expectation(const std::string& fault) {
+std::string remedy_for(const std::string& fault) {
   const auto remedy = std::ranges::find_if(
       kRemedies, [&](const Remedy& known) { return fault.starts_with(known.fault); });
   return remedy != kRemedies.end() ? remedy->expected
@@ -169,7 +169,7 @@ std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
   } catch (const YAML::Exception& fault) {
     return YamlFault{
         std::max(fault.mark.line, 0) + 1, std::max(fault.mark.column, 0) + 1,
-        "found what is not valid YAML (" + fault.msg + "); expected " + expectation(fault.msg)};
+        "found what is not valid YAML (" + fault.msg + "); expected " + remedy_for(fault.msg)};
   }
 }
 

@@ -4,19 +4,17 @@
 #include <cmath>
 
 #include "core/support.hpp"
+#include "core/towards.hpp"
 
 namespace clearance {
 namespace {
 
+using towards_case::across;
+using towards_case::along;
+
 // A separating direction shorter than this (as a cross product of unit vectors) says nothing of its
 // own.
 constexpr double kTooParallel = 1e-6;
-
-Vec3 edge_direction(const ActiveSide& s) noexcept {
-  return s.direction_to_common(s.edge().direction);
-}
-
-Vec3 across(const Vec3& v, const Vec3& e) noexcept { return v - v.dot(e) * e; }
 
 void add_direction(Separators& list, const Vec3& v) noexcept {
   const double length = v.norm();
@@ -32,8 +30,8 @@ void add_facets(Separators& list, const ActiveSide& a, const ActiveSide& b) noex
 
 void add_crossing_edges(Separators& list, const ActiveSide& a, const ActiveSide& b,
                         const Vec3& between) noexcept {
-  const Vec3 e = edge_direction(a);
-  const Vec3 f = across(edge_direction(b), e);
+  const Vec3 e = along(a);
+  const Vec3 f = across(along(b), e);
   const double sine = f.norm();
   if (sine > kTooParallel) {
     const Vec3 n = e.cross(across(Vec3(f / sine), e));
@@ -102,9 +100,9 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
     add_crossing_edges(list, a, b, between);
   }
   Vec3 direct = between;
-  if (a.feature() == Feature::kEdge) direct = across(direct, edge_direction(a));
-  if (b.feature() == Feature::kEdge) direct = across(direct, edge_direction(b));
-  if (a.feature() == Feature::kEdge) direct = across(direct, edge_direction(a));
+  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
+  if (b.feature() == Feature::kEdge) direct = across(direct, along(b));
+  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
   add_direction(list, direct);
   return list;
 }

@@ -7,9 +7,7 @@
 namespace clearance::exact {
 namespace {
 
-constexpr int kNobody = -1;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+constexpr int kNoConstraint = -1;
 
 DepthConstraint from_row(const HalfSpace& row, int unit_exponent) {
   const Vec3& n = row.normal;
@@ -126,7 +124,7 @@ void DepthProgramme::solve(const Integer& box) {
     basis_.invert(constraints_);
     solution_ = basis_.solution(constraints_);
     const int entering = violated(iteration > kPatience);
-    if (entering == kNobody) return;
+    if (entering == kNoConstraint) return;
     pivot(entering);
   }
 }
@@ -151,8 +149,8 @@ std::optional<NoInterior> DepthProgramme::proof() const {
   return result;
 }
 
-// A constraint that the present solution violates (the most violated one, or the first), or kNobody
-// when all hold exactly.
+// A constraint that the present solution violates (the most violated one, or the first), or
+// kNoConstraint when all hold exactly.
 int DepthProgramme::violated(bool first) const {
   std::array<double, 4> x{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -163,7 +161,7 @@ int DepthProgramme::violated(bool first) const {
   // Rounding of x, products and sums: at most 8 * 2^-53 of the sum of absolute values; 16 to be
   // safe.
   constexpr double kErrorUnit = 0x1p-49;
-  int worst = kNobody;
+  int worst = kNoConstraint;
   double largest = 0.0;
   std::vector<int> unsure;
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
@@ -184,9 +182,9 @@ int DepthProgramme::violated(bool first) const {
       if (first) break;
     }
   }
-  if (worst != kNobody && !first) return worst;
+  if (worst != kNoConstraint && !first) return worst;
   for (const int c : unsure) {
-    if (worst != kNobody && c > worst) break;
+    if (worst != kNoConstraint && c > worst) break;
     const DepthConstraint& constraint = constraints_[at(c)];
     if (dot(constraint.a, solution_) > constraint.b * basis_.determinant) return c;
   }
@@ -198,10 +196,10 @@ int DepthProgramme::violated(bool first) const {
 void DepthProgramme::pivot(int entering) {
   const Integer4 multiplier = basis_.combination({0, 0, 0, 1});
   const Integer4 share = basis_.combination(constraints_[at(entering)].a);
-  int leaving = kNobody;
+  int leaving = kNoConstraint;
   for (int i = 0; i < 4; ++i) {
     if (sgn(share[at(i)]) <= 0 || constraints_[at(basis_.member[at(i)])].fixed) continue;
-    if (leaving == kNobody) {
+    if (leaving == kNoConstraint) {
       leaving = i;
       continue;
     }

@@ -5,12 +5,12 @@
 #include <variant>
 #include <vector>
 
+#include "core/rounding.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr double kRoundedUp = 1.0 + 0x1p-50;
 constexpr int kMostRounds = 12;
 
 // The bodies' hull: a body is the hull of balls of these radii around its anchors.

@@ -51,8 +51,6 @@ class HullBuilder {
   }
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
   // The first four points of the order that span space.
   bool make_simplex(const std::vector<int>& order) {
     std::array<int, 4> corner{order.empty() ? 0 : order[0], kNobody, kNobody, kNobody};

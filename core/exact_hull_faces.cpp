@@ -7,8 +7,6 @@ namespace {
 
 constexpr int kUnknown = -1;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // A directed edge: corner[side] -> corner[side + 1] of a triangle.
 struct HalfEdge {
   int triangle;

@@ -11,9 +11,6 @@
 
 namespace clearance::exact {
 
-// Facets, nodes and edges are numbered by int, containers by std::size_t.
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // Runs from node `start` to node `end` (kNone: to infinity) with facet `left` on its left as seen
 // from outside. A full line passes through `start`, which is then no vertex.
 struct SolidEdge {

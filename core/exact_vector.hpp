@@ -17,6 +17,9 @@ using Integer = mpz_class;
 using Integer3 = std::array<Integer, 3>;
 using Integer4 = std::array<Integer, 4>;
 
+// Points, planes and what is made of them are numbered by int, containers by std::size_t.
+[[nodiscard]] inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 // A positive power of two times `values`, which must be finite.
 [[nodiscard]] Integer4 integer_multiple(const std::array<double, 4>& values);
 

@@ -11,12 +11,12 @@
 
 #include "core/distance.hpp"
 #include "core/enclosing_polyhedron.hpp"
+#include "core/rounding.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr double kRoundedUp = 1.0 + 0x1p-50;
 constexpr double kCloseEnough = 0.98;
 constexpr int kMostSplits = 400;
 
@@ -36,7 +36,7 @@ double least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-struct Corner {
+struct MeasuredCorner {
   Vec3 position;
   std::vector<double> from;  // each body, m
 };
@@ -73,7 +73,7 @@ class Search {
     return static_cast<int>(corners_.size()) - 1;
   }
 
-  [[nodiscard]] const Corner& at(int corner) const {
+  [[nodiscard]] const MeasuredCorner& at(int corner) const {
     return corners_[static_cast<std::size_t>(corner)];
   }
 
@@ -119,7 +119,7 @@ class Search {
   }
 
   std::span<const PlacedShape> bodies_;
-  std::vector<Corner> corners_;
+  std::vector<MeasuredCorner> corners_;
   std::priority_queue<Tetrahedron> open_;
   double reached_ = -kInfinity;  // some point of the model is about this far from the nearest, m
 };

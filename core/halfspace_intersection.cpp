@@ -12,8 +12,6 @@
 namespace clearance::exact {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 Integer4 exact_plane(const HalfSpace& row) {
   return integer_multiple({row.normal.x(), row.normal.y(), row.normal.z(), row.offset});
 }

@@ -19,9 +19,9 @@ struct DifferenceCorner {
   WideVec difference;
 };
 
-class DifferenceBody {
+class WideDifference {
  public:
-  DifferenceBody(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+  WideDifference(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
                  const Precision& p) noexcept
       : a_(a), b_(b), pose_(a_from_b), p_(p) {}
 
@@ -120,7 +120,7 @@ void improve_upper(DistanceResult& r, const Simplex& simplex, double length,
 
 void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
             const Precision& p, DistanceResult& r) noexcept {
-  const DifferenceBody body(a, b, a_from_b, p);
+  const WideDifference body(a, b, a_from_b, p);
   Simplex simplex;
   simplex.add(body.make(a.own(), b.own()));
   for (int round = 0; round < kRounds; ++round) {

@@ -7,6 +7,9 @@ namespace clearance {
 // Half an ulp of 1: the largest relative error of one rounding.
 inline constexpr double kUlp = 0x1p-53;
 
+// Times this, a result of up to six roundings is no longer below the exact one.
+inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
+
 // Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
 // s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is
 // off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most 3: 9. The

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kGroup = 256;
 
 bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
-  return table.first_row[pair + 1] - table.first_row[pair] == 1;
+  return table.rows_of(pair) == 1;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     if (!scene.pairs[p].publish && !scene.evaluate_all) continue;
     pairs_.push_back(p);
-    rows_ += table.first_row[p + 1] - table.first_row[p];
+    rows_ += table.rows_of(p);
   }
   every_tick_ = rows_ <= scene.budget;
   if (every_tick_) form_groups(parts, table);

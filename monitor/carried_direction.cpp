@@ -11,8 +11,8 @@ namespace {
 // that take part.
 constexpr double kError = 0x1p-46;
 
-double swept(const PlacedPart& part) noexcept {
-  return part.turned == 0.0 ? 0.0 : part.turned * part.ball_in_part.radius;
+double swept_by(const PlacedPart& part) noexcept {
+  return swept(part.turned, part.ball_in_part.radius);
 }
 
 double sizes(const PlacedPart& a, const PlacedPart& b) noexcept {
@@ -25,7 +25,7 @@ double sizes(const PlacedPart& a, const PlacedPart& b) noexcept {
 double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
                 const PlacedPart& b) noexcept {
   if (!a.keeps_direction || !b.keeps_direction) return -kInfinity;
-  const double turned = swept(a) + swept(b);
+  const double turned = swept_by(a) + swept_by(b);
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
   const double gap = lower - middles + turned - kError * (std::abs(lower) + turned + sizes(a, b));
   return std::isfinite(gap) ? gap : -kInfinity;
@@ -33,7 +33,7 @@ double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
 
 double lower_along(const Vec3& normal, double kept_gap, const PlacedPart& a,
                    const PlacedPart& b) noexcept {
-  const double turned = swept(a) + swept(b);
+  const double turned = swept_by(a) + swept_by(b);
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
   return kept_gap + middles - turned - kError * (std::abs(kept_gap) + turned + sizes(a, b));
 }

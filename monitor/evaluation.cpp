@@ -120,7 +120,7 @@ void settle(std::uint32_t pair, const DistanceResult& found,
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   if (evaluation.queries_left == 0) return;
-  if (table.first_row[pair + 1] - table.first_row[pair] > 1) {
+  if (table.rows_of(pair) > 1) {
     evaluate_rows(pair, evaluation);
     return;
   }

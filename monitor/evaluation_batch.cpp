@@ -9,15 +9,11 @@ namespace {
 // 50 us, is not worth sharing.
 constexpr WorkerPool::Share kShare{.claim = 16, .least = 128};
 
-std::uint32_t rows_of(std::uint32_t pair, const PairTable& table) noexcept {
-  return table.first_row[pair + 1] - table.first_row[pair];
-}
-
 // How many of them the budget covers whatever each of them takes.
 std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& evaluation) noexcept {
   std::uint32_t left = evaluation.queries_left;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::uint32_t rows = rows_of(pairs[i], evaluation.table);
+    const std::uint32_t rows = evaluation.table.rows_of(pairs[i]);
     if (rows > left) return i;
     left -= rows;
   }
@@ -27,7 +23,7 @@ std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& eval
 // That evaluating a pair once took.
 std::uint32_t queries_of(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
-  if (rows_of(pair, table) == 1) return 1;
+  if (table.rows_of(pair) == 1) return 1;
   const auto first = table.row_evaluated_cycle.begin() + table.first_row[pair];
   const auto end = table.row_evaluated_cycle.begin() + table.first_row[pair + 1];
   return static_cast<std::uint32_t>(std::count(first, end, evaluation.cycle));

@@ -29,7 +29,7 @@ HullQuery::HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts)
 }
 
 bool HullQuery::possible(std::uint32_t pair, const PairTable& table) const noexcept {
-  if (table.first_row[pair + 1] - table.first_row[pair] < 2) return false;
+  if (table.rows_of(pair) < 2) return false;
   const auto has_model = [this](std::uint32_t object) {
     return hulls_[object] != nullptr || only_part_[object] != kNoModel;
   };

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "monitor/closing.hpp"
 #include "monitor/rounding.hpp"
 
 namespace clearance {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 PairStatus status_of(DistanceStatus status) noexcept {
   switch (status) {

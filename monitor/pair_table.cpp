@@ -1,15 +1,12 @@
 #include "monitor/pair_table.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "monitor/carried_direction.hpp"
 #include "monitor/rounding.hpp"
 
 namespace clearance {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // How far an object has come between two readings. Equal readings mean that it has not moved.
 double between(double before, double now) noexcept {

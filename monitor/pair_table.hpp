@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -14,6 +15,9 @@
 #include "monitor/placed_part.hpp"
 
 namespace clearance {
+
+// Of what is not known.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Where two parts were found to be closest, in the world. NaN until evaluated.
 struct ClosestPoints {
@@ -54,6 +58,9 @@ struct PairTable {
   PairTable(const Scene& scene, const std::vector<PlacedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {
     return static_cast<std::uint32_t>(object_a.size());
+  }
+  [[nodiscard]] std::uint32_t rows_of(std::uint32_t pair) const noexcept {
+    return first_row[pair + 1] - first_row[pair];
   }
   [[nodiscard]] std::uint32_t rows() const noexcept {
     return static_cast<std::uint32_t>(part_a.size());

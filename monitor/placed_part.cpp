@@ -11,9 +11,6 @@ bool is_identity(const Eigen::Quaterniond& q) noexcept {
   return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
 }
 
-// 0 * infinity means 0 here: what does not turn does not move its far points either.
-double swept(double turn, double arm) noexcept { return turn == 0.0 ? 0.0 : turn * arm; }
-
 Ball ball_around(const ConvexPolyhedron& shape) noexcept {
   Vec3 low = Vec3::Constant(kInfinity);
   Vec3 high = Vec3::Constant(-kInfinity);

@@ -13,4 +13,10 @@ namespace clearance {
 [[nodiscard]] inline double rounded_up(double x) noexcept { return x + std::abs(x) * 0x1p-50; }
 [[nodiscard]] inline double rounded_down(double x) noexcept { return x - std::abs(x) * 0x1p-50; }
 
+// How far a turn, rad, moves what is `arm` away. 0 * infinity means 0 here: what does not turn does
+// not move its far points either.
+[[nodiscard]] inline double swept(double turn, double arm) noexcept {
+  return turn == 0.0 ? 0.0 : turn * arm;
+}
+
 }  // namespace clearance

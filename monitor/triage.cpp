@@ -34,13 +34,9 @@ std::uint32_t refreshed_per_tick(const Scene& scene) {
   return std::max(kLeastRefreshed, static_cast<std::uint32_t>(pairs));
 }
 
-std::uint32_t rows_of(std::uint32_t pair, const PairTable& table) noexcept {
-  return table.first_row[pair + 1] - table.first_row[pair];
-}
-
 std::uint32_t rows_of(std::span<const std::uint32_t> pairs, const PairTable& table) noexcept {
   return std::transform_reduce(pairs.begin(), pairs.end(), 0u, std::plus<>(),
-                               [&table](std::uint32_t pair) { return rows_of(pair, table); });
+                               [&table](std::uint32_t pair) { return table.rows_of(pair); });
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 constexpr double kWayError = 0x1p-47;
 // A velocity is a sum of products, each within a few 2^-52 of its factors' size.
 constexpr double kVelocityError = 0x1p-46;
-constexpr double kTurnError = 0x1p-48;  // rad
+constexpr double kWayTurnError = 0x1p-48;  // rad
 
 // From one orientation to the other; either way round, where both are equally short.
 Vec3 turn_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) noexcept {
@@ -32,9 +32,9 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation, const Vec3& tur
          orientation.normalized();
 }
 
-double angle_of(const Way& way) noexcept { return way.turns ? way.turn.norm() + kTurnError : 0.0; }
-
-double swept(double turn, double arm) noexcept { return turn == 0.0 ? 0.0 : turn * arm; }
+double angle_of(const Way& way) noexcept {
+  return way.turns ? way.turn.norm() + kWayTurnError : 0.0;
+}
 
 }  // namespace
 
@@ -78,11 +78,11 @@ RelativeMotion seen_from(const Way& resting, const Way& moving, const PlacedPart
   const double change = turn * turn * length + turn_of_frame * (between_origins + turn * length);
   const double error = kVelocityError * (moving.shift.norm() + resting.shift.norm() +
                                          turn * length + turn_of_frame * from_resting.norm()) +
-                       (moving.turns ? kTurnError * length : 0.0) +
-                       (resting.turns ? kTurnError * from_resting.norm() : 0.0);
+                       (moving.turns ? kWayTurnError * length : 0.0) +
+                       (resting.turns ? kWayTurnError * from_resting.norm() : 0.0);
   const double of_middle = start.norm() + change + error;
   const bool turns = moving.turns || resting.turns;
-  const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kTurnError : 0.0;
+  const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kWayTurnError : 0.0;
 
   RelativeMotion motion;
   motion.turning = rounded_up(swept(turning, part.ball_in_world.radius));

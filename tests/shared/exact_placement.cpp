@@ -48,6 +48,8 @@ RationalMat transposed(const RationalMat& m) {
 
 bool is_zero(const RationalVec& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
+Vec3 to_vec(const RationalVec& v) { return {v[0].get_d(), v[1].get_d(), v[2].get_d()}; }
+
 Placement::Placement(const Pose& a, const Pose& b) : world_a(rotation(a)) {
   const RationalMat a_world = transposed(world_a), world_b = transposed(rotation(b));
   for (std::size_t i = 0; i < 3; ++i) {

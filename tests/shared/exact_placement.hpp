@@ -15,6 +15,7 @@ using RationalMat = std::array<RationalVec, 3>;
 [[nodiscard]] RationalVec cross(const RationalVec& a, const RationalVec& b);
 [[nodiscard]] RationalMat transposed(const RationalMat& m);
 [[nodiscard]] bool is_zero(const RationalVec& v);
+[[nodiscard]] Vec3 to_vec(const RationalVec& v);  // rounded
 
 // B placed in frame A, exactly.
 struct Placement {

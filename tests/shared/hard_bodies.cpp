@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/shared/exact_placement.hpp"
+
 namespace clearance::hard {
 namespace {
 
@@ -12,8 +14,6 @@ constexpr double kPi = std::numbers::pi;
 void add_row(Body& body, const Vec3& normal, double offset) {
   body.rows.push_back({normal, offset});
 }
-
-Vec3 to_vec(const oracle::RationalVec& v) { return {v[0].get_d(), v[1].get_d(), v[2].get_d()}; }
 
 Vec3 perpendicular(const Vec3& n, Random& random) {
   const Vec3 v = n.cross(random.direction());
@@ -285,7 +285,7 @@ Body with_redundant_rows(Body body, Random& random) {
     const oracle::Support at = exact.support(oracle::primitive(oracle::exact(n)));
     if (at.is_ray) continue;
     const double slack = random.chance(0.5) ? 0.0 : random.log_uniform(1e-16, 10.0);
-    add_row(body, n, n.dot(to_vec(at.vector)) + slack);
+    add_row(body, n, n.dot(oracle::to_vec(at.vector)) + slack);
   }
   return body;
 }
@@ -338,7 +338,7 @@ double extent(const Body& body) {
       oracle::IntegerVec direction;
       direction[static_cast<std::size_t>(axis)] = side;
       const oracle::Support at = exact.support(direction);
-      if (!at.is_ray) out = std::max(out, to_vec(at.vector).cwiseAbs().maxCoeff());
+      if (!at.is_ray) out = std::max(out, oracle::to_vec(at.vector).cwiseAbs().maxCoeff());
     }
   }
   return out + body.radius;

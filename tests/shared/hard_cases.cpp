@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/shared/exact_oracle.hpp"
+#include "tests/shared/exact_placement.hpp"
 
 namespace clearance::hard {
 namespace {
@@ -24,8 +25,6 @@ Vec3 random_offset(Random& random, double least, double most) {
   const double length = random.log_uniform(least, most);
   return length * random.direction();
 }
-
-Vec3 to_vec(const oracle::RationalVec& v) { return {v[0].get_d(), v[1].get_d(), v[2].get_d()}; }
 
 // Puts B beside A in a random direction, clear of it where both are bounded.
 void place_beside(HardCase& c, Random& random) {
@@ -310,7 +309,7 @@ std::span<const CaseFamily> case_families() { return kCaseFamilies; }
 void set_gap(HardCase& c, double gap) {
   const oracle::ExactDistance now = oracle::exact_distance(c.a, c.pose_a, c.b, c.pose_b);
   if (now.cores_meet()) return;
-  const Vec3 way = to_vec(now.point_on_b) - to_vec(now.point_on_a);
+  const Vec3 way = oracle::to_vec(now.point_on_b) - oracle::to_vec(now.point_on_a);
   const double length = way.norm();
   if (!(length > 0.0)) return;
   c.pose_b.position += way / length * (gap - now.lower);

@@ -3,19 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/shared/exact_placement.hpp"
+
 namespace clearance::oracle {
 namespace {
-
-RationalVec cross(const RationalVec& a, const RationalVec& b) {
-  return {Rational(a[1] * b[2] - a[2] * b[1]), Rational(a[2] * b[0] - a[0] * b[2]),
-          Rational(a[0] * b[1] - a[1] * b[0])};
-}
-
-RationalVec minus(const RationalVec& a, const RationalVec& b) {
-  return {Rational(a[0] - b[0]), Rational(a[1] - b[1]), Rational(a[2] - b[2])};
-}
-
-bool is_zero(const RationalVec& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
 RationalVec rational(const IntegerVec& v) {
   return {Rational(v[0]), Rational(v[1]), Rational(v[2])};
@@ -105,7 +96,7 @@ Enumeration enumerate(std::span<const HalfSpace> rows) {
       if (first == nullptr) {
         first = &vertex;
       } else {
-        within.push_back(minus(vertex, *first));
+        within.push_back(vertex - *first);
       }
     }
     if (first == nullptr) continue;
@@ -125,7 +116,7 @@ HullEnumeration enumerate_hull(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     for (std::size_t j = i + 1; j < p.size(); ++j) {
       for (std::size_t k = j + 1; k < p.size(); ++k) {
-        RationalVec normal = cross(minus(p[j], p[i]), minus(p[k], p[i]));
+        RationalVec normal = cross(p[j] - p[i], p[k] - p[i]);
         if (is_zero(normal)) continue;
         for (const int sign : {1, -1}) {
           for (Rational& x : normal) x *= sign;

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 // A second at 200 Hz: the right box comes to 0.2 m from the left one, stays a while, and leaves.
-std::string pose_log() {
+std::string visiting_log() {
   std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
   for (int k = 0; k < 200; ++k) {
     const int away = std::max({0, 80 - k, k - 120});
@@ -44,7 +44,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   const ScratchFolder folder;
   const auto path = [&](const char* name) { return (folder / name).string(); };
   write_text(folder / "cell.yaml", small_cell("small"));
-  write_text(folder / "log.csv", pose_log());
+  write_text(folder / "log.csv", visiting_log());
   const Scene scene = std::get<Scene>(read_cell(path("cell.yaml")));
   const DdsOptions dds = own_dds();
   const auto where = dds_arguments(dds);

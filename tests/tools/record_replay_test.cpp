@@ -26,7 +26,7 @@ zones:
 )";
 
 // The hand comes down to 80 mm above the box.
-std::string pose_log() {
+std::string descending_log() {
   std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
   for (int tick = 0; tick < 200; ++tick) {
     const std::string time = std::to_string(tick * kTick);
@@ -45,7 +45,7 @@ class RecordReplay : public testing::Test {
  protected:
   RecordReplay() {
     write_text(folder / "cell.yaml", kCell);
-    write_text(folder / "log.csv", pose_log());
+    write_text(folder / "log.csv", descending_log());
   }
   std::string path(const std::string& name) const { return (folder / name).string(); }
 

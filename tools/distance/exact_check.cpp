@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
-// Exact answers are right to 30 digits.
+// ExactNumber answers are right to 30 digits.
 const Rational& digits_left_out() {
   static const Rational share = *rational_from("1e-29");
   return share;
@@ -25,12 +25,7 @@ const Rational& digits_left_out() {
 // Of two points in their frames' origins: any error is too large.
 constexpr double kLeastScale = std::numeric_limits<double>::min();
 
-struct Exact {
-  Rational value;
-  std::string text;  // as the case has it
-};
-
-Exact exact_number(const Json& value, const char* key) {
+ExactNumber exact_number(const Json& value, const char* key) {
   const std::string text = value.is_string() ? value.get<std::string>() : "";
   const auto number = rational_from(text);
   if (!number)
@@ -91,8 +86,8 @@ struct ExactCheck::Question {
   const Json& line;
   const Pose& pose_a;
   const Pose& pose_b;
-  Exact distance;
-  std::optional<Exact> penetration;
+  ExactNumber distance;
+  std::optional<ExactNumber> penetration;
   double scale;
 };
 
@@ -219,7 +214,7 @@ std::vector<std::string> ExactCheck::faults(const Json& line, const DistanceCase
         asked.poses[k].first,
         asked.poses[k].second,
         exact_number(asked.motion ? exact[k] : exact, key),
-        depth.is_null() ? std::optional<Exact>() : exact_number(depth, "penetration"),
+        depth.is_null() ? std::optional<ExactNumber>() : exact_number(depth, "penetration"),
         std::max(line.value("scale", reach), kLeastScale)};
     const auto given = [&](const char* name) { return entry(answer, name, k, asked.motion); };
     Judge judge(question, tolerance_);

@@ -14,6 +14,11 @@ namespace clearance {
 using Rational = mpq_class;
 using RationalPoint = std::array<Rational, 3>;
 
+struct ExactNumber {
+  Rational value;
+  std::string text;  // as it was written
+};
+
 // "0.125", "-3e-7"; nothing where the text is no such number.
 [[nodiscard]] std::optional<Rational> rational_from(const std::string& decimal);
 
