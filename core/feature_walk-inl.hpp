@@ -10,94 +10,14 @@
 #include <cmath>
 
 #include "core/feature_walk.hpp"
+#include "core/level_walk-inl.hpp"
 #include "core/precision.hpp"
-#include "core/relative_quads-inl.hpp"
 #include "core/rounding.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 // Enough for 99.9 % of the tracked queries of the facet-ball workload; more is the loop's work.
 inline constexpr int kSteps = 24;
-
-enum class Step { kHolds, kMoved, kLost };
-
-using Side = TrackingState::Side;
-
-// The pair, and what a step that holds finds: the closest points and the direction between them.
-struct Walk {
-  HWY_INLINE Walk(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
-                  const RelativeQuads& pose, TrackingState& state)
-      : a(body_a), b(body_b), a_from_b(pose), on_a(state.a), on_b(state.b) {}
-
-  const ConvexPolyhedron& a;
-  const ConvexPolyhedron& b;
-  const RelativeQuads& a_from_b;
-  Side& on_a;
-  Side& on_b;
-  Quad point_a, point_b;  // frame A
-  Quad own_b;             // point_b in frame B
-  Quad normal;            // unit, from A to B, frame A
-  double apart;           // m: |point_b - point_a|
-  double proved;  // m: how far apart the direction proves the cores, before the slack of Precision
-};
-
-HWY_INLINE void to_vertex(Side& side, std::int32_t vertex) {
-  side.dimension = 0;
-  side.feature = vertex;
-}
-HWY_INLINE void to_edge(Side& side, std::int32_t edge) {
-  side.dimension = 1;
-  side.feature = edge;
-}
-HWY_INLINE void to_facet(Side& side, std::int32_t facet) {
-  side.dimension = 2;
-  side.feature = facet;
-}
-
-// The first lanes of four, at most.
-HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
-
-// How fast up to four of a row's n vectors, from number i on, rise along g.
-HWY_INLINE Quad rates(const double* row, std::int32_t n, std::int32_t i, const Quad (&g)[3]) {
-  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
-}
-
-// Does a vertex's every edge fall away along g, by more than -limit per unit length?
-HWY_INLINE bool all_fall(const ConvexPolyhedron& body, const Vertex& vertex, Quad g, double limit) {
-  const double* row = body.outgoing.row(vertex.first_edge);
-  const std::int32_t n = vertex.edges;
-  const Quad along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
-  unsigned rise = ~less(rates(row, n, 0, along), spread(limit)) & first_lanes(n);
-  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
-    rise |= ~less(rates(row, n, i, along), spread(limit)) & first_lanes(n - i);
-  }
-  return rise == 0;
-}
-
-// The steepest of a vertex's edges along g.
-struct Steepest {
-  double rate = -kInfinity;
-  std::int32_t at = 0;  // index into vertex_edges
-};
-
-inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
-                                      const Vec3& g) {
-  Steepest best;
-  for (std::int32_t i = 0; i < vertex.edges; ++i) {
-    const double rate = body.outgoing_of(vertex, i).dot(g);
-    if (rate > best.rate) best = {rate, vertex.first_edge + i};
-  }
-  return best;
-}
-HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
-  return steepest(body, vertex, vec3(g));
-}
-
-// How steeply the facets beside an edge rise along g; a segment's only edge has none.
-HWY_INLINE double steepest_side(const Edge& edge, Quad g) {
-  if (edge.facet[0] == kNone) return -kInfinity;
-  return std::max(dot(load3(edge.inward[0]), g), dot(load3(edge.inward[1]), g));
-}
 
 // From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
 // far end.
@@ -111,13 +31,15 @@ inline void leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepes
   }
 }
 
-inline Step leave_either(Walk& w, const Vertex& of_a, const Vertex& of_b, Quad g, Quad back,
-                         double limit) {
+inline HWY_NOINLINE Step leave_either(Walk& w, const Vertex& of_a, const Vertex& of_b, Quad g,
+                                      Quad back, double limit) {
   const Steepest on_a = steepest(w.a, of_a, g), on_b = steepest(w.b, of_b, back);
   if (on_a.rate > -limit && on_a.rate >= on_b.rate)
     return leave_vertex(w.a, w.on_a, on_a), Step::kMoved;
   if (on_b.rate > -limit) return leave_vertex(w.b, w.on_b, on_b), Step::kMoved;
-  return Step::kLost;
+  to_level(w.a, w.on_a, vec3(g), limit);
+  to_level(w.b, w.on_b, vec3(back), limit);
+  return w.levelled();
 }
 
 HWY_INLINE Step vertex_vertex(Walk& w) {
@@ -136,30 +58,6 @@ HWY_INLINE Step vertex_vertex(Walk& w) {
   return Step::kHolds;
 }
 
-// One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
-// owner is B.
-template <bool kMoved>
-struct Owned {
-  Walk& w;
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& owner() const { return kMoved ? w.b : w.a; }
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other() const { return kMoved ? w.a : w.b; }
-  [[nodiscard]] HWY_INLINE Side& on_owner() const { return kMoved ? w.on_b : w.on_a; }
-  [[nodiscard]] HWY_INLINE Side& on_other() const { return kMoved ? w.on_a : w.on_b; }
-  [[nodiscard]] HWY_INLINE Quad point_in(Quad p) const {
-    return kMoved ? point_to_b(w.a_from_b, p) : point_to_a(w.a_from_b, p);
-  }
-  [[nodiscard]] HWY_INLINE Quad direction_out(Quad v) const {
-    return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
-  }
-  // What was found in the owner's frame; n: unit, from the owner towards the other.
-  HWY_INLINE void express(Quad on_the_owner, Quad on_the_other, Quad n) const {
-    w.point_a = kMoved ? on_the_other : on_the_owner;
-    w.own_b = kMoved ? on_the_owner : on_the_other;
-    w.point_b = point_to_a(w.a_from_b, w.own_b);
-    w.normal = kMoved ? -direction_to_a(w.a_from_b, n) : n;
-  }
-};
-
 template <bool kMoved>
 HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
   const Edge& edge = o.owner().edges[o.on_owner().feature];
@@ -173,40 +71,24 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
   const Quad g = rough - dot(rough, e) * e;  // what cancellation has left
   const double apart = norm(g), limit = -kCertainRate * apart;
   const double side = steepest_side(edge, g);
-  if (!(side < limit)) {
-    if (!(side > -limit)) return Step::kLost;
-    const bool left = dot(load3(edge.inward[0]), g) == side;
-    return to_facet(o.on_owner(), edge.facet[left ? 0 : 1]), Step::kMoved;
-  }
   const Quad back = -o.direction_out(g);
+  if (!(side < limit)) {
+    rises_beside(edge, g, limit, o.on_owner());
+    if (side > -limit) return Step::kMoved;
+    to_level(o.other(), o.on_other(), vec3(back), limit);
+    return o.w.levelled();
+  }
   if (!all_fall(o.other(), vertex, back, limit)) {
     const Steepest away = steepest(o.other(), vertex, back);
-    if (!(away.rate > -limit)) return Step::kLost;
+    if (!(away.rate > -limit)) {
+      to_level(o.other(), o.on_other(), vec3(back), limit);
+      return o.w.levelled();
+    }
     return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge), Step::kMoved;
   }
   o.w.apart = o.w.proved = apart;
   o.express(start + s * e, tip, g / spread(apart));
   return Step::kHolds;
-}
-
-// The side of the facet's polygon beyond which the tip lies farthest, as an edge; kNone: it lies
-// within.
-HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Quad tip) {
-  const double* row = body.facet_sides.row(facet.first_side);
-  const std::int32_t n = facet.sides;
-  const Quad at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
-  double least = 0.0;
-  std::int32_t beyond = kNone;
-  for (std::int32_t i = 0; i < n; i += 4) {
-    const Quad within = rates(row, n, i, at) - load4(row + 3 * n + i);
-    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
-    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
-      if (!(lane(within, k) < least)) continue;
-      least = lane(within, k);
-      beyond = body.facet_edges[facet.first_side + i + k].edge;
-    }
-  }
-  return beyond;
 }
 
 template <bool kMoved>
@@ -222,9 +104,13 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   const Quad back = -o.direction_out(n);
   if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
     const Steepest away = steepest(o.other(), vertex, back);
+    if (!(away.rate > kCertainRate)) {
+      to_level(o.other(), o.on_other(), vec3(back), -kCertainRate);
+      return o.w.levelled();
+    }
     const EdgeUse& use = o.other().vertex_edges[away.at];
     const std::int32_t next = o.other().edges[use.edge].vertex[1 - use.side];
-    if (!(away.rate > kCertainRate) || next == kNone) return Step::kLost;
+    if (next == kNone) return Step::kLost;
     return to_vertex(o.on_other(), next), Step::kMoved;
   }
   o.w.apart = o.w.proved = apart;
@@ -249,7 +135,9 @@ HWY_INLINE Step edge_edge(Walk& w) {
   const Quad start_b = point_to_a(w.a_from_b, own_start_b);
   const Quad between = start_b - start_a, n = cross(e, f);
   const double sine2 = dot(n, n);
-  if (!(sine2 > kCrossingSine2)) return Step::kLost;
+  if (!(sine2 > kCrossingSine2)) {
+    return sine2 <= kLevelTilt * kLevelTilt ? parallel_edges(w, start_b, f) : Step::kLost;
+  }
   const double cosine = dot(e, f), along_e = dot(between, e);
   const double t = (cosine * along_e - dot(between, f)) / sine2;
   const double s = along_e + cosine * t;
@@ -258,7 +146,11 @@ HWY_INLINE Step edge_edge(Walk& w) {
   w.normal = n / spread(std::copysign(sine, apart));
   const Quad m = direction_to_b(w.a_from_b, w.normal);
   const double on_a = steepest_side(first, w.normal), on_b = steepest_side(second, -m);
-  if (!(on_a < -kCertainRate) || !(on_b < -kCertainRate)) return Step::kLost;
+  if (HWY_UNLIKELY(!(on_a < -kCertainRate) || !(on_b < -kCertainRate))) {
+    rises_beside(first, w.normal, -kCertainRate, w.on_a);
+    rises_beside(second, -m, -kCertainRate, w.on_b);
+    return w.levelled();
+  }
   w.point_a = start_a + s * e;
   w.own_b = own_start_b + t * own_f;
   w.point_b = start_b + t * f;
@@ -281,8 +173,14 @@ HWY_INLINE Step step(Walk& w) {
       return edge_vertex(Owned<false>{w});
     case 4:
       return edge_edge(w);
+    case 5:
+      return edge_facet(Owned<false>{w});
     case 6:
       return facet_vertex(Owned<false>{w});
+    case 7:
+      return edge_facet(Owned<true>{w});
+    case 8:
+      return facet_facet(w);
     default:
       return Step::kLost;
   }

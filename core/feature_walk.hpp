@@ -1,12 +1,13 @@
 // From the features that were closest last time to those that are closest now, by their boundaries
 // alone.
 //
-// Each step is a round of the active-set loop (delta, alpha, lambda) without its points: for the
-// four pairs of features that a moving pair is nearly always in, straight-line code decides whether
-// they are closest still, and if not, which neighbour takes over. Nothing guarantees progress here,
-// so the steps are counted, and what they do not settle is the loop's. The proof falls out of the
-// last step: a vertex whose every edge falls away along the separating direction, an edge whose
-// both facets do, a facet: each is the farthest of its body.
+// Each step is a round of the active-set loop (delta, alpha, lambda) without its points: for every
+// pair of features, straight-line code decides whether they are closest still, and if not, which
+// neighbour takes over. Nothing guarantees progress here, so the steps are counted, and what they
+// do not settle is the loop's. The proof falls out of the last step: a vertex whose every edge
+// falls away along the separating direction, an edge whose both facets do, a facet: each is the
+// farthest of its body. Where features are parallel as far as rounding can tell, the points of the
+// last query choose among all closest ones (core/level_walk-inl.hpp).
 #pragma once
 
 #include "core/convex_polyhedron.hpp"
@@ -16,16 +17,15 @@
 namespace clearance {
 
 enum class WalkEnd : std::uint8_t {
-  kLost,     // not settled, because rounding cannot tell, or the pair is another (two facets, two
-             // unbounded bodies), or the steps ran out
+  kLost,     // not settled, because rounding cannot tell, or both bodies are unbounded, or the
+             // steps ran out
   kSettled,  // these are the closest points; the direction between them proves less than the
              // bodies' precision allows
   kProved,   // the bodies are apart, and the bounds as close as rounding lets them be
 };
 
-// Moves the features of `state` as far as it gets; its points are not looked at. Unless it is lost,
-// `result` (of the cores, without radii) and the points of `state` are those of the features it
-// ends at.
+// Moves the features of `state` as far as it gets. Unless it is lost, `result` (of the cores,
+// without radii) and the points of `state` are those of the features it ends at.
 [[nodiscard]] WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                     const RelativePose& a_from_b, TrackingState& state,
                                     DistanceResult& result) noexcept;

@@ -1,0 +1,156 @@
+// A pair of features and its bodies, as the steps of core/feature_walk-inl.hpp and
+// core/level_walk-inl.hpp see them. Compiled once a vector width: see core/quad-inl.hpp.
+#if defined(CLEARANCE_CORE_WALKED_PAIR) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_WALKED_PAIR
+#undef CLEARANCE_CORE_WALKED_PAIR
+#else
+#define CLEARANCE_CORE_WALKED_PAIR
+#endif
+
+#include <algorithm>
+
+#include "core/distance.hpp"
+#include "core/relative_quads-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+
+// More than from two vertices to two facets.
+inline constexpr int kLevelSteps = 6;
+
+enum class Step { kHolds, kMoved, kLost };
+
+using Side = TrackingState::Side;
+
+// The pair, and what a step that holds finds: the closest points and the direction between them.
+struct Walk {
+  HWY_INLINE Walk(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
+                  const RelativeQuads& pose, TrackingState& state)
+      : a(body_a), b(body_b), a_from_b(pose), on_a(state.a), on_b(state.b) {}
+
+  const ConvexPolyhedron& a;
+  const ConvexPolyhedron& b;
+  const RelativeQuads& a_from_b;
+  Side& on_a;
+  Side& on_b;
+  Quad point_a, point_b;  // frame A
+  Quad own_b;             // point_b in frame B
+  Quad normal;            // unit, from A to B, frame A
+  double apart;           // m: |point_b - point_a|
+  double proved;   // m: how far apart the direction proves the cores, before the slack of Precision
+  int levels = 0;  // steps to features that are level
+
+  // Rounding may have them go in circles.
+  [[nodiscard]] HWY_INLINE Step levelled() {
+    return ++levels > kLevelSteps ? Step::kLost : Step::kMoved;
+  }
+};
+
+HWY_INLINE void to_vertex(Side& side, std::int32_t vertex) {
+  side.dimension = 0;
+  side.feature = vertex;
+}
+HWY_INLINE void to_edge(Side& side, std::int32_t edge) {
+  side.dimension = 1;
+  side.feature = edge;
+}
+HWY_INLINE void to_facet(Side& side, std::int32_t facet) {
+  side.dimension = 2;
+  side.feature = facet;
+}
+
+// The first lanes of four, at most.
+HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
+
+// How fast up to four of a row's n vectors, from number i on, rise along g.
+HWY_INLINE Quad rates(const double* row, std::int32_t n, std::int32_t i, const Quad (&g)[3]) {
+  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
+}
+
+// Does a vertex's every edge fall away along g, by more than -limit per unit length?
+HWY_INLINE bool all_fall(const ConvexPolyhedron& body, const Vertex& vertex, Quad g, double limit) {
+  const double* row = body.outgoing.row(vertex.first_edge);
+  const std::int32_t n = vertex.edges;
+  const Quad along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
+  unsigned rise = ~less(rates(row, n, 0, along), spread(limit)) & first_lanes(n);
+  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
+    rise |= ~less(rates(row, n, i, along), spread(limit)) & first_lanes(n - i);
+  }
+  return rise == 0;
+}
+
+// The steepest of a vertex's edges along g.
+struct Steepest {
+  double rate = -kInfinity;
+  std::int32_t at = 0;  // index into vertex_edges
+};
+
+inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
+                                      const Vec3& g) {
+  Steepest best;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const double rate = body.outgoing_of(vertex, i).dot(g);
+    if (rate > best.rate) best = {rate, vertex.first_edge + i};
+  }
+  return best;
+}
+HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
+  return steepest(body, vertex, vec3(g));
+}
+
+// How steeply the facets beside an edge rise along g; a segment's only edge has none.
+HWY_INLINE double steepest_side(const Edge& edge, Quad g) {
+  if (edge.facet[0] == kNone) return -kInfinity;
+  return std::max(dot(load3(edge.inward[0]), g), dot(load3(edge.inward[1]), g));
+}
+
+// One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
+// owner is B.
+template <bool kMoved>
+struct Owned {
+  Walk& w;
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& owner() const { return kMoved ? w.b : w.a; }
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other() const { return kMoved ? w.a : w.b; }
+  [[nodiscard]] HWY_INLINE Side& on_owner() const { return kMoved ? w.on_b : w.on_a; }
+  [[nodiscard]] HWY_INLINE Side& on_other() const { return kMoved ? w.on_a : w.on_b; }
+  [[nodiscard]] HWY_INLINE Quad point_in(Quad p) const {
+    return kMoved ? point_to_b(w.a_from_b, p) : point_to_a(w.a_from_b, p);
+  }
+  [[nodiscard]] HWY_INLINE Quad point_out(Quad p) const { return opposite().point_in(p); }
+  [[nodiscard]] HWY_INLINE Quad direction_in(Quad v) const { return opposite().direction_out(v); }
+  [[nodiscard]] HWY_INLINE Quad direction_out(Quad v) const {
+    return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
+  }
+  [[nodiscard]] HWY_INLINE Owned<!kMoved> opposite() const { return {w}; }
+  // What was found in the owner's frame; n: unit, from the owner towards the other.
+  HWY_INLINE void express(Quad on_the_owner, Quad on_the_other, Quad n) const {
+    w.point_a = kMoved ? on_the_other : on_the_owner;
+    w.own_b = kMoved ? on_the_owner : on_the_other;
+    w.point_b = point_to_a(w.a_from_b, w.own_b);
+    w.normal = kMoved ? -direction_to_a(w.a_from_b, n) : n;
+  }
+};
+
+// The side of the facet's polygon beyond which the tip lies farthest, as an edge; kNone: it lies
+// within.
+HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Quad tip) {
+  const double* row = body.facet_sides.row(facet.first_side);
+  const std::int32_t n = facet.sides;
+  const Quad at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
+  double least = 0.0;
+  std::int32_t beyond = kNone;
+  for (std::int32_t i = 0; i < n; i += 4) {
+    const Quad within = rates(row, n, i, at) - load4(row + 3 * n + i);
+    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
+    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
+      if (!(lane(within, k) < least)) continue;
+      least = lane(within, k);
+      beyond = body.facet_edges[facet.first_side + i + k].edge;
+    }
+  }
+  return beyond;
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
