@@ -22,6 +22,12 @@ bool may_rise(const ConvexPolyhedron& body, const Vec3& n, double margin) noexce
   return rises(body, n, -margin);
 }
 
+// Between two directions less than half a turn apart, r to the left of l.
+Eigen::Vector2d middle_of(const Eigen::Vector2d& l, const Eigen::Vector2d& r) noexcept {
+  const Eigen::Vector2d sum = l + r;
+  return sum.squaredNorm() > 1e-3 ? sum.normalized() : Eigen::Vector2d(-l.y(), l.x());
+}
+
 }  // namespace
 
 std::size_t DepthSearch::cell(const Vec3& n) noexcept {
@@ -100,8 +106,10 @@ bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
     const bool l_rises = along.dot(l) > level_, r_rises = along.dot(r) > level_;
     if (l_rises && r_rises) return false;
     if (!l_rises && !r_rises) continue;
+    // Of the two directions across the ray, the one on the arc: less than a quarter turn from its
+    // middle.
     Vec2 level(-along.y(), along.x());
-    if (level.dot(l_rises ? r : l) < 0.0) level = -level;
+    if (level.dot(middle_of(l, r)) < 0.0) level = -level;
     (l_rises ? l : r) = level.normalized();
   }
   return true;
@@ -147,8 +155,7 @@ void DepthSearch::settle(const Arc& arc, Vec2 l, Vec2 r) noexcept {
     lower_to(bound);
     return true;
   };
-  const Vec2 sum = l + r;
-  const Vec2 middle = sum.squaredNorm() > 1e-3 ? sum.normalized() : Vec2(-l.y(), l.x());
+  const Vec2 middle = middle_of(l, r);
   const std::size_t slot = cell(arc.direction(middle));
   if (has_corner_[slot] && settled_by(arc.project(corners_[slot]))) return;
   const Sample m = sample(arc, middle);
