@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/depth.hpp"
 #include "core/dqp3.hpp"
@@ -18,6 +19,11 @@ constexpr double kCrossing = 1e-3;
 // the depth again, at least by this part of the bodies' size, so that the direction between the
 // closest points is not lost in rounding.
 constexpr double kFarther = 0x1p-20;
+
+// At a distance f a point that lies beside the closest one by sqrt(2 f) roundings is as close as
+// doubles can tell. Where edges are nearly parallel that is more than this part of the size, and B
+// is moved out by no more than the other one: there it is sqrt(2^-43 2^-53) = 2^-48.
+constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 
 // The direction along which the features of a tracking state part the bodies. False: they do not
 // say.
@@ -63,6 +69,25 @@ Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return depth(side_a, side_b, a_from_b, &guess);
 }
 
+// The closest points of A and of B as `moved`, from the features of the state on.
+std::uint16_t settle_apart(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                           const RelativePose& moved, TrackingState& state) noexcept {
+  ActiveSide side_a(a, nullptr), side_b(b, &moved);
+  if (!side_a.place_tracked(state.a)) side_a.place_cold(side_b.point_to_common(b.interior));
+  if (!side_b.place_tracked(state.b)) side_b.place_cold(a.interior);
+  const std::uint16_t iterations = dqp3(side_a, side_b, 0.0).iterations;
+  state = {side_a.tracked(), side_b.tracked()};
+  return iterations;
+}
+
+// Takes the state's points for the witness points; how far from the normal their difference ends.
+double take_points(const RelativePose& a_from_b, const TrackingState& state,
+                   DistanceResult& r) noexcept {
+  r.point_on_a = state.a.point;
+  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+  return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
+}
+
 // The points that meet when B has been moved clear of A.
 void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                      const RelativePose& a_from_b, const Depth& found, TrackingState& state,
@@ -75,14 +100,14 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (walk_features(a, b, moved, state, apart) != WalkEnd::kLost) {
     r.iterations = apart.iterations;
   } else {
-    ActiveSide side_a(a, nullptr), side_b(b, &moved);
-    if (!side_a.place_tracked(state.a)) side_a.place_cold(side_b.point_to_common(b.interior));
-    if (!side_b.place_tracked(state.b)) side_b.place_cold(a.interior);
-    r.iterations = dqp3(side_a, side_b, 0.0).iterations;
-    state = {side_a.tracked(), side_b.tracked()};
+    r.iterations = settle_apart(a, b, moved, state);
   }
-  r.point_on_a = state.a.point;
-  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+  const double beside = take_points(a_from_b, state, r);
+  if (!(beside > kBeside * size)) return;
+  moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
+  const DistanceResult before = r;
+  r.iterations += settle_apart(a, b, moved, state);
+  if (!(take_points(a_from_b, state, r) < beside)) r = before;
 }
 
 void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
