@@ -16,6 +16,9 @@ constexpr std::size_t kScan = 24;
 // an edge that falls by more than this (per unit length) falls in exact arithmetic.
 constexpr double kFalls = 0x1p-50;
 
+// Rays nearer to parallel than this (an angle) are a bundle.
+constexpr double kBundle = 0x1p-45;
+
 // The vertices reached from one another by edges that rounding cannot tell from level ones. On the
 // exact polytope every vertex that is not the highest has a rising edge, and rising edges lead to
 // the highest. An edge that leaves this set falls for certain, so no rising path leaves it: the
@@ -160,20 +163,27 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
 
 LevelRays level_rays(const ConvexPolyhedron& body, const Vec3& m, double margin) noexcept {
   LevelRays level;
+  bool both_ways = false;
   for (const Ray& ray : body.rays) {
     const double slope = m.dot(ray.direction) / ray.direction.norm();
     if (slope < -margin) continue;
     const bool across = ray.exact && exact_sign(m, ray.direction) <= 0;
     level.exactly_level = level.exactly_level && across;
     const Vec3 direction = ray.direction.normalized();
-    if (slope > margin ||
-        (level.directions > 0 && direction != level.direction && direction != -level.direction)) {
-      level.directions = 2;
-    } else {
-      level.directions = std::max(level.directions, 1);
+    if (level.directions == 0) {
+      level.directions = 1;
       level.direction = direction;
     }
+    const double apart = (direction - level.direction).norm();
+    if (apart <= kBundle) {
+      level.spread = std::max(level.spread, apart);
+    } else {
+      both_ways = true;
+      if (direction != -level.direction) level.directions = 2;
+    }
+    if (slope > margin) level.directions = 2;
   }
+  if (both_ways && level.spread > 0.0) level.directions = 2;
   return level;
 }
 

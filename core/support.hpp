@@ -30,9 +30,11 @@ struct Support {
 
 // The rays of a body that rounding cannot tell from level ones, seen along m.
 struct LevelRays {
-  int directions =
-      0;  // 0: all fall away; 1: all level ones are parallel; 2: there are more, or one rises
-  Vec3 direction = Vec3::Zero();  // of the level ones, if they are all parallel; unit
+  // 0: all fall away; 1: the level ones are a line, or a bundle that is parallel as far as rounding
+  // can tell; 2: there are more, or one rises.
+  int directions = 0;
+  Vec3 direction = Vec3::Zero();  // of the first level one; unit
+  double spread = 0.0;            // how far others of the bundle point away from it, at most
   bool exactly_level = true;      // they stand exactly across the doubles of m, or all fall away
 };
 
