@@ -42,7 +42,8 @@ HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses&
               hn::Mul(all(kUlpsBetween), apart));
   Lanes slack = hn::Add(hn::Mul(all(kUlp), ulps), row(kPositionErrorA));
   slack = hn::Add(slack, row(kPositionErrorB));
-  slack = hn::Add(slack, hn::Mul(pose.rotation_error, reach_b));
+  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), farthest));
+  slack = hn::Add(slack, hn::Mul(pose.rotation_error, turned));
   slack = hn::Add(hn::Add(slack, pose.translation_error), all(kUnderflow));
   return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
 }

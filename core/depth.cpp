@@ -93,7 +93,9 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   }
   if (!search.ended_early()) {
     // Corners are anchors: of an unbounded body, too, no more than those counts here.
-    const double rounding = kOnArc * start.size + start.slack;
+    // What a wrong rotation may scale, where A is bounded (see Precision), is the depth here.
+    const double scaled = a.body().bounded() ? std::abs(best.height) : 0.0;
+    const double rounding = kOnArc * start.size + start.slack + a_from_b.rotation_error * scaled;
     out.lower = std::max(0.0, std::min(search.lower(), best.height) - rounding);
   }
   return out;

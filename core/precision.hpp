@@ -27,7 +27,13 @@ struct PlacePrecision {
   double apart;                              // |translation|
 };
 
-// `farthest`: an upper bound of the distance (m), which limits where on an unbounded body to look.
+// `farthest`: an upper bound of the distance or depth (m), which limits where on an unbounded body
+// to look.
+//
+// A wrong rotation moves a point of B by its error times reach_b. Or else the direction between the
+// bodies may be thought of as fixed to B: the wrong rotation then turns A about B's origin, from
+// where A reaches no farther than reach_a + apart, and scales the distance. Both are bounds, so the
+// smaller one counts.
 [[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
@@ -39,8 +45,9 @@ struct PlacePrecision {
   if (!b.bounded()) p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
   if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
   p.size = p.reach_a + p.reach_b + apart;
+  const double turned = a.bounded() ? std::min(p.reach_b, p.reach_a + apart + farthest) : p.reach_b;
   p.slack = kUlp * (kUlpsOnA * p.reach_a + kUlpsOnB * p.reach_b + kUlpsBetween * apart) +
-            a.position_error + b.position_error + b_in_a.rotation_error * p.reach_b +
+            a.position_error + b.position_error + b_in_a.rotation_error * turned +
             b_in_a.translation_error + kUnderflow;
   p.tight = tight * kUlp * p.size;
   return p;

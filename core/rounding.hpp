@@ -42,7 +42,7 @@ inline constexpr double kUnderflow = 1e-150;
 
 // What rounding leaves between the bounds, by how many of the bodies are unbounded: errors of
 // direction grow along their rays. Measured on the hard cases of tests/: at most 5, 40 and 250.
-inline constexpr double kTightUlps[] = {8.0, 64.0, 320.0};
+inline constexpr double kTightUlps[] = {8.0, 16.0, 48.0};
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
