@@ -57,6 +57,18 @@ constexpr OnceWrong kOnceWrong[] = {
     {"floors", 63, "a half-space that reaches 1.8 into a tetrahedron was called touching"},
     {"round", 15, "a capsule beside an unbounded body ended at the iteration limit"},
     {"without_end", 7, "a lower bound of zero, 11.7 m apart: rays gave no bound"},
+    {"without_end", 100461,
+     "a depth of 1.5 m was bounded from below by 2.9: an arc of 141 degrees clipped on its far "
+     "side"},
+    {"without_end", 5009, "the same: a wedge with its edge 5e10 m away had no depth"},
+    {"without_end", 5028, "a proof across two lines cost five times what rounding can tilt"},
+    {"without_end", 100262,
+     "no lower bound, 2.1 m apart: three rays, parallel but for their last bits"},
+    {"without_end", 100229, "iteration limit for the same reason, 2.6e16 m apart"},
+    {"parallel_boxes", 100268,
+     "overlap along edges tilted by 1e-12: points that did not meet along the normal"},
+    {"edges", 100331, "the same, by 5e-6"},
+    {"sizes", 100280, "the same, 9e-4 m in 5e6 m"},
 };
 
 TEST(Distance, HoldsOnCasesThatWereWrongOnce) {

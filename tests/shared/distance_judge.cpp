@@ -20,6 +20,10 @@ using oracle::Rational;
 // for both.
 constexpr double kTolerance = 1.5e-14;
 
+// Of the gap between the bounds of a converged answer where only one of the bodies may be
+// unbounded.
+constexpr double kConvergedGap = 1e-14;
+
 // Rows or points; the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
 
@@ -157,6 +161,9 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
     require(truth.compare(0.0) <= 0, text("overlapping, but %.17g apart", truth.lower));
   }
   if (r.status == DistanceStatus::kConverged) {
+    const double converged = kConvergedGap / kTolerance * tolerance;
+    require(gap <= converged || (!a_.bounded() && !b_.bounded()),
+            text("%s with a gap of %.3g, more than %.3g", status, gap, converged));
     require(truth.compare(0.0) > 0, text("converged, but the truth is %.17g", truth.lower));
   }
   if (r.status == DistanceStatus::kTouching) {

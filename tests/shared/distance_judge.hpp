@@ -31,9 +31,8 @@ class DistanceJudge {
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
   //  - the bounds, compared exactly; the upper one only where the depth is known
-  //  - the status: converged within 1.5e-14 of size(); overlapping and touching only
-  //  where it is so;
-  //    never at the iteration limit
+  //  - the status: converged within 1e-14 of size(), overlapping, touching and two unbounded bodies
+  //    within 1.5e-14; overlapping and touching only where it is so; never at the iteration limit
   //  - the witness points: on their bodies, and `distance` apart along the normal; the normal: unit
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,
