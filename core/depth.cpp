@@ -93,8 +93,9 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   }
   if (!search.ended_early()) {
     // Corners are anchors: of an unbounded body, too, no more than those counts here.
-    // What a wrong rotation may scale, where A is bounded (see Precision), is the depth here.
-    const double scaled = a.body().bounded() ? std::abs(best.height) : 0.0;
+    // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
+    const double beyond = start.reach_b - start.reach_a - a_from_b.translation.norm();
+    const double scaled = std::clamp(beyond, 0.0, std::abs(best.height));
     const double rounding = kOnArc * start.size + start.slack + a_from_b.rotation_error * scaled;
     out.lower = std::max(0.0, std::min(search.lower(), best.height) - rounding);
   }
