@@ -1,0 +1,157 @@
+// Witness points from tick to tick where whole faces are closest: how far they move, held against
+// how far the bodies move.
+//
+// Where two faces are level as far as doubles can tell, all their points are closest and a steady
+// choice exists. Where they are tilted by more, only an edge or a corner is closest, and the other
+// one as soon as the tilt turns over: one jump then is the truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_bodies.hpp"
+
+namespace clearance {
+namespace {
+
+using oracle::Body;
+using Quat = Eigen::Quaterniond;
+
+constexpr int kSteps = 600;
+constexpr double kSwings = 40.0;  // radians of tilting back and forth, either side of the middle
+
+struct FacingPair {
+  const char* name;
+  Body a, b;
+  double level;  // m: between the centres where the faces touch
+};
+
+Body hexagonal_prism() {
+  Body out;
+  for (int k = 0; k < 6; ++k) {
+    const double azimuth = std::numbers::pi / 3 * k;
+    out.rows.push_back({Vec3(std::cos(azimuth), std::sin(azimuth), 0), 0.5});
+  }
+  out.rows.push_back({Vec3(0, 0, 1), 0.3});
+  out.rows.push_back({Vec3(0, 0, -1), 0.3});
+  return out;
+}
+
+std::vector<FacingPair> facing_pairs() {
+  return {{"boxes", hard::box({0.5, 0.4, 0.3}), hard::box({0.25, 0.2, 0.15}), 0.45},
+          {"equal cubes", hard::box({0.3, 0.3, 0.3}), hard::box({0.3, 0.3, 0.3}), 0.6},
+          {"a box over a plate", hard::box({1, 1, 0.005}), hard::box({0.25, 0.2, 0.15}), 0.155},
+          {"plates", hard::box({1, 1, 0.005}), hard::box({0.8, 0.9, 0.005}), 0.01},
+          {"prisms", hexagonal_prism(), hexagonal_prism(), 0.6},
+          {"links", hard::link(6, 1.0, 0.1), hard::link(6, 0.7, 0.1), 0.1}};
+}
+
+Quat turn(const Vec3& axis, double angle) {
+  const Vec3 v = axis * std::sin(angle / 2);
+  return {std::cos(angle / 2), v.x(), v.y(), v.z()};
+}
+
+// Where the upper body is at t in [-1, 1], tilted by at most `tilt`; the lower one lies at the
+// origin.
+struct Motion {
+  const char* name;
+  std::function<Pose(double t, double height, double tilt)> pose;
+};
+
+const Vec3 kAslant(0.6, 0.8, 0.0);
+
+std::vector<Motion> motions() {
+  return {
+      {"slides, tilted",
+       [](double t, double height, double tilt) {
+         return Pose{{0.2 * t, 0.1 * t, height}, turn(Vec3::UnitY(), tilt)};
+       }},
+      {"slides and swings",
+       [](double t, double height, double tilt) {
+         return Pose{{0.2 * t, 0.1 * t, height}, turn(Vec3::UnitY(), tilt * std::sin(kSwings * t))};
+       }},
+      {"sinks and swings",
+       [](double t, double height, double tilt) {
+         return Pose{{0.3, 0.1, height + 0.05 * t},
+                     turn(Vec3::UnitZ(), 0.3) * turn(kAslant, tilt * std::sin(kSwings * t))};
+       }},
+      {"spins and swings", [](double t, double height, double tilt) {
+         return Pose{{0.2 * t, 0.1 * t, height},
+                     turn(Vec3::UnitZ(), 0.5 * t) * turn(kAslant, tilt * std::sin(kSwings * t))};
+       }}};
+}
+
+struct Moved {
+  double witness = 0.0, bodies = 0.0;  // m, in the world, in one step
+};
+
+std::vector<Moved> run(const FacingPair& pair, const Motion& motion, double tilt,
+                       const Quat& world) {
+  const DistanceJudge judge(pair.a, pair.b);
+  const double reach = judge.b().bounding_radius;
+  const Pose below{Vec3::Zero(), world};
+  TrackingState state;
+  std::vector<Moved> out;
+  Pose last;
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+  for (int k = 0; k < kSteps; ++k) {
+    const Pose up = motion.pose(2.0 * k / kSteps - 1.0, pair.level + 0.1, tilt);
+    const Pose above{world * up.position, world * up.orientation};
+    const DistanceResult r = judge.ask(below, above, state);
+    if (k > 0) {
+      out.push_back({std::max((r.point_on_a - on_a).norm(), (r.point_on_b - on_b).norm()),
+                     (above.position - last.position).norm() +
+                         reach * above.orientation.angularDistance(last.orientation)});
+    }
+    last = above;
+    on_a = r.point_on_a;
+    on_b = r.point_on_b;
+  }
+  return out;
+}
+
+void for_each_run(
+    const std::vector<double>& tilts,
+    const std::function<void(const FacingPair&, const Motion&, double, const Quat&)>& visit) {
+  const Quat worlds[] = {{1, 0, 0, 0}, Quat(0.5, 0.5, 0.5, 0.5) * turn(kAslant, 0.7)};
+  for (const FacingPair& pair : facing_pairs()) {
+    for (const Motion& motion : motions()) {
+      for (const double tilt : tilts) {
+        for (const Quat& world : worlds) {
+          SCOPED_TRACE(std::string(pair.name) + ", " + motion.name + ", tilt " +
+                       std::to_string(std::log10(tilt)));
+          visit(pair, motion, tilt, world);
+        }
+      }
+    }
+  }
+}
+
+TEST(Witnesses, OfLevelFacesMoveNoFasterThanTheBodies) {
+  for_each_run({0.0, 1e-16, 2e-16},
+               [](const FacingPair& pair, const Motion& motion, double tilt, const Quat& world) {
+                 double fastest = 0.0;
+                 for (const Moved& moved : run(pair, motion, tilt, world)) {
+                   fastest = std::max(fastest, moved.witness / (moved.bodies + 1e-15));
+                 }
+                 EXPECT_LE(fastest, 1.0 + 1e-9);
+               });
+}
+
+TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) {
+  // sin(40 t) is zero 25 times; while a body spins, another corner may become the lowest.
+  constexpr int kTurns = 25, kOfSpinning = 2;
+  for_each_run({1e-11, 1e-9, 1e-7},
+               [](const FacingPair& pair, const Motion& motion, double tilt, const Quat& world) {
+                 int jumps = 0;
+                 for (const Moved& moved : run(pair, motion, tilt, world)) {
+                   jumps += moved.witness > 10.0 * moved.bodies + 1e-9;
+                 }
+                 EXPECT_LE(jumps, kTurns + kOfSpinning);
+               });
+}
+
+}  // namespace
+}  // namespace clearance
