@@ -25,7 +25,7 @@ Examples:
   clearance-record -o run.mcap --domain 7 --partition lab --seconds 60
   clearance-record --from-csv poses.csv.gz -o run.mcap --cell cell.yaml)";
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app("Records every topic of Clearance, as it is on the wire, to an MCAP file.");
   RecordArguments arguments;
   app.add_option("-o,--output", arguments.out, "The recording to write")->required();
@@ -42,20 +42,21 @@ int run(int argc, char** argv) {
   if (const auto done = parse(app, argc, argv)) return *done;
   if (!spares_input("clearance-record", arguments.out, arguments.from_csv)) return kUsage;
   if (!may_write("clearance-record", arguments.out, arguments.force)) return kFailed;
-  std::optional<StopSignal> stop;  // before anything that takes time
-  if (arguments.from_csv.empty()) stop.emplace();
+  const bool from_csv = !arguments.from_csv.empty();
+  if (from_csv) stop.release();
   std::optional<Scene> scene;
   if (!arguments.cell.empty()) {
     scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
   }
   const Scene* const known = scene ? &*scene : nullptr;
-  return stop ? record_from_dds(arguments, known, *stop) : record_from_csv(arguments, known);
+  return from_csv ? record_from_csv(arguments, known) : record_from_dds(arguments, known, stop);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-record", [=] { return clearance::run(argc, argv); });
+  return clearance::run_program("clearance-record",
+                                [=](auto& stop) { return clearance::run(argc, argv, stop); });
 }

@@ -121,7 +121,7 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.footer(kFooter);
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app(
       "Publishes a recording over DDS with its original spacing; with --offline runs it through "
       "the "
@@ -134,12 +134,15 @@ int run(int argc, char** argv) {
                  arguments.end_s);
     return kUsage;
   }
-  return arguments.offline ? replay_without_dds(arguments) : replay_over_dds(arguments);
+  if (!arguments.offline) return replay_over_dds(arguments, stop);
+  stop.release();
+  return replay_without_dds(arguments);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-replay", [=] { return clearance::run(argc, argv); });
+  return clearance::run_program("clearance-replay",
+                                [=](auto& stop) { return clearance::run(argc, argv, stop); });
 }

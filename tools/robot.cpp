@@ -228,13 +228,12 @@ int run_robot(const Scene& scene, const Arguments& arguments, StopSignal& signal
   return kOk;
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app("Publishes simulated poses of a cell over DDS.");
   Arguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-robot", arguments.log_level);
-  StopSignal signal;  // before anything that takes time
   const auto scene = scene_or_errors(read_cell(arguments.cell));
   if (!scene) return kBadCell;
   if (scene->simulation.empty()) {
@@ -249,5 +248,6 @@ int run(int argc, char** argv) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-robot", [=] { return clearance::run(argc, argv); });
+  return clearance::run_program("clearance-robot",
+                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
 }

@@ -85,8 +85,7 @@ class Display {
   double rate_ = 0.0;
 };
 
-int run_watch(const Arguments& arguments) {
-  StopSignal signal;
+int run_watch(const Arguments& arguments, StopSignal& signal) {
   route_dds_log();
   Participant participant(arguments.dds.resolve(0, ""));
   watch::Feed feed(participant, arguments.topics);
@@ -105,18 +104,19 @@ int run_watch(const Arguments& arguments) {
   return feed.any() ? kOk : kIncomplete;
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app("Shows live how far apart the objects of a cell are, as clearanced publishes it.");
   Arguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-watch", "error");
-  return run_watch(arguments);
+  return run_watch(arguments, signal);
 }
 
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-watch", [=] { return clearance::run(argc, argv); });
+  return clearance::run_program("clearance-watch",
+                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
 }

@@ -67,7 +67,7 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app(
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
   Arguments arguments;
@@ -75,8 +75,10 @@ int run(int argc, char** argv) {
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearanced", arguments.log_level);
 
-  if (arguments.check) return check_only(arguments.cell);
-  StopSignal signal;  // before anything that takes time
+  if (arguments.check) {
+    signal.release();
+    return check_only(arguments.cell);
+  }
   const auto scene = scene_or_errors(read_cell(arguments.cell));
   if (!scene) return kBadCell;
   if (!may_write("clearanced", arguments.daemon.record_file, arguments.daemon.record_over)) {
@@ -89,5 +91,6 @@ int run(int argc, char** argv) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearanced", [=] { return clearance::run(argc, argv); });
+  return clearance::run_program("clearanced",
+                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
 }

@@ -20,9 +20,10 @@ int last_words(const char* name, const std::exception& error, ExitCode code) {
 
 }  // namespace
 
-int run_program(const char* name, const std::function<int()>& body) {
+int run_program(const char* name, const std::function<int(StopSignal&)>& body) {
+  StopSignal stop;
   try {
-    return body();
+    return body(stop);
   } catch (const DdsError& error) {
     return last_words(name, error, kDdsFailed);
   } catch (const RecordError& error) {

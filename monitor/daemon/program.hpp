@@ -9,6 +9,7 @@
 #include <string>
 
 #include "config/cell_file.hpp"
+#include "monitor/daemon/stop_signal.hpp"
 
 namespace clearance {
 
@@ -21,8 +22,10 @@ enum ExitCode : int {
   kIncomplete = 5,  // what was to be recorded, read or heard is not all there: --help says more
 };
 
-// Calls `body` and returns its exit code; what it throws goes to stderr as "NAME: what".
-[[nodiscard]] int run_program(const char* name, const std::function<int()>& body);
+// All that main() does: calls `body` and returns its exit code; what it throws goes to stderr as
+// "NAME: what". The signals that stop a program wait for `body` from the first moment on; what does
+// not look at them releases them.
+[[nodiscard]] int run_program(const char* name, const std::function<int(StopSignal&)>& body);
 
 // The exit code when there is nothing more to do: --help, or wrong usage.
 [[nodiscard]] std::optional<int> parse(CLI::App& app, int argc, char** argv);

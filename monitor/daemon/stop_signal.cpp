@@ -10,9 +10,14 @@ StopSignal::StopSignal() {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  pthread_sigmask(SIG_BLOCK, &signals_, &before_);
   // Whoever reads our output may leave first: then a write fails, that is all.
   std::signal(SIGPIPE, SIG_IGN);
+}
+
+void StopSignal::release() {
+  std::signal(SIGPIPE, SIG_DFL);
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 bool StopSignal::wait(std::int64_t timeout_ms) {

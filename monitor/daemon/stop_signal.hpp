@@ -6,15 +6,23 @@
 
 namespace clearance {
 
-// Made before any other thread: blocks both signals in all of them.
+// Made before any other thread: blocks both signals in all of them. The sooner it is made, the
+// shorter is the time in which they end the program in the system's way.
 class StopSignal {
  public:
   StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  // For work that nobody has to end in order: gives the signals back to the system, also one that
+  // has come already.
+  void release();
+
   // True: a signal has come, now or before. Waits for one up to the given time.
   bool wait(std::int64_t timeout_ms);
 
  private:
-  sigset_t signals_;
+  sigset_t signals_, before_;
   bool came_ = false;
 };
 

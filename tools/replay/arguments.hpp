@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "monitor/daemon/dds_arguments.hpp"
+#include "monitor/daemon/stop_signal.hpp"
 
 namespace clearance {
 
@@ -40,6 +41,6 @@ struct ReplayArguments {
 
 // tools/replay/offline.cpp, tools/replay/publish.cpp. The exit code.
 [[nodiscard]] int replay_without_dds(const ReplayArguments& arguments);
-[[nodiscard]] int replay_over_dds(const ReplayArguments& arguments);
+[[nodiscard]] int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop);
 
 }  // namespace clearance

@@ -257,8 +257,7 @@ int Publishing::finish(const RecordingReader& reader) {
 
 }  // namespace
 
-int replay_over_dds(const ReplayArguments& arguments) {
-  StopSignal stop;  // before anything that takes time
+int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
   const RecordingOutline found = outline(arguments.recording);
   if (!found.error.empty()) {
     std::fprintf(stderr, "clearance-replay: %s\n", found.error.c_str());

@@ -1,0 +1,38 @@
+// What every program does with the signals that stop it.
+#include "monitor/daemon/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+namespace clearance {
+namespace {
+
+TEST(RunProgram, KeepsASignalThatComesAtOnceUntilTheBodyAsks) {
+  const auto body = [](StopSignal& signal) {
+    std::raise(SIGTERM);
+    return signal.wait(0) ? kOk : kFailed;
+  };
+  EXPECT_EXIT(std::_Exit(run_program("told-to-stop", body)), testing::ExitedWithCode(kOk), "");
+}
+
+TEST(RunProgram, EndsBySignalWhereTheBodyDoesNotWantToBeAsked) {
+  for (const bool early : {false, true}) {
+    const auto body = [early](StopSignal& signal) {
+      if (early) std::raise(SIGINT);
+      signal.release();
+      std::raise(SIGINT);
+      return kOk;
+    };
+    EXPECT_EXIT(std::_Exit(run_program("interrupted", body)), testing::KilledBySignal(SIGINT), "");
+  }
+}
+
+TEST(RunProgram, SaysWhatWasThrownAndFails) {
+  const auto body = [](StopSignal&) -> int { throw std::runtime_error("no cell today"); };
+  EXPECT_EXIT(std::_Exit(run_program("unlucky", body)), testing::ExitedWithCode(kFailed),
+              "unlucky: no cell today");
+}
+
+}  // namespace
+}  // namespace clearance
