@@ -63,6 +63,7 @@ struct Monitor::State {
 
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
+  [[nodiscard]] PairReport report_pair(std::uint32_t pair, const PairSummary& state) const noexcept;
   [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
   [[nodiscard]] Clearance rest() const noexcept;
   [[nodiscard]] Clearance pending() const noexcept;
@@ -91,10 +92,6 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept { state_->refuse(object, cause); }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->report_pair(pair); }
-
-std::uint64_t Monitor::refreshed_cycle(std::uint32_t pair) const noexcept {
-  return state_->triage.refreshed_cycle(pair, state_->table);
-}
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const ObjectState& state = state_->objects[object];
@@ -216,7 +213,7 @@ void Monitor::State::report_pairs() noexcept {
   for (PairReport& published : report.pairs) {
     const std::uint32_t pair = published.pair;
     const PairSummary state = summary(pair);
-    published = report_on(scene, pair, state, objects, parts, table);
+    published = report_pair(pair, state);
     if (table.carried_cycle[pair] == report.cycle) count_in(pair, state);
   }
   for (const std::uint32_t pair : triage.current()) {
@@ -276,8 +273,15 @@ PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
   return summary;
 }
 
+PairReport Monitor::State::report_pair(std::uint32_t pair,
+                                       const PairSummary& state) const noexcept {
+  PairReport made = report_on(scene, pair, state, objects, parts, table);
+  made.refresh_age_cycles = report.cycle - triage.refreshed_cycle(pair, table);
+  return made;
+}
+
 PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {
-  return report_on(scene, pair, summary(pair), objects, parts, table);
+  return report_pair(pair, summary(pair));
 }
 
 }  // namespace clearance

@@ -45,10 +45,6 @@ class Monitor {
   // Any pair as of the last tick, whether it is published or not; all unknown before the first.
   [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
 
-  // The tick in which the pair's bound was last found afresh from poses: by an evaluation, or by
-  // balls around its objects where these prove it far. 0: never.
-  [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair) const noexcept;
-
   // How old an object's pose was at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;
 

@@ -53,6 +53,10 @@ struct PairReport {
   // now - stamp of the pose in use; 0 for a fixed object; -1: never seen.
   std::int64_t age_a_ns = 0, age_b_ns = 0;
   std::uint64_t evaluated_cycle = 0;  // the tick in which distance and witnesses were computed
+  // Ticks since its bounds were last found afresh from the poses of a tick: by an evaluation, or by
+  // balls or hulls around its objects where these prove it out of question. 0: in this one. Counted
+  // from the start where that never was; also while it is unknown.
+  std::uint64_t refresh_age_cycles = 0;
 };
 
 struct ZoneReport {
@@ -89,8 +93,7 @@ struct Report {
   // Object pairs; each is one of the last four.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick
-  // Ticks since the stalest known pair was refreshed: evaluated, or proved by balls around its
-  // objects, placed for that tick, to be out of question. One that never was counts from the start.
+  // The largest PairReport::refresh_age_cycles of all known pairs, published or not.
   std::uint64_t oldest_evaluation_cycles = 0;
   std::vector<PairReport> pairs;  // those with ObjectPair::publish, in scene order; sized once
   std::vector<ZoneReport> zones;  // one a zone, in scene order; sized once

@@ -43,7 +43,7 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   rows_ =
       "tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax,ay,az,bx,by,bz,nx,"
       "ny,nz,"
-      "closing_speed,time_to_contact,age_a_ns,age_b_ns\n";
+      "closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles\n";
 }
 
 void ReportCsv::add(const ReplayedTick& tick) {
@@ -80,6 +80,8 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
     rows_ += ',';
     put(rows_, value);
   }
+  rows_ += ',';
+  put(rows_, pair.refresh_age_cycles);
   rows_ += '\n';
 }
 

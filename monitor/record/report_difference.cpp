@@ -75,6 +75,7 @@ class Comparer {
     field(pair + "age_a_ns", recorded.age_a_ns, replayed.age_a_ns);
     field(pair + "age_b_ns", recorded.age_b_ns, replayed.age_b_ns);
     cycle(pair + "evaluated_cycle", recorded.evaluated_cycle, replayed.evaluated_cycle);
+    field(pair + "refresh_age_cycles", recorded.refresh_age_cycles, replayed.refresh_age_cycles);
   }
 
   void bounds(const std::string& where, const clearance_msg_PairDistance& recorded,

@@ -66,6 +66,7 @@ void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept {
   out.age_a_ns = pair.age_a_ns;
   out.age_b_ns = pair.age_b_ns;
   out.evaluated_cycle = pair.evaluated_cycle;
+  out.refresh_age_cycles = pair.refresh_age_cycles;
 }
 
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,

@@ -39,6 +39,7 @@ TEST(Monitor, ReportsDistanceWitnessesAndNormalInTheWorld) {
   EXPECT_EQ(pair.age_a_ns, 0);
   EXPECT_EQ(pair.age_b_ns, 0);
   EXPECT_EQ(pair.evaluated_cycle, 1u);
+  EXPECT_EQ(pair.refresh_age_cycles, 0u);
 }
 
 TEST(Monitor, DistanceOfAnObjectIsThatOfItsClosestPart) {

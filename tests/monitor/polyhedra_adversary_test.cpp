@@ -264,7 +264,7 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
       least = std::min(least, truth.now[p]);
       least_since = std::min(least_since, truth.since[p]);
       if (pair.status == PairStatus::kUnknown) continue;
-      ASSERT_LE(report.cycle - monitor.refreshed_cycle(p), report.oldest_evaluation_cycles)
+      ASSERT_LE(pair.refresh_age_cycles, report.oldest_evaluation_cycles)
           << "tick " << t << " pair " << p;
     }
     ASSERT_LE(report.lower_all, least + rounding) << "tick " << t;

@@ -18,6 +18,7 @@ inline void append(std::vector<unsigned char>& bytes, const T& figure) {
 inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
   append(bytes, pair.status);
   append(bytes, pair.evaluated_cycle);
+  append(bytes, pair.refresh_age_cycles);
   append(bytes, pair.part_a);
   append(bytes, pair.part_b);
   for (const double figure : {pair.distance, pair.lower, pair.upper, pair.lower_since,

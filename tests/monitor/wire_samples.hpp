@@ -51,6 +51,7 @@ inline void any_pair(std::mt19937_64& random, clearance_msg_PairDistance& pair) 
   pair.age_a_ns = static_cast<std::int64_t>(random());
   pair.age_b_ns = static_cast<std::int64_t>(random());
   pair.evaluated_cycle = random();
+  pair.refresh_age_cycles = random();
 }
 
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_PoseBatch>& batch) {

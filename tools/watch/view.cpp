@@ -11,7 +11,7 @@ namespace clearance::watch {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
-constexpr std::size_t kWideColumns = 150;  // enough for witness points beside each pair
+constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 const char* status_name(std::uint8_t status) {
   return status <= static_cast<std::uint8_t>(PairStatus::kUnknown)
@@ -114,8 +114,9 @@ void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
       .add(", ")
       .add(fmt::format("{} unknown", report.unknown),
            report.unknown != 0 ? Style::kWarning : Style::kPlain)
-      .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m", report.lower_all,
-                       report.lower_all_since));
+      .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m; refreshed no more "
+                       "than {} ticks ago",
+                       report.lower_all, report.lower_all_since, report.oldest_evaluation_cycles));
 }
 
 void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
@@ -199,7 +200,8 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   line.add(metres(pair.distance), Style::kBold)
       .add(metres(pair.lower) + metres(pair.upper))
       .add("  " + speed(pair.closing_speed) + "  " + contact_time(pair.time_to_contact) + "  ")
-      .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status));
+      .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status))
+      .add(fmt::format("{:9}  ", pair.refresh_age_cycles), Style::kDim);
   if (width >= kWideColumns) line.add(point(pair.witness_a) + "  " + point(pair.witness_b) + "  ");
   return line.add(feed.pair_name(pair));
 }
@@ -218,7 +220,8 @@ void add_pairs(std::vector<Line>& lines, const Feed& feed, Size size) {
   if (lines.size() + 3 > size.rows) return;
   lines.emplace_back(size.columns);
   Line& header = lines.emplace_back(size.columns);
-  header.add(" distance    lower    upper  closing  contact  status       ", Style::kDim);
+  header.add(" distance    lower    upper  closing  contact  status       ticks old  ",
+             Style::kDim);
   if (size.columns >= kWideColumns) {
     header.add("witness point on the first  on the second              ", Style::kDim);
   }
