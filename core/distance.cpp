@@ -11,7 +11,7 @@ namespace clearance {
 
 // What the walk leaves open; radii included.
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state) noexcept;
+                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept;
 
 namespace HWY_NAMESPACE {
 
@@ -25,7 +25,7 @@ DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedro
   } else if (walk(a, b, a_from_b, state, result) == WalkEnd::kProved) {
     add_radii(result, a, b);
   } else {
-    result = by_search(a, b, pose_of(a_from_b), state);
+    result = by_search(a, b, pose_of(a_from_b), state, true);
   }
   return result;
 }
@@ -171,13 +171,19 @@ const char* name(DistanceStatus status) noexcept {
 }
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state) noexcept {
+                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
   place(side_a, state.a, side_b);
   place(side_b, state.b, side_a);
   DistanceResult result = core_distance(side_a, side_b, a_from_b);
   state = {side_a.tracked(), side_b.tracked()};
-  if (!(result.lower > 0.0)) measure_overlap(a, b, a_from_b, state, result);
+  if (!(result.lower > 0.0)) {
+    if (depth) {
+      measure_overlap(a, b, a_from_b, state, result);
+    } else {
+      result.status = DistanceStatus::kIterationLimit;
+    }
+  }
   add_radii(result, a, b);
   return result;
 }
@@ -187,9 +193,9 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const DistanceOptions& options) noexcept {
   DistanceResult result;
   if (!far_by_spheres(a, b, a_from_b, options.far_away, result) &&
-      !still_overlapping(a, b, a_from_b, state, result) &&
+      !(options.depth && still_overlapping(a, b, a_from_b, state, result)) &&
       walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-    return by_search(a, b, a_from_b, state);
+    return by_search(a, b, a_from_b, state, options.depth);
   }
   add_radii(result, a, b);
   return result;

@@ -62,6 +62,9 @@ struct TrackingState {
 
 struct DistanceOptions {
   double far_away = kInfinity;  // m: stop as soon as the lower bound reaches this
+  // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
+  // Where they are not proved apart the lower bound may be -infinity then, and the rest says less.
+  bool depth = true;
 };
 
 // noexcept, no heap, deterministic. Any state is accepted.

@@ -42,7 +42,8 @@ double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
   TrackingState cold;
   --evaluation.queries_left;
   const DistanceResult found =
-      distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold);
+      distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold,
+               {.depth = false});
   return rounded_down(found.lower - placing_error(a, b));
 }
 

@@ -21,8 +21,9 @@ class HullQuery {
   // around everything, a hull or their only part.
   [[nodiscard]] bool possible(std::uint32_t pair, const PairTable& table) const noexcept;
 
-  // A lower bound of the pair's distance for the poses in use, m. Takes one query of the budget.
-  // possible(), and both objects are known.
+  // A lower bound of the pair's distance for the poses in use, m; -infinity where the models
+  // overlap: how deep decides nothing. Takes one query of the budget. possible(), and both objects
+  // are known.
   [[nodiscard]] double lower(std::uint32_t pair, Evaluation& evaluation) noexcept;
 
  private:

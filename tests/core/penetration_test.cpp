@@ -283,5 +283,35 @@ TEST(Penetration, AllocatesNothingAndGivesTheSameBits) {
   });
 }
 
+TEST(Penetration, WhereNobodyAsksForTheDepthTheBoundsHoldAndApartNothingChanges) {
+  Random random(77);
+  int overlapping = 0, apart = 0;
+  for (int i = 0; i < 500; ++i) {
+    const ConvexPolyhedron a = made(small_body(random)), b = made(small_body(random));
+    const RelativePose pose = relative_pose(Pose{}, {random.in_box(1.0), random.rotation()});
+    const DistanceResult whole = ask(a, b, pose);
+    // Nor is what a query with the depth has left in the state taken for more than a hint.
+    for (const bool tracked : {false, true}) {
+      TrackingState state;
+      if (tracked) (void)distance(a, b, pose, state);
+      const DistanceResult r = distance(a, b, pose, state, {.depth = false});
+      ASSERT_LE(r.lower, whole.upper) << "case " << i;
+      ASSERT_GE(r.upper, whole.lower) << "case " << i;
+      if (whole.status == DistanceStatus::kOverlapping) {
+        ASSERT_EQ(r.status, DistanceStatus::kIterationLimit) << "case " << i;
+        ASSERT_FALSE(r.lower > 0.0);
+        ++overlapping;
+      } else if (whole.status == DistanceStatus::kConverged && !tracked) {
+        ASSERT_EQ(r.status, whole.status) << "case " << i;
+        ASSERT_EQ(r.lower, whole.lower);
+        ASSERT_EQ(r.upper, whole.upper);
+        ++apart;
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 100);
+  EXPECT_GT(apart, 100);
+}
+
 }  // namespace
 }  // namespace clearance
