@@ -11,13 +11,8 @@ namespace {
 // that take part.
 constexpr double kError = 0x1p-46;
 
-double swept_by(const PlacedPart& part) noexcept {
-  return swept(part.turned, part.ball_in_part.radius);
-}
-
-double sizes(const PlacedPart& a, const PlacedPart& b) noexcept {
-  return a.ball_in_world.centre.lpNorm<1>() + a.world_from_part.position.lpNorm<1>() +
-         b.ball_in_world.centre.lpNorm<1>() + b.world_from_part.position.lpNorm<1>();
+double rounding_of(double gap, double turning, const PlacedPart& a, const PlacedPart& b) noexcept {
+  return kError * (std::abs(gap) + turning + a.coordinates + b.coordinates);
 }
 
 }  // namespace
@@ -25,17 +20,17 @@ double sizes(const PlacedPart& a, const PlacedPart& b) noexcept {
 double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
                 const PlacedPart& b) noexcept {
   if (!a.keeps_direction || !b.keeps_direction) return -kInfinity;
-  const double turned = swept_by(a) + swept_by(b);
+  const double turning = a.turning + b.turning;
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
-  const double gap = lower - middles + turned - kError * (std::abs(lower) + turned + sizes(a, b));
+  const double gap = lower - middles + turning - rounding_of(lower, turning, a, b);
   return std::isfinite(gap) ? gap : -kInfinity;
 }
 
 double lower_along(const Vec3& normal, double kept_gap, const PlacedPart& a,
                    const PlacedPart& b) noexcept {
-  const double turned = swept_by(a) + swept_by(b);
+  const double turning = a.turning + b.turning;
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
-  return kept_gap + middles - turned - kError * (std::abs(kept_gap) + turned + sizes(a, b));
+  return kept_gap + middles - turning - rounding_of(kept_gap, turning, a, b);
 }
 
 }  // namespace clearance

@@ -52,17 +52,21 @@ std::uint32_t likely_row(std::uint32_t pair, const PairTable& table) noexcept {
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
-// A row among others: brought up to date no more precisely than it takes to tell that it is not
-// the closest, else evaluated. False: that would have taken a query too many.
+// A row among others that travel alone proves not to be the closest: brought up to date by that.
+inline bool stays_out(std::uint32_t row, double travelled, double smallest_upper,
+                      PairTable& table) noexcept {
+  const double lower = rounded_down(table.lower[row] - travelled);
+  if (!(lower >= smallest_upper)) return false;
+  table.lower[row] = lower;
+  table.upper[row] = rounded_up(table.upper[row] + travelled);
+  return true;
+}
+
+// Any other row: brought up to date no more precisely than it takes to tell that it is not the
+// closest, else evaluated. False: that would have taken a query too many.
 bool settle_row(std::uint32_t row, double travelled, double smallest_upper,
                 Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const double loose_lower = rounded_down(table.lower[row] - travelled);
-  if (loose_lower >= smallest_upper) {
-    table.lower[row] = loose_lower;
-    table.upper[row] = rounded_up(table.upper[row] + travelled);
-    return true;
-  }
   const RowBounds now = bounds_now(row, travelled, evaluation.parts, table);
   table.lower[row] = now.lower;
   table.upper[row] = now.upper;
@@ -82,8 +86,10 @@ void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
   double smallest_upper = table.upper[likely], least = table.lower[likely];
   for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
     if (row == likely) continue;
-    if (!settle_row(row, travelled, smallest_upper, evaluation)) all_that_matter = false;
-    smallest_upper = std::min(smallest_upper, table.upper[row]);
+    if (!stays_out(row, travelled, smallest_upper, table)) {
+      if (!settle_row(row, travelled, smallest_upper, evaluation)) all_that_matter = false;
+      smallest_upper = std::min(smallest_upper, table.upper[row]);
+    }
     least = std::min(least, table.lower[row]);
   }
   note_carried(pair, evaluation.objects, evaluation.cycle, table);

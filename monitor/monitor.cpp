@@ -18,6 +18,8 @@
 namespace clearance {
 namespace {
 
+constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();  // of queries
+
 class LargestTwo {
  public:
   void add(double length) noexcept {
@@ -63,7 +65,8 @@ struct Monitor::State {
 
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
-  [[nodiscard]] PairReport report_pair(std::uint32_t pair, const PairSummary& state) const noexcept;
+  void write_report(std::uint32_t pair, const PairSummary& state,
+                    PairReport& written) const noexcept;
   [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
   [[nodiscard]] Clearance rest() const noexcept;
   [[nodiscard]] Clearance pending() const noexcept;
@@ -92,6 +95,18 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept { state_->refuse(object, cause); }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->report_pair(pair); }
+
+PassageBounds Monitor::passage(std::uint32_t pair, double level) const noexcept {
+  State& s = *state_;
+  const PairSummary known = s.summary(pair);
+  PassageBounds bounds{known.lower_since, known.upper_since};
+  if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
+  Evaluation evaluation{s.objects, s.parts, s.report.cycle, s.table, kNoLimit};
+  const PassageBounds found = passage_of(pair, level, evaluation);
+  bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
+  bounds.upper = std::min(bounds.upper, found.upper);
+  return bounds;
+}
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const ObjectState& state = state_->objects[object];
@@ -213,7 +228,7 @@ void Monitor::State::report_pairs() noexcept {
   for (PairReport& published : report.pairs) {
     const std::uint32_t pair = published.pair;
     const PairSummary state = summary(pair);
-    published = report_pair(pair, state);
+    write_report(pair, state, published);
     if (table.carried_cycle[pair] == report.cycle) count_in(pair, state);
   }
   for (const std::uint32_t pair : triage.current()) {
@@ -266,22 +281,26 @@ Clearance Monitor::State::pending() const noexcept {
 }
 
 PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
-  PairSummary summary = summary_of(pair, objects, parts, report.cycle, table);
+  // Of other pairs nobody asks how near they came, but for the least of all.
+  const bool closely = scene.pairs[pair].publish || zones.has(pair);
+  PairSummary summary = summary_of(pair, objects, parts, report.cycle, table,
+                                   closely ? Since::kByRelative : Since::kByTravel);
   const PassageBounds passage = triage.passage(pair);
   summary.lower_since = std::min(summary.lower, std::max(summary.lower_since, passage.lower));
   summary.upper_since = std::min(summary.upper_since, passage.upper);
   return summary;
 }
 
-PairReport Monitor::State::report_pair(std::uint32_t pair,
-                                       const PairSummary& state) const noexcept {
-  PairReport made = report_on(scene, pair, state, objects, parts, table);
-  made.refresh_age_cycles = report.cycle - triage.refreshed_cycle(pair, table);
-  return made;
+void Monitor::State::write_report(std::uint32_t pair, const PairSummary& state,
+                                  PairReport& written) const noexcept {
+  report_on(pair, state, objects, parts, table, written);
+  written.refresh_age_cycles = report.cycle - triage.refreshed_cycle(pair, table);
 }
 
 PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {
-  return report_pair(pair, summary(pair));
+  PairReport written;
+  write_report(pair, summary(pair), written);
+  return written;
 }
 
 }  // namespace clearance

@@ -15,22 +15,28 @@ constexpr double kTurnError = 0x1p-48;
 // Squares of differences below 1e-154 underflow; their norm is then below this.
 constexpr double kUnderflow = 1e-150;
 
-double turn_at_most(const Vec4& before, const Vec4& after) noexcept {
-  if (before == after) return 0.0;
+void note_turn(const Vec4& before, const Vec4& after, Motion& motion) noexcept {
+  if (before == after) return;
   const Vec4 from = before / before.norm();
   const Vec4 to = after / after.norm();
   // |q2 - q1| = 2 sin(theta / 4): free of cancellation. q and -q are the same orientation.
-  const double step = std::min((to - from).norm(), (to + from).norm());
-  return rounded_up(2.0 * step) + kTurnError;
+  const double ahead = (to - from).norm(), about = (to + from).norm();
+  motion.turn = rounded_up(2.0 * std::min(ahead, about)) + kTurnError;
+  // The vector part of `to` times the conjugate of `from`.
+  const Vec3 v =
+      from.w() * to.head<3>() - to.w() * from.head<3>() - to.head<3>().cross(from.head<3>());
+  motion.turning = (ahead <= about ? 2.0 : -2.0) * v;
 }
 
 }  // namespace
 
 Motion motion_between(const Pose& before, const Pose& after) noexcept {
-  const Vec3 shift = after.position - before.position;
+  Motion motion;
+  motion.way = after.position - before.position;
   const bool shifted = before.position != after.position;
-  return {.shift = shifted ? rounded_up(shift.norm()) + kUnderflow : 0.0,
-          .turn = turn_at_most(before.orientation.coeffs(), after.orientation.coeffs())};
+  motion.shift = shifted ? rounded_up(motion.way.norm()) + kUnderflow : 0.0;
+  note_turn(before.orientation.coeffs(), after.orientation.coeffs(), motion);
+  return motion;
 }
 
 double moved_at_most(const Motion& motion, double reach) noexcept {

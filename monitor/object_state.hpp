@@ -26,6 +26,7 @@ struct ObjectState {
   // m, set by travel().
   double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
   double turned = 0.0;       // Motion::turn, in all
+  double reach = kInfinity;  // no point of it is farther from its origin, m; set by travel()
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
   // As sent; the orientation is normalised where it is used.

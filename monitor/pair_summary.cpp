@@ -4,10 +4,15 @@
 #include <cmath>
 
 #include "monitor/closing.hpp"
+#include "monitor/relative_travel.hpp"
 #include "monitor/rounding.hpp"
 
 namespace clearance {
 namespace {
+
+// Of the distance: what objects have travelled leaves less than half of this open, where nobody
+// has to know how they go together.
+constexpr double kSmallTravel = 1.0 / 64.0;
 
 PairStatus status_of(DistanceStatus status) noexcept {
   switch (status) {
@@ -37,7 +42,7 @@ double lower_between(double before, double now, double travel) noexcept {
 // The row with the smallest upper bound, evaluated ones before all others.
 std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTable& table) noexcept {
   std::uint32_t closest = first;
-  for (std::uint32_t row = first; row < end; ++row) {
+  for (std::uint32_t row = first + 1; row < end; ++row) {
     const bool evaluated = table.row_evaluated_cycle[row] > 0;
     const bool closest_evaluated = table.row_evaluated_cycle[closest] > 0;
     if (evaluated != closest_evaluated ? evaluated : table.upper[row] < table.upper[closest]) {
@@ -45,6 +50,24 @@ std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTabl
     }
   }
   return closest;
+}
+
+RowBounds bounds_as_carried(std::uint32_t pair, const PairTable& table) noexcept {
+  const auto first = table.upper.begin() + table.first_row[pair];
+  const auto end = table.upper.begin() + table.first_row[pair + 1];
+  return {table.least_lower[pair], *std::min_element(first, end)};
+}
+
+RowBounds pair_bounds_now(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                          const std::vector<PlacedPart>& parts, const PairTable& table) noexcept {
+  const double travelled = travelled_since(pair, objects, table);
+  RowBounds least{kInfinity, kInfinity};
+  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+    const RowBounds now = bounds_now(row, travelled, parts, table);
+    least.lower = std::min(least.lower, now.lower);
+    least.upper = std::min(least.upper, now.upper);
+  }
+  return least;
 }
 
 // What this tick's evaluations say about the pair; kCarried when they do not decide it.
@@ -74,19 +97,23 @@ PairReport unknown_report() noexcept {
 
 double lower_since_last_tick(std::uint32_t pair, double lower,
                              const std::vector<ObjectState>& objects, std::uint64_t cycle,
-                             const PairTable& table) noexcept {
+                             const PairTable& table, Since since) noexcept {
   const ObjectState& a = objects[table.object_a[pair]];
   const ObjectState& b = objects[table.object_b[pair]];
   if (a.began || b.began) return lower;
   if (a.leapt || b.leapt) return -kInfinity;
-  const double travel = a.travel + b.travel;
+  double travel = rounded_up(a.travel + b.travel);
   if (travel == 0.0) return lower;
-  return lower_between(lower_last_tick(pair, objects, cycle, table), lower, rounded_up(travel));
+  const bool matters = travel > kSmallTravel * lower && a.travel > 0.0 && b.travel > 0.0;
+  if (since == Since::kByRelative && matters) {
+    travel = std::min(travel, relative_travel(a, b));
+  }
+  return lower_between(lower_last_tick(pair, objects, cycle, table), lower, travel);
 }
 
 PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
                        const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                       const PairTable& table) noexcept {
+                       const PairTable& table, Since since) noexcept {
   const ObjectState& a = objects[table.object_a[pair]];
   const ObjectState& b = objects[table.object_b[pair]];
   PairSummary summary;
@@ -94,15 +121,11 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
   const std::uint32_t first = table.first_row[pair];
   const std::uint32_t end = table.first_row[pair + 1];
   const bool carried = table.carried_cycle[pair] == cycle;
-  const double travelled = carried ? 0.0 : travelled_since(pair, objects, table);
-  summary.lower = kInfinity;
-  for (std::uint32_t row = first; row < end; ++row) {
-    const RowBounds now = carried ? RowBounds{table.lower[row], table.upper[row]}
-                                  : bounds_now(row, travelled, parts, table);
-    summary.lower = std::min(summary.lower, now.lower);
-    summary.upper = std::min(summary.upper, now.upper);
-  }
-  summary.lower_since = lower_since_last_tick(pair, summary.lower, objects, cycle, table);
+  const RowBounds now =
+      carried ? bounds_as_carried(pair, table) : pair_bounds_now(pair, objects, parts, table);
+  summary.lower = now.lower;
+  summary.upper = now.upper;
+  summary.lower_since = lower_since_last_tick(pair, summary.lower, objects, cycle, table, since);
   summary.upper_since = summary.upper;
   summary.row = closest_row(first, end, table);
   summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
@@ -122,16 +145,16 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
   return summary;
 }
 
-PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& summary,
-                     const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
-                     const PairTable& table) noexcept {
-  const ObjectState& a = objects[scene.pairs[pair].first];
-  const ObjectState& b = objects[scene.pairs[pair].second];
-  PairReport report = unknown_report();
+void report_on(std::uint32_t pair, const PairSummary& summary,
+               const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
+               const PairTable& table, PairReport& report) noexcept {
+  const ObjectState& a = objects[table.object_a[pair]];
+  const ObjectState& b = objects[table.object_b[pair]];
+  if (summary.status == PairStatus::kUnknown) report = unknown_report();
   report.pair = pair;
   report.age_a_ns = a.age_ns;
   report.age_b_ns = b.age_ns;
-  if (summary.status == PairStatus::kUnknown) return report;
+  if (summary.status == PairStatus::kUnknown) return;
 
   report.status = summary.status;
   report.lower = summary.lower;
@@ -144,14 +167,13 @@ PairReport report_on(const Scene& scene, std::uint32_t pair, const PairSummary& 
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;
   report.normal = closest.normal;
-  if (a.velocity_known() && b.velocity_known()) {
-    report.closing_speed =
-        closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
-                      velocity_at(closest.witness_b, b.pose, b.twist), closest.normal);
-  }
+  report.closing_speed =
+      a.velocity_known() && b.velocity_known()
+          ? closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
+                          velocity_at(closest.witness_b, b.pose, b.twist), closest.normal)
+          : kNan;
   report.time_to_contact = time_to_contact(report.distance, report.closing_speed);
   report.evaluated_cycle = summary.evaluated_cycle;
-  return report;
 }
 
 }  // namespace clearance

@@ -19,23 +19,28 @@ struct PairSummary {
   std::uint64_t evaluated_cycle = 0;  // of that row; 0: no row ever was
 };
 
+// How closely the time since the last tick is looked at.
+enum class Since : std::uint8_t {
+  kByTravel,    // by how far each object has come
+  kByRelative,  // and by how far as seen from the other
+};
+
 // Of any pair, brought up to date this tick or not.
 [[nodiscard]] PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
                                      const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                                     const PairTable& table) noexcept;
+                                     const PairTable& table, Since since) noexcept;
 
 // A known pair's distance since the last tick, from its bounds at both ends of the way; for the
 // poses in use, those of this tick telling `lower`, m.
 [[nodiscard]] double lower_since_last_tick(std::uint32_t pair, double lower,
                                            const std::vector<ObjectState>& objects,
-                                           std::uint64_t cycle, const PairTable& table) noexcept;
+                                           std::uint64_t cycle, const PairTable& table,
+                                           Since since) noexcept;
 
-// What is published of it.
-[[nodiscard]] PairReport report_on(const Scene& scene, std::uint32_t pair,
-                                   const PairSummary& summary,
-                                   const std::vector<ObjectState>& objects,
-                                   const std::vector<PlacedPart>& parts,
-                                   const PairTable& table) noexcept;
+// What is published of it, into a report of that pair; everything but its refresh.
+void report_on(std::uint32_t pair, const PairSummary& summary,
+               const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
+               const PairTable& table, PairReport& report) noexcept;
 
 // Nothing is known: figures NaN, bounds infinite.
 [[nodiscard]] PairReport unknown_report() noexcept;

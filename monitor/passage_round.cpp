@@ -13,6 +13,9 @@ namespace {
 PassageBounds look_closer(std::uint32_t pair, double level, double travel,
                           Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
+  if (table.carried_cycle[pair] != evaluation.cycle) {
+    travel = rounded_up(travel + travelled_since(pair, evaluation.objects, table));
+  }
   PassageBounds all{.lower = kInfinity};
   for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
     PassageBounds bounds{.lower = rounded_down(table.lower[row] - travel)};
@@ -30,6 +33,16 @@ PassageBounds look_closer(std::uint32_t pair, double level, double travel,
 
 }  // namespace
 
+PassageBounds passage_of(std::uint32_t pair, double level, Evaluation& evaluation) noexcept {
+  const ObjectState& a = evaluation.objects[evaluation.table.object_a[pair]];
+  const ObjectState& b = evaluation.objects[evaluation.table.object_b[pair]];
+  if (a.began || b.began || a.leapt || b.leapt) return {};
+  const double unseen = rounded_up(a.unseen_since + b.unseen_since);
+  const PassageBounds found =
+      look_closer(pair, rounded_up(level + unseen), rounded_up(a.travel + b.travel), evaluation);
+  return {rounded_down(found.lower - unseen), rounded_up(found.upper + unseen)};
+}
+
 void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
                           Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
@@ -43,15 +56,18 @@ void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
   const double unseen_now = rounded_up(a.may_have_moved + b.may_have_moved);
   const double unseen = rounded_up(a.unseen_since + b.unseen_since);
   const double now = rounded_down(table.least_lower[pair] - unseen_now);
-  const double known =
-      lower_since_last_tick(pair, table.least_lower[pair], objects, evaluation.cycle, table);
+  // Most pairs are decided by less than what is known.
+  const double at_least = table.least_lower[pair] - 2.0 * travel - unseen;
+  if (!(zones.undecided(pair, now, at_least) > -kInfinity)) return;
+  const double known = lower_since_last_tick(pair, table.least_lower[pair], objects,
+                                             evaluation.cycle, table, Since::kByRelative);
   PassageBounds bounds{.lower = rounded_down(known - unseen)};
   double level = zones.undecided(pair, now, bounds.lower);
   if (!(level > -kInfinity)) return;
   while (level > -kInfinity && evaluation.queries_left >= Passage::kLeastQueries) {
-    const PassageBounds found = look_closer(pair, rounded_up(level + unseen), travel, evaluation);
-    bounds.lower = std::max(bounds.lower, rounded_down(found.lower - unseen));
-    bounds.upper = std::min(bounds.upper, rounded_up(found.upper + unseen));
+    const PassageBounds found = passage_of(pair, level, evaluation);
+    bounds.lower = std::max(bounds.lower, found.lower);
+    bounds.upper = std::min(bounds.upper, found.upper);
     level = zones.undecided(pair, std::nextafter(level, -kInfinity), bounds.lower);
   }
   decided_.push_back({pair, bounds});

@@ -10,6 +10,11 @@
 
 namespace clearance {
 
+// How near a known pair was at any instant since the last tick, looked at closer until `level` is
+// decided, m, or the budget ends; for where its objects may have been. Nothing: infinite.
+[[nodiscard]] PassageBounds passage_of(std::uint32_t pair, double level,
+                                       Evaluation& evaluation) noexcept;
+
 class PassageRound {
  public:
   // `most`: pairs that a tick can look at closer.

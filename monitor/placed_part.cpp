@@ -64,14 +64,14 @@ void compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcep
   if (!offset_turns) part.world_from_part.orientation = world_from_object.orientation;
   if (!object_turns) part.world_from_part.orientation = offset.orientation;
   part.turn_error = offset_turns && object_turns ? kPlacingError : 0.0;
-  part.shift_error = kPlacingError * (world_from_object.position.norm() + offset.position.norm());
+  part.shift_error = kPlacingError * (world_from_object.position.norm() + part.offset_length);
 }
 
 Ball place_ball(const PlacedPart& part) noexcept {
   const Vec3& centre = part.ball_in_part.centre;
   const Vec3& position = part.world_from_part.position;
-  const double error = kPlacingError * (centre.norm() + position.norm()) + part.shift_error +
-                       swept(part.turn_error, centre.norm());
+  const double error = kPlacingError * (part.ball_offset + position.norm()) + part.shift_error +
+                       swept(part.turn_error, part.ball_offset);
   return {.centre = part.world_from_part_rotation * centre + position,
           .radius = rounded_up(part.ball_in_part.radius + error)};
 }
@@ -102,6 +102,8 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
       placed.reach = reach_of(part);
       placed.extent = extent_of(part.shape);
       placed.ball_in_part = ball_around(part.shape);
+      placed.offset_length = part.object_from_part.position.norm();
+      placed.ball_offset = placed.ball_in_part.centre.norm();
       placed.keeps_direction = part.shape.bounded() || is_half_space(part.shape);
       parts.push_back(placed);
     }
@@ -110,7 +112,7 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
 }
 
 void place(const ObjectState& object, PlacedPart& part) noexcept {
-  part.turned = object.turned;
+  part.turning = swept(object.turned, part.ball_in_part.radius);
   if (object.moved || !part.placed) place_at(object.pose, part);
 }
 
@@ -118,6 +120,8 @@ void place_at(const Pose& world_from_object, PlacedPart& part) noexcept {
   compose_with_error(world_from_object, part);
   part.world_from_part_rotation = part.world_from_part.orientation.normalized().toRotationMatrix();
   part.ball_in_world = place_ball(part);
+  part.coordinates =
+      part.ball_in_world.centre.lpNorm<1>() + part.world_from_part.position.lpNorm<1>();
   part.placed = true;
 }
 

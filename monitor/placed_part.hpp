@@ -29,7 +29,10 @@ struct PlacedPart {
   Pose world_from_part;      // as the queries use it
   double shift_error = 0.0;  // its position is at most this far from the exact one, m
   double turn_error = 0.0;   // |R - R_exact| is at most this
-  double turned = 0.0;       // its object, in all, ObjectState::turned
+  // How far turning, in all (ObjectState::turned), can have moved a point of its ball about the
+  // ball's middle, m.
+  double turning = 0.0;
+  double coordinates = 0.0;  // absolute, of its ball and its position, all together, m
   Mat3 world_from_part_rotation = Mat3::Identity();
 
   // From the scene.
@@ -38,6 +41,8 @@ struct PlacedPart {
   double reach = kInfinity;   // no point of it is farther from its object's origin, m
   double extent = kInfinity;  // no point of it is farther from its own origin, m
   Ball ball_in_part;
+  double offset_length = 0.0, ball_offset = 0.0;  // from its object's origin to its own, and on to
+                                                  // the ball's centre, m
   // A direction that separates it from another part goes on doing so, by as much more or less as
   // the two are shifted along it: bounded, or a half-space. Of other unbounded bodies rounding
   // leaves open how far along their rays a direction holds.

@@ -38,8 +38,11 @@ class ZoneRound {
     std::uint32_t object, pair;
   };
   [[nodiscard]] std::span<const std::uint32_t> zones_of(std::uint32_t pair) const noexcept;
+  // Both of its objects', rounded up, m.
+  [[nodiscard]] double margins_of(std::uint32_t pair) const noexcept;
 
   const Scene& scene_;
+  std::vector<double> margins_;                    // by object, m
   std::vector<std::uint32_t> first_zone_, zones_;  // zones by pair; none where there are no zones
   std::vector<std::vector<Member>> members_;       // by zone
   std::vector<double> most_margins_;               // by zone: of any of its pairs, m

@@ -6,16 +6,14 @@
 
 namespace clearance {
 
-ZoneUpdate::ZoneUpdate(const Scene& scene, const Zone& zone, const ZoneReport& before) noexcept
-    : scene_(&scene),
-      zone_(&zone),
+ZoneUpdate::ZoneUpdate(const Zone& zone, const ZoneReport& before) noexcept
+    : zone_(&zone),
       was_active_(before.active),
+      outside_from_(was_active_ ? well_outside() : zone.enter_below),
       pair_(before.pair),
       pair_since_(before.pair) {}
 
-void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary) noexcept {
-  const auto& [first, second, publish] = scene_->pairs[pair];
-  const double margins = rounded_up(scene_->objects[first].margin + scene_->objects[second].margin);
+void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary, double margins) noexcept {
   Clearance clearance{.now = summary.lower, .since = summary.lower_since};
   if (margins > 0.0) {
     clearance.now = rounded_down(clearance.now - margins);
@@ -48,15 +46,9 @@ void ZoneUpdate::finish(std::uint64_t cycle, ZoneReport& report) const noexcept 
   if (report.changed) report.since_cycle = cycle;
 }
 
-double ZoneUpdate::outside_from() const noexcept {
-  return was_active_ ? well_outside() : zone_->enter_below;
-}
-
 double ZoneUpdate::well_outside() const noexcept {
   return std::nextafter(zone_->leave_above, kInfinity);
 }
-
-bool ZoneUpdate::outside(double clearance) const noexcept { return clearance >= outside_from(); }
 
 void ZoneUpdate::take(const Clearance& clearance, std::uint32_t pair) noexcept {
   if (clearance.now < least_.now) {

@@ -86,8 +86,10 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(kOffline);
-  app.add_option("--expect-min-distance", arguments.expect_min_distance,
-                 "Every pair is proved to be at least this far apart (m) in every tick")
+  app.add_option(
+         "--expect-min-distance", arguments.expect_min_distance,
+         "Every pair is proved to be at least this far apart (m) in every tick, and to have "
+         "been so at every instant since the tick before: nothing passes through in between")
       ->needs(offline)
       ->group(kOffline);
   app.add_option("--expect-no-zone", arguments.expect_no_zone,

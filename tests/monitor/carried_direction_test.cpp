@@ -27,8 +27,8 @@ class AskedOnce {
   }
 
   void move(std::size_t object, const Pose& to) {
-    parts_[object].turned =
-        rounded_up(parts_[object].turned + motion_between(poses_[object], to).turn);
+    turned_[object] = rounded_up(turned_[object] + motion_between(poses_[object], to).turn);
+    parts_[object].turning = swept(turned_[object], parts_[object].ball_in_part.radius);
     poses_[object] = to;
     place_at(to, parts_[object]);
   }
@@ -49,6 +49,7 @@ class AskedOnce {
   Scene scene_;
   std::vector<PlacedPart> parts_;
   std::array<Pose, 2> poses_;
+  std::array<double, 2> turned_{};
   Vec3 normal_;
   double kept_ = 0.0;
 };

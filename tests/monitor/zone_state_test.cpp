@@ -7,6 +7,8 @@
 namespace clearance {
 namespace {
 
+constexpr double kMargins = 0.03;
+
 // Two pairs, margins 0.01 + 0.02 each; enter below 0.1, leave above 0.15.
 class ZoneState : public testing::Test {
  protected:
@@ -20,14 +22,14 @@ class ZoneState : public testing::Test {
 
   // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
   const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
-    ZoneUpdate update(scene_, zone_, report_);
+    ZoneUpdate update(zone_, report_);
     return tick({.status = status, .lower = first + 0.03, .lower_since = first + 0.03},
                 {.status = status, .lower = second + 0.03, .lower_since = second + 0.03});
   }
   const ZoneReport& tick(const PairSummary& first, const PairSummary& second) {
-    ZoneUpdate update(scene_, zone_, report_);
-    update.add(0, first);
-    update.add(1, second);
+    ZoneUpdate update(zone_, report_);
+    update.add(0, first, kMargins);
+    update.add(1, second, kMargins);
     update.finish(++cycle_, report_);
     return report_;
   }
@@ -97,7 +99,7 @@ TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
 }
 
 TEST_F(ZoneState, AZoneOfNoPairsIsNeverActive) {
-  const ZoneUpdate update(scene_, zone_, report_);
+  const ZoneUpdate update(zone_, report_);
   update.finish(1, report_);
   EXPECT_FALSE(report_.active);
   EXPECT_TRUE(report_.proved);
