@@ -73,7 +73,8 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
 
 std::optional<std::string> Expectations::check_distance(const Report& report,
                                                         const Monitor& monitor) {
-  if (!min_distance_ || distance_broken_ || report.lower_all >= *min_distance_) return std::nullopt;
+  if (!min_distance_ || distance_broken_) return std::nullopt;
+  if (report.lower_all >= *min_distance_) return check_passages(report, monitor);
   distance_broken_ = true;
   std::uint32_t nearest = 0;
   for (std::uint32_t p = 1; p < scene_.pairs.size(); ++p) {
@@ -87,6 +88,26 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
   }
   return who + " is not proved to be " + metres(*min_distance_) + " apart: " + name(pair.status) +
          ", lower bound " + metres(pair.lower) + ", at least " + expected;
+}
+
+// Nothing is too near now; was something since the last tick?
+std::optional<std::string> Expectations::check_passages(const Report& report,
+                                                        const Monitor& monitor) {
+  if (report.lower_all_since >= *min_distance_) return std::nullopt;
+  for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+    const PassageBounds found = monitor.passage(p, *min_distance_);
+    if (found.lower >= *min_distance_) continue;
+    distance_broken_ = true;
+    const std::string who = pair_name(scene_, p);
+    const std::string expected = ", at least " + metres(*min_distance_) + " expected";
+    if (found.upper < *min_distance_) {
+      return who + " was no more than " + metres(found.upper) +
+             " apart between this tick and the last" + expected;
+    }
+    return who + " is not proved to have been " + metres(*min_distance_) +
+           " apart between this tick and the last: lower bound " + metres(found.lower) + expected;
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {

@@ -13,7 +13,8 @@ namespace clearance {
 
 class Expectations {
  public:
-  // `min_distance`, m. Zone names that the scene does not have are told in error().
+  // `min_distance`, m: of every pair in every tick and at every instant since the last. Zone names
+  // that the scene does not have are told in error().
   Expectations(const Scene& scene, std::optional<double> min_distance,
                const std::vector<std::string>& no_zone);
 
@@ -35,6 +36,8 @@ class Expectations {
 
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
+                                                          const Monitor& monitor);
+  [[nodiscard]] std::optional<std::string> check_passages(const Report& report,
                                                           const Monitor& monitor);
 
   const Scene& scene_;
