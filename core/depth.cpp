@@ -36,6 +36,28 @@ double certified(const DifferenceBody& body, const DepthSearch::Best& best, cons
   return -separation(s, a, b, p) + p.slack;
 }
 
+// How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
+double off_rotation(const Mat3& r) noexcept {
+  return 0.5 * (r.transpose() * r - Mat3::Identity()).norm() + 0x1p-50;
+}
+
+// Depth::lower from the least h that the search has found anywhere. Corners are anchors: of an
+// unbounded body, too, no more than those counts here.
+double depth_from_below(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+                        const Precision& p, double least) noexcept {
+  // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
+  const double apart = a_from_b.translation.norm();
+  const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(least));
+  const double rounding = kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
+  if (least > rounding) return least - rounding;
+  // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
+  // If the bodies overlap there, they are no farther apart than B is from there.
+  const double off = off_rotation(a_from_b.rotation);
+  const Precision placed = precision(a.body(), b.body(), {off, 0.0, apart}, 0.0);
+  if (!(least > kOnArc * p.size + placed.slack + off * scaled)) return -kInfinity;
+  return least - rounding - 2.0 * off * p.reach_b;
+}
+
 // Two points or segments have no inside: they meet in a point and are parted by next to nothing.
 Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
   const auto along = [](const ActiveSide& s) {
@@ -79,7 +101,8 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   Depth out;
   const DepthSearch::Best& best = search.best();
   if (best.source == Source::kNothing) {
-    out.lower = std::max(0.0, search.lower() - kOnArc * start.size - start.slack);
+    const double rounding = kOnArc * start.size + start.slack;
+    if (search.lower() > rounding) out.lower = search.lower() - rounding;
     return out;
   }
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
@@ -92,12 +115,7 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
   }
   if (!search.ended_early()) {
-    // Corners are anchors: of an unbounded body, too, no more than those counts here.
-    // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
-    const double beyond = start.reach_b - start.reach_a - a_from_b.translation.norm();
-    const double scaled = std::clamp(beyond, 0.0, std::abs(best.height));
-    const double rounding = kOnArc * start.size + start.slack + a_from_b.rotation_error * scaled;
-    out.lower = std::max(0.0, std::min(search.lower(), best.height) - rounding);
+    out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
   return out;
 }

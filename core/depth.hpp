@@ -24,10 +24,10 @@ namespace clearance {
 
 struct Depth {
   // m, rounding included. lower > 0: the bodies overlap, and no translation shorter than this parts
-  // them. upper: B moved by this along `normal` is clear of A; negative: they are this far apart as
-  // they are (the search ends there, and lower is 0). Infinity: no translation is known to part
-  // them.
-  double lower = 0.0, upper = kInfinity;
+  // them; negative: they overlap or are no farther apart than this. upper: B moved by this along
+  // `normal` is clear of A; negative: they are this far apart as they are (the search ends there,
+  // and knows no lower). Infinity: no translation is known to part them.
+  double lower = -kInfinity, upper = kInfinity;
   double value = kInfinity;    // m: best estimate; infinity: none found
   Vec3 normal = Vec3::Zero();  // unit, common frame, from A towards B
 };

@@ -152,7 +152,8 @@ void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
     result.lower = -found.upper;
     result.normal = found.normal;
   }
-  result.distance = std::max(result.distance, result.lower);
+  result.upper = std::min(result.upper, -found.lower);
+  result.distance = std::max(std::min(result.distance, result.upper), result.lower);
   const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
   // An overlap by less than the slack can be seen from one side only: thrice.
   const bool tight = result.upper - result.lower <= 3.0 * p.slack + 5.0 * p.tight;
