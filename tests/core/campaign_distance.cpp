@@ -1,5 +1,5 @@
 // Long seeded campaign: distance() on every hard family, cold, tracked, swapped and with nonsense
-// states.
+// states, and with the state of another pair.
 //
 // Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
 // tests/shared/distance_judge.hpp. Prints what is wrong and writes each failing case as a line that
@@ -49,8 +49,10 @@ class Campaign {
       state = nonsense(judge, random);
       check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "nonsense");
     }
+    check(judge, judge.ask(c.pose_a, c.pose_b, last_), truth, c.pose_a, c.pose_b, "another's");
     TrackingState other;
     check(swapped, swapped.ask(c.pose_b, c.pose_a, other), truth, c.pose_b, c.pose_a, "swapped");
+    last_ = other;
   }
 
   void run_motion(const hard::MotionFamily& family, std::uint64_t seed, int steps) {
@@ -102,6 +104,7 @@ class Campaign {
     TrackingState out;
     out.a = nonsense_side(judge.a(), random);
     out.b = nonsense_side(judge.b(), random);
+    out.a.deep = random.chance(0.5);
     return out;
   }
 
@@ -129,6 +132,7 @@ class Campaign {
   std::ofstream findings_;
   std::map<std::string, Tally> tallies_;
   Tally* tally_ = nullptr;
+  TrackingState last_;  // of the pair before
   std::string id_, last_written_;
   std::function<std::string()> line_;
 };

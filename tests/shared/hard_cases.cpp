@@ -4,6 +4,7 @@
 
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/exact_placement.hpp"
+#include "tests/shared/tied_cases.hpp"
 
 namespace clearance::hard {
 namespace {
@@ -300,7 +301,12 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"without_end", without_end},
                                         {"links", links},
                                         {"round", round_bodies},
-                                        {"odd_poses", odd_poses}};
+                                        {"odd_poses", odd_poses},
+                                        {"shared_corners", shared_corners},
+                                        {"nested", nested},
+                                        {"twin_facets", twin_facets},
+                                        {"tiny_gaps", tiny_gaps},
+                                        {"mirrored", mirrored}};
 
 }  // namespace
 
