@@ -48,6 +48,10 @@ struct DistanceResult {
 // What a pair remembers between calls: the active feature of each body and where the witness lay on
 // it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
 // a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
+//
+// After a query that was not kFarAway the two points are the witness points, before radii, each in
+// its own body's frame: transform(world_from_b, state.b.point) lies on B to the rounding of B's own
+// pose, however far away A is.
 struct TrackingState {
   static constexpr std::uint8_t kCold = 255;
   struct Side {

@@ -14,8 +14,9 @@ constexpr int kRounds = 64;
 
 // A point of the difference body B - A, and where it comes from.
 struct DifferenceCorner {
-  Vec3 a;     // in frame A
-  WideVec b;  // in frame A
+  Vec3 a;      // in frame A
+  Vec3 own_b;  // in frame B
+  WideVec b;   // the same in frame A
   WideVec difference;
 };
 
@@ -31,7 +32,7 @@ class WideDifference {
                 farthest(b_.body(), -b_.direction_to_own(n), p_.reach_b));
   }
   [[nodiscard]] DifferenceCorner make(const Vec3& a, const Vec3& b_own) const noexcept {
-    DifferenceCorner c{a, to_common(b_own), {}};
+    DifferenceCorner c{a, b_own, to_common(b_own), {}};
     c.difference = c.b - wide(c.a);
     return c;
   }
@@ -90,11 +91,9 @@ class Simplex {
     return closest;
   }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] Vec3 point_on_a() const noexcept {
-    Vec3 p = Vec3::Zero();
-    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * corners_[i].a;
-    return p;
-  }
+  [[nodiscard]] Vec3 point_on_a() const noexcept { return weighted(&DifferenceCorner::a); }
+  // In frame B.
+  [[nodiscard]] Vec3 own_point_on_b() const noexcept { return weighted(&DifferenceCorner::own_b); }
   [[nodiscard]] Vec3 point_on_b() const noexcept {
     Vec3 p = Vec3::Zero();
     for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(corners_[i].b);
@@ -102,24 +101,34 @@ class Simplex {
   }
 
  private:
+  [[nodiscard]] Vec3 weighted(Vec3 DifferenceCorner::*part) const noexcept {
+    Vec3 p = Vec3::Zero();
+    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * (corners_[i].*part);
+    return p;
+  }
+
   std::array<DifferenceCorner, 4> corners_;
   std::array<double, 4> weights_{};
   std::size_t size_ = 0;
 };
 
-void improve_upper(DistanceResult& r, const Simplex& simplex, double length,
-                   double slack) noexcept {
+// The sides keep their features and take the points: as near to them as the features allow, a
+// tracked query begins there.
+void improve_upper(ActiveSide& a, ActiveSide& b, DistanceResult& r, const Simplex& simplex,
+                   double length, double slack) noexcept {
   if (length + slack > r.upper) return;
+  a.place(a.feature(), a.index(), simplex.point_on_a());
+  b.place(b.feature(), b.index(), simplex.own_point_on_b());
   r.upper = length + slack;
   r.distance = length;
-  r.point_on_a = simplex.point_on_a();
+  r.point_on_a = a.common();
   r.point_on_b = simplex.point_on_b();
 }
 
 }  // namespace
 
-void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
-            const Precision& p, DistanceResult& r) noexcept {
+void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
+            DistanceResult& r) noexcept {
   const WideDifference body(a, b, a_from_b, p);
   Simplex simplex;
   simplex.add(body.make(a.own(), b.own()));
@@ -127,11 +136,11 @@ void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     const ClosestPoint closest = simplex.reduce();
     const double length = static_cast<double>(sqrt(closest.length2));
     if (simplex.size() == 4 || !(length > 0.0)) {  // the origin is inside
-      improve_upper(r, simplex, 0.0, p.slack);
+      improve_upper(a, b, r, simplex, 0.0, p.slack);
       r.status = DistanceStatus::kTouching;
       return;
     }
-    improve_upper(r, simplex, length, p.slack);
+    improve_upper(a, b, r, simplex, length, p.slack);
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
     const DifferenceCorner next = body.corner(n);
     const double level = separation({n}, a, b, p);

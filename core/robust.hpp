@@ -11,8 +11,8 @@ namespace clearance {
 // allow. Works on vertices alone, as the hull of the points that the model stores, so that there is
 // no disagreement between rounded facets, edges and vertices; the closest point of the difference
 // body's simplex (Gilbert, Johnson, Keerthi) is computed in twice the precision. Bounds only ever
-// improve.
-void refine(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
-            const Precision& p, DistanceResult& result) noexcept;
+// improve. The sides end at the witness points, by the features they had.
+void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
+            DistanceResult& result) noexcept;
 
 }  // namespace clearance

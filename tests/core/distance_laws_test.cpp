@@ -94,6 +94,34 @@ TEST(Distance, GrowsByAsMuchAsTheBodiesAreTakenApartAlongTheNormal) {
   });
 }
 
+TEST(Distance, LeavesTheWitnessPointsInTheStateEachInItsBodysOwnFrame) {
+  for_each_example([](const Example& e, Random&) {
+    const RelativePose pose = e.pose();
+    TrackingState state;
+    const DistanceResult r = distance(e.a, e.b, pose, state);
+    if (!std::isfinite(r.distance) || !r.normal.allFinite()) return;
+    const Vec3 on_a = state.a.point + e.a.radius * r.normal;
+    const Vec3 on_b = pose.rotation * state.b.point + pose.translation - e.b.radius * r.normal;
+    EXPECT_LE((on_a - r.point_on_a).norm(), 1e-14 * e.size(r)) << e.name;
+    EXPECT_LE((on_b - r.point_on_b).norm(), 1e-14 * e.size(r)) << e.name;
+  });
+}
+
+TEST(Distance, OfABodyFarAwayStillHasAWitnessPointOnTheOtherOneToItsOwnRounding) {
+  // A unit cube at the world's origin, the other one 1 km away.
+  const ConvexPolyhedron cube = std::get<ConvexPolyhedron>(model(hard::box(Vec3::Constant(0.5))));
+  Random random(1);
+  for (int k = 0; k < 100; ++k) {
+    const Pose far{1000.0 * random.direction(), random.rotation()};
+    const Pose here{Vec3::Zero(), random.rotation()};
+    TrackingState state;
+    (void)distance(cube, cube, far, here, state);
+    const Vec3 witness = transform(here, state.b.point);
+    const Vec3 own = here.orientation.conjugate() * witness;
+    EXPECT_LE(own.cwiseAbs().maxCoeff(), 0.5 + 1e-15);
+  }
+}
+
 TEST(Distance, TrackedEqualsColdWithinTheBounds) {
   for_each_example([](const Example& e, Random& random) {
     TrackingState state;
