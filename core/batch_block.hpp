@@ -24,8 +24,9 @@ enum class FeatureKind : std::uint8_t {
   kVertexFacet,
   kFacetVertex,
   kEdgeEdge,
+  kFacetFacet,
 };
-inline constexpr std::size_t kFeatureKinds = 6;
+inline constexpr std::size_t kFeatureKinds = 7;
 
 // Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0.
 enum CommonRow : std::size_t {
@@ -45,8 +46,8 @@ enum CommonRow : std::size_t {
 };
 
 // Rows of the features, from kFeatureRows on: first an edge's or facet's, if there is one, then a
-// vertex's (of two vertices A's first), then what repeats:
-//   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3 (of two edges A's first)
+// vertex's (of two of a kind A's first), then what repeats:
+//   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
 //   facet   normal 3, offset
 //   vertex  position 3
 //   sides of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
@@ -60,9 +61,13 @@ inline constexpr std::size_t kDirectionsOfB = kDirectionsOfA + kMostRepeats * kD
 inline constexpr std::size_t kDirectionsAtEdge = kEdgeRows + kVertexRows;  // edge-vertex
 inline constexpr std::size_t kSides = kFacetRows + kVertexRows;            // facet-vertex
 inline constexpr std::size_t kDirectionsAtFacet = kSides + kMostRepeats * kSideRows;
+inline constexpr std::size_t kSidesOfA = 2 * kFacetRows;  // facet-facet
+inline constexpr std::size_t kMostSidesOfTwo = 6;         // of each: what the rows have room for
+inline constexpr std::size_t kSidesOfB = kSidesOfA + kMostSidesOfTwo * kSideRows;
 
 inline constexpr std::size_t kRows =
     kFeatureRows + kDirectionsAtFacet + kMostRepeats * kDirectionRows;
+static_assert(kSidesOfB + kMostSidesOfTwo * kSideRows <= kRows - kFeatureRows);
 
 struct alignas(64) BatchBlock {
   std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};

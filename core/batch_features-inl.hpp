@@ -1,6 +1,6 @@
-// The straight-line part of core/feature_walk-inl.hpp, operation for operation, for as many pairs
-// as a vector has lanes: are these features the closest ones still, and where do they put the
-// witness points? Compiled once an instruction set.
+// The straight-line part of core/feature_walk-inl.hpp and core/level_walk-inl.hpp, operation for
+// operation, for as many pairs as a vector has lanes: are these features the closest ones still,
+// and where do they put the witness points? Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_FEATURES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_FEATURES_INL_HPP_
 #undef CLEARANCE_BATCH_FEATURES_INL_HPP_
@@ -37,6 +37,9 @@ struct FeatureRows {
   }
   [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
     return load(rows - (kFeatureRows - row) * kBlockLanes);
+  }
+  [[nodiscard]] HWY_INLINE Points common_points(CommonRow row) const {
+    return load_points(rows - (kFeatureRows - row) * kBlockLanes);
   }
   // A rate at which what lies beside a feature falls away; where nothing does, `of_nothing`.
   [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes rate, double of_nothing) const {
@@ -135,6 +138,17 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   return c;
 }
 
+// How far within the sides of a facet, A's or B's, a point lies at least; zero: at most on one.
+template <bool kOfB>
+HWY_INLINE Lanes least_within(const FeatureRows& at, std::size_t row, const Points& p) {
+  const std::size_t sides = kOfB ? at.block.most_b : at.block.most_a;
+  Lanes least = all(0.0);
+  for (std::size_t i = 0; i < sides; ++i, row += kSideRows) {
+    least = hn::Min(least, hn::Sub(dot(at.points(row), p), at.lanes(row + 3)));
+  }
+  return least;
+}
+
 template <bool kMoved>
 HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
@@ -142,17 +156,45 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Points normal = at.points(0), vertex = at.points(kFacetRows);
   const Points tip = frame.point_in(vertex);
   c.apart = c.proved = hn::Sub(dot(normal, tip), at.lanes(3));
-  const std::size_t sides = kMoved ? at.block.most_b : at.block.most_a;
-  Lanes within = all(0.0);
-  for (std::size_t i = 0; i < sides; ++i) {
-    const std::size_t row = kSides + kSideRows * i;
-    within = hn::Min(within, hn::Sub(dot(at.points(row), tip), at.lanes(row + 3)));
-  }
+  const Lanes within = least_within<kMoved>(at, kSides, tip);
   const Lanes away =
       Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(frame.direction_out(normal));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
   frame.express(tip - times(c.apart, normal), vertex, normal, c);
+  return c;
+}
+
+// The smaller reach, of bounded bodies.
+HWY_INLINE Lanes least_reach(const FeatureRows& at) {
+  if (HWY_LIKELY(at.block.plain)) return hn::Min(at.common(kReachA), at.common(kReachB));
+  const auto reach = [&](CommonRow unbounded, CommonRow row) HWY_ATTR {
+    return hn::IfThenElse(hn::Eq(at.common(unbounded), all(0.0)), at.common(row), all(kInfinity));
+  };
+  return hn::Min(reach(kUnboundedA, kReachA), reach(kUnboundedB, kReachB));
+}
+
+HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  const Points n = at.points(0), m = at.points(kFacetRows);
+  const Lanes offset_a = at.lanes(3), offset_b = at.lanes(kFacetRows + 3);
+  const Points tilt = rotate_back(pose.rotation, n) + m;
+  const Lanes tilt2 = dot(tilt, tilt);
+  const Points last_a = at.common_points(kPointA), mine = at.common_points(kPointB);
+  const Points theirs = rotate_back(pose.rotation, last_a - pose.translation);
+  const Points middle = mine + times(all(0.5), theirs - mine);
+  c.own_b = middle - times(hn::Sub(dot(m, middle), offset_b), m);
+  c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+  c.apart = hn::Sub(dot(n, c.point_b), offset_a);
+  c.point_a = c.point_b - times(c.apart, n);
+  c.normal = n;
+  const Lanes lost =
+      hn::Mul(hn::Mul(all(2.0), least_reach(at)), hn::Add(hn::Sqrt(tilt2), all(kTiltError)));
+  c.proved = hn::Sub(c.apart, lost);
+  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b),
+                               least_within<true>(at, kSidesOfB, c.own_b));
+  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
+                    hn::Le(tilt2, all(kLevelTilt * kLevelTilt)));
   return c;
 }
 

@@ -107,6 +107,7 @@ HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
   if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
   if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
   if constexpr (kKind == FeatureKind::kEdgeEdge) return edge_edge(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetFacet) return facet_facet(at, pose);
 }
 
 // Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
@@ -151,6 +152,7 @@ void judge_all(const BatchRound& round) {
   judge_list<FeatureKind::kVertexFacet>(round);
   judge_list<FeatureKind::kFacetVertex>(round);
   judge_list<FeatureKind::kEdgeEdge>(round);
+  judge_list<FeatureKind::kFacetFacet>(round);
 }
 
 const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }

@@ -41,8 +41,8 @@ class LaneWriter {
   double* at_;
 };
 
-bool few(std::int32_t repeats) noexcept {
-  return repeats <= static_cast<std::int32_t>(kMostRepeats);
+bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
+  return repeats <= static_cast<std::int32_t>(most);
 }
 
 // A feature with what vector code needs of it; a facet without sides is one.
@@ -110,6 +110,8 @@ RepeatRows rows_of_a(FeatureKind kind) noexcept {
       return {kFeatureRows + kDirectionsAtFacet, kDirectionRows};
     case FeatureKind::kFacetVertex:
       return {kFeatureRows + kSides, kSideRows};
+    case FeatureKind::kFacetFacet:
+      return {kFeatureRows + kSidesOfA, kSideRows};
     default:
       return {};
   }
@@ -125,6 +127,8 @@ RepeatRows rows_of_b(FeatureKind kind) noexcept {
       return {kFeatureRows + kDirectionsAtFacet, kDirectionRows};
     case FeatureKind::kVertexFacet:
       return {kFeatureRows + kSides, kSideRows};
+    case FeatureKind::kFacetFacet:
+      return {kFeatureRows + kSidesOfB, kSideRows};
     default:
       return {};
   }
@@ -190,6 +194,10 @@ std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a, const ConvexP
       return FeatureKind::kEdgeEdge;
     case 6:
       return FeatureKind::kFacetVertex;
+    case 8:
+      if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
+      if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};
+      return FeatureKind::kFacetFacet;
     default:
       return {};
   }

@@ -21,9 +21,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Facets that are level along two edges may be tilted by a little more than either.
-inline constexpr double kLevelTilt = 2.0 * kCertainRate;
-
 // How much less the direction proves, if by `tilt` it is not at right angles to a feature: either
 // body's extent along it may be another over its whole size, and it is enough that one's is.
 HWY_INLINE double lost_by_tilt(const Walk& w, double tilt) {
@@ -148,20 +145,30 @@ HWY_INLINE Quad onto(const Facet& facet, Quad p) {
 
 // Halfway between the last witness points, on B's facet, in frame B.
 HWY_INLINE Quad halfway_on_facet(const Walk& w, const Facet& of_b) {
-  const Quad n = load3(of_b.normal), mine = load3(w.on_b.point);
-  const Quad between = point_to_b(w.a_from_b, load3(w.on_a.point)) - mine;
-  return onto(of_b, mine + 0.5 * (between - dot(n, between) * n));
+  const Quad mine = load3(w.on_b.point);
+  const Quad theirs = point_to_b(w.a_from_b, load3(w.on_a.point));
+  return onto(of_b, mine + 0.5 * (theirs - mine));
 }
 
 // From a point that has passed the edge of the owner's facet back to it, in the owner's frame.
 // False: no part of the edge faces the other's facet.
 template <bool kMoved>
-inline HWY_NOINLINE bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) {
+inline bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) {
   const Edge& edge = o.owner().edges[index];
   const Span span = facing(o, edge, o.on_other().feature);
   if (span.empty()) return to_edge(o.on_owner(), index), false;
   const Quad start = load3(edge.point), e = load3(edge.direction);
   point = start + std::clamp(dot(point - start, e), span.from, span.to) * e;
+  return true;
+}
+
+// The same for a point on B's facet that has passed an edge of A's, or else of B's.
+inline HWY_NOINLINE bool slide_back(Walk& w, std::int32_t beyond_a, std::int32_t beyond_b,
+                                    Quad& own) {
+  if (beyond_a == kNone) return slide_back(Owned<true>{w}, beyond_b, own);
+  Quad tip = point_to_a(w.a_from_b, own);
+  if (!slide_back(Owned<false>{w}, beyond_a, tip)) return false;
+  own = onto(w.b.facets[w.on_b.feature], point_to_b(w.a_from_b, tip));
   return true;
 }
 
@@ -203,17 +210,16 @@ inline HWY_NOINLINE Step facet_facet(Walk& w) {
   if (HWY_UNLIKELY(!(tilt2 <= kLevelTilt * kLevelTilt))) return leave_facets(w, n, m);
   Quad own = halfway_on_facet(w, of_b), tip = point_to_a(w.a_from_b, own);
   const std::int32_t beyond_a = side_beyond(w.a, of_a, tip);
-  if (HWY_UNLIKELY(beyond_a != kNone)) {
-    if (!slide_back(Owned<false>{w}, beyond_a, tip)) return Step::kMoved;
-    own = onto(of_b, point_to_b(w.a_from_b, tip));
-  } else if (const auto beyond_b = side_beyond(w.b, of_b, own); HWY_UNLIKELY(beyond_b != kNone)) {
-    if (!slide_back(Owned<true>{w}, beyond_b, own)) return Step::kMoved;
+  const std::int32_t beyond_b = beyond_a == kNone ? side_beyond(w.b, of_b, own) : kNone;
+  if (HWY_UNLIKELY(beyond_a != kNone || beyond_b != kNone)) {
+    if (!slide_back(w, beyond_a, beyond_b, own)) return Step::kMoved;
+    tip = point_to_a(w.a_from_b, own);
   }
-  w.own_b = own;
-  w.point_b = point_to_a(w.a_from_b, own);
-  w.apart = dot(n, w.point_b) - of_a.offset;
+  w.apart = dot(n, tip) - of_a.offset;
   if (!(w.apart > 0.0)) return Step::kLost;
-  w.point_a = w.point_b - w.apart * n;
+  w.own_b = own;
+  w.point_b = tip;
+  w.point_a = tip - w.apart * n;
   w.normal = n;
   w.proved = w.apart - lost_by_tilt(w, std::sqrt(tilt2));
   return Step::kHolds;

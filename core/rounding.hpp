@@ -51,6 +51,9 @@ inline constexpr double kRadiusRounding = 0x1.1p-53;
 // beyond this, per unit length, has the sign that exact arithmetic would give.
 inline constexpr double kCertainRate = 0x1p-50;
 
+// Facets that are level along two edges may be tilted by a little more than either.
+inline constexpr double kLevelTilt = 2.0 * kCertainRate;
+
 // How far off the tilt of an edge or facet against a direction may be, beyond what the counts above
 // leave for it: rotating the direction (6), both directions' own rounding (2 each), the product (3)
 // over both bodies' sizes is 26 ulps of the smaller reach, and a point on a level feature takes 16

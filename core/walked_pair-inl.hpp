@@ -87,11 +87,21 @@ struct Steepest {
 
 inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
                                       const Vec3& g) {
+  const std::int32_t n = vertex.edges;
   Steepest best;
-  for (std::int32_t i = 0; i < vertex.edges; ++i) {
-    const double rate = body.outgoing_of(vertex, i).dot(g);
+  const auto take = [&](double rate, std::int32_t i) HWY_ATTR {
     if (rate > best.rate) best = {rate, vertex.first_edge + i};
+  };
+  if (HWY_LIKELY(n <= 4)) {
+    const Quad along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
+    const Quad rise = rates(body.outgoing.row(vertex.first_edge), n, 0, along);
+    if (n > 0) take(lane(rise, 0), 0);
+    if (n > 1) take(lane(rise, 1), 1);
+    if (n > 2) take(lane(rise, 2), 2);
+    if (n > 3) take(lane(rise, 3), 3);
+    return best;
   }
+  for (std::int32_t i = 0; i < n; ++i) take(body.outgoing_of(vertex, i).dot(g), i);
   return best;
 }
 HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
