@@ -76,7 +76,9 @@ void accept(const Object& object, const PoseSample& sample, ObjectState& state) 
     state.twist = sample.twist;
     state.twist_known = true;
   } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
-    state.twist_known = apart_ns <= object.age_limit_ns;
+    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
+    // of that age does.
+    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
     const double seconds = static_cast<double>(apart_ns) * 1e-9;
     state.twist =
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};

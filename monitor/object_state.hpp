@@ -33,7 +33,7 @@ struct ObjectState {
   Pose pose;
   std::int64_t stamp_ns = 0;
   // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
-  // after a gap longer than the age limit: over that a difference says nothing about now.
+  // after a gap longer than twice the age limit: over that a difference says nothing about now.
   Twist twist;
   bool twist_known = false;
   Motion motion;  // since the last tick; none when first seen

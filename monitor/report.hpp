@@ -45,7 +45,7 @@ struct PairReport {
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where there is none
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
   // when either velocity is not known: after a first pose without twist, or one that follows a gap
-  // longer than the age limit, and while a pose is late. Fixed objects are at rest.
+  // longer than twice the age limit, and while a pose is late. Fixed objects are at rest.
   double closing_speed = 0.0;
   // max(0, distance) / closing speed; infinity when not approaching, NaN when the closing speed is
   // not known. In contact: 0, unless known to be parting.

@@ -126,13 +126,30 @@ TEST(ObjectState, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
   };
   EXPECT_FALSE(take(0, false));
   EXPECT_FALSE(take(0, false));  // the same stamp once more
-  EXPECT_TRUE(take(20 * kTick, false));
-  EXPECT_FALSE(take(20 * kTick + 1, false));
+  EXPECT_TRUE(take(40 * kTick, false)) << "the mean velocity is that of 20 ticks ago";
+  EXPECT_FALSE(take(40 * kTick + 2, false));
   EXPECT_TRUE(take(kTick, false));
   EXPECT_TRUE(take(500 * kTick, true));
   advance(kInTime, next.stamp_ns + 20 * kTick + 1, state);  // late
   EXPECT_FALSE(state.velocity_known());
-  EXPECT_FALSE(take(30 * kTick, false));
+  EXPECT_FALSE(take(50 * kTick, false));
+}
+
+// 30 ms apart, where poses of 20 ms are late: known for the time in which they are not.
+TEST(ObjectState, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
+  ObjectState state;
+  PoseSample next = good();
+  accept(kInTime, next, state);
+  for (int pose = 1; pose < 5; ++pose) {
+    next.stamp_ns += 30 * kTick;
+    next.world_from_object.position.x() += 0.06;
+    accept(kInTime, next, state);
+    for (int tick = 0; tick < 30; ++tick) {
+      advance(kInTime, next.stamp_ns + tick * kTick, state);
+      ASSERT_EQ(state.velocity_known(), tick <= 20) << "tick " << tick;
+      ASSERT_NEAR(state.twist.linear.x(), 2.0, 1e-9);
+    }
+  }
 }
 
 TEST(ObjectState, FixedObjectsAreKnownToBeAtRest) {
