@@ -9,19 +9,13 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 
-// Four squares, a root and a division leave each of the two unit quaternions within 2^-51 of the
-// exact one; their difference within 2^-50, and twice that within 2^-49.
-constexpr double kTurnError = 0x1p-48;
-// Squares of differences below 1e-154 underflow; their norm is then below this.
-constexpr double kUnderflow = 1e-150;
-
 void note_turn(const Vec4& before, const Vec4& after, Motion& motion) noexcept {
   if (before == after) return;
   const Vec4 from = before / before.norm();
   const Vec4 to = after / after.norm();
   // |q2 - q1| = 2 sin(theta / 4): free of cancellation. q and -q are the same orientation.
   const double ahead = (to - from).norm(), about = (to + from).norm();
-  motion.turn = rounded_up(2.0 * std::min(ahead, about)) + kTurnError;
+  motion.turn = rounded_up(2.0 * std::min(ahead, about)) + kTurnRounding;
   // The vector part of `to` times the conjugate of `from`.
   const Vec3 v =
       from.w() * to.head<3>() - to.w() * from.head<3>() - to.head<3>().cross(from.head<3>());
@@ -34,7 +28,7 @@ Motion motion_between(const Pose& before, const Pose& after) noexcept {
   Motion motion;
   motion.way = after.position - before.position;
   const bool shifted = before.position != after.position;
-  motion.shift = shifted ? rounded_up(motion.way.norm()) + kUnderflow : 0.0;
+  motion.shift = shifted ? rounded_up(motion.way.norm()) + kShiftUnderflow : 0.0;
   note_turn(before.orientation.coeffs(), after.orientation.coeffs(), motion);
   return motion;
 }

@@ -75,7 +75,7 @@ void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
 
 void PassageRound::finish() noexcept { std::ranges::sort(decided_, {}, &Decided::pair); }
 
-PassageBounds PassageRound::of(std::uint32_t pair) const noexcept {
+PassageBounds PassageRound::find(std::uint32_t pair) const noexcept {
   const auto found = std::ranges::lower_bound(decided_, pair, {}, &Decided::pair);
   return found == decided_.end() || found->pair != pair ? PassageBounds{} : found->bounds;
 }

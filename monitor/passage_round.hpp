@@ -30,9 +30,13 @@ class PassageRound {
 
   // What looking closer has told about a pair this tick, for where its objects may have been.
   // Nothing: infinite.
-  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept;
+  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept {
+    return decided_.empty() ? PassageBounds{} : find(pair);
+  }
 
  private:
+  [[nodiscard]] PassageBounds find(std::uint32_t pair) const noexcept;
+
   struct Decided {
     std::uint32_t pair;
     PassageBounds bounds;

@@ -9,15 +9,12 @@ namespace {
 
 // Beyond this the vector part of a quaternion says too little about the angle, rad.
 constexpr double kMostTurn = 1.0;
-// Sums of products, each within a few 2^-52 of its factors' size.
-constexpr double kSumError = 0x1p-46;
-constexpr double kTurnError = 0x1p-48;  // rad, of a product of unit quaternions
-constexpr double kUnderflow = 1e-150;   // squares of less are no numbers, m
 
 // How far Motion::turning may be from the turn, rad: with v its half, |v| = sin(angle / 2) <= 1/2,
 // it lacks 2 (asin |v| - |v|) <= 0.38 |v|^3; and as much at most do 4 sin(angle / 4) of the angle.
 double turn_error(const Motion& motion) noexcept {
-  return motion.turn == 0.0 ? 0.0 : 0.0625 * motion.turn * motion.turn * motion.turn + kTurnError;
+  return motion.turn == 0.0 ? 0.0
+                            : 0.0625 * motion.turn * motion.turn * motion.turn + kTurnRounding;
 }
 
 }  // namespace
@@ -32,14 +29,14 @@ double relative_travel(const ObjectState& a, const ObjectState& b) noexcept {
 
   const Vec3 shift = body.way - frame.way;
   const Vec3 between = moving.pose_before.position - resting.pose_before.position;
-  const double apart = between.norm(), shifted = shift.norm() + kUnderflow;
+  const double apart = between.norm(), shifted = shift.norm() + kShiftUnderflow;
   const double frame_turn = frame.turn + turn_error(frame);
   const double turned =
       (body.turning - frame.turning).norm() + turn_error(body) + turn_error(frame);
-  const double of_origin = (shift - frame.turning.cross(between)).norm() + kUnderflow +
+  const double of_origin = (shift - frame.turning.cross(between)).norm() + kShiftUnderflow +
                            turn_error(frame) * apart + frame_turn * shifted;
   const double sizes = frame.shift + body.shift + frame_turn * (apart + shifted);
-  return rounded_up(of_origin + swept(turned, moving.reach) + kSumError * sizes);
+  return rounded_up(of_origin + swept(turned, moving.reach) + kVelocityError * sizes);
 }
 
 }  // namespace clearance

@@ -11,9 +11,6 @@ namespace {
 // Logarithm, sine, cosine and a product of quaternions, a sum of positions: each within a few 2^-52
 // of what it is exactly.
 constexpr double kWayError = 0x1p-47;
-// A velocity is a sum of products, each within a few 2^-52 of its factors' size.
-constexpr double kVelocityError = 0x1p-46;
-constexpr double kWayTurnError = 0x1p-48;  // rad
 
 // From one orientation to the other; either way round, where both are equally short.
 Vec3 turn_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) noexcept {
@@ -33,7 +30,7 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation, const Vec3& tur
 }
 
 double angle_of(const Way& way) noexcept {
-  return way.turns ? way.turn.norm() + kWayTurnError : 0.0;
+  return way.turns ? way.turn.norm() + kTurnRounding : 0.0;
 }
 
 }  // namespace
@@ -78,11 +75,11 @@ RelativeMotion seen_from(const Way& resting, const Way& moving, const PlacedPart
   const double change = turn * turn * length + turn_of_frame * (between_origins + turn * length);
   const double error = kVelocityError * (moving.shift.norm() + resting.shift.norm() +
                                          turn * length + turn_of_frame * from_resting.norm()) +
-                       (moving.turns ? kWayTurnError * length : 0.0) +
-                       (resting.turns ? kWayTurnError * from_resting.norm() : 0.0);
+                       (moving.turns ? kTurnRounding * length : 0.0) +
+                       (resting.turns ? kTurnRounding * from_resting.norm() : 0.0);
   const double of_middle = start.norm() + change + error;
   const bool turns = moving.turns || resting.turns;
-  const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kWayTurnError : 0.0;
+  const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kTurnRounding : 0.0;
 
   RelativeMotion motion;
   motion.turning = rounded_up(swept(turning, part.ball_in_world.radius));
