@@ -43,6 +43,20 @@ bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
 // Follows an edge or a facet, or leaves for the inside, from where x is.
 void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.index, side.own()); }
 
+// On the far side of a body, where facets are level to rounding, no edge and no facet leads closer,
+// and yet its inside does: a body's farthest points along `towards` are those that it does not. The
+// inside itself may be that thin (of the body's size), and beyond that rounding decides.
+constexpr double kThin = 0x1p-44;
+
+bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept {
+  if (side.feature() == Feature::kInside || !side.body().bounded()) return false;
+  const Vec3 towards = side.direction_to_own(towards_in_common);
+  const double closer = (side.body().interior - side.own()).dot(towards);
+  if (!(closer > kThin * side.body().bounding_radius * towards.norm())) return false;
+  side.place_inside(side.own());
+  return true;
+}
+
 }  // namespace
 
 Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
@@ -67,7 +81,10 @@ Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
     }
     const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
     const double best = std::max(of_a.rate, of_b.rate);
-    if (best * best < kCertainRate * kCertainRate * distance2) return ended(Dqp3End::kOptimal);
+    if (best * best < kCertainRate * kCertainRate * distance2) {
+      if (leave_for_inside(a, outcome.towards) || leave_for_inside(b, -outcome.towards)) continue;
+      return ended(Dqp3End::kOptimal);
+    }
     if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
     if (of_a.rate >= of_b.rate) {
       release(a, of_a);
