@@ -38,7 +38,9 @@ std::size_t DepthSearch::cell(const Vec3& n) noexcept {
 
 void DepthSearch::improve(double height, const Vec3& n, Source source,
                           std::int32_t facet) noexcept {
-  if (height < best_.height) best_ = {height, n, source, facet};
+  if (!(height < best_.height - steady_)) return;
+  best_ = {height, n, source, facet};
+  steady_ = 0.0;
 }
 
 void DepthSearch::guess(const Vec3& n) noexcept {

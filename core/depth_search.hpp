@@ -25,8 +25,15 @@ class DepthSearch {
 
   // Any unit n. Only a target to beat: what the facets and arcs have is found again there.
   void guess(const Vec3& n) noexcept;
-  void guess_facet_of_x(std::int32_t facet) noexcept { look_at_facet_of_x(facet); }
-  void guess_facet_of_y(std::int32_t facet) noexcept { look_at_facet_of_y(facet); }
+  // Stays the best where others are no better than to rounding.
+  void guess_facet_of_x(std::int32_t facet) noexcept {
+    look_at_facet_of_x(facet);
+    steady_ = 0.5 * tight_;
+  }
+  void guess_facet_of_y(std::int32_t facet) noexcept {
+    look_at_facet_of_y(facet);
+    steady_ = 0.5 * tight_;
+  }
   // Everything there is; stops early when the bodies turn out to be apart.
   void run() noexcept;
 
@@ -70,6 +77,7 @@ class DepthSearch {
 
   const DifferenceBody& body_;
   double tight_, level_;
+  double steady_ = 0.0;  // m: how much lower another h must be than the one guessed
   Best best_;
   double lower_ = kInfinity;
 

@@ -11,6 +11,7 @@
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
+#include "tests/shared/tied_cases.hpp"
 
 namespace clearance {
 namespace {
@@ -109,6 +110,21 @@ TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
   EXPECT_EQ(state.b.dimension, 1);
   const Vec3 in_world = along_x.orientation * r.normal;
   EXPECT_LT((in_world - Vec3::UnitZ()).norm(), 1e-14);
+}
+
+TEST(Penetration, KeepsItsDirectionWhereOthersAreAsDeep) {
+  // Concentric balls of 64 facets: one way is as deep as the other, to the last bit.
+  for (const std::uint64_t seed : {1900004, 25000004}) {
+    Random random(seed);
+    const hard::HardCase c = hard::nested(random);
+    const DistanceJudge judge(c.a, c.b);
+    TrackingState state;
+    const Vec3 normal = judge.ask(c.pose_a, c.pose_b, state).normal;
+    for (int k = 0; k < 6; ++k) {
+      const DistanceResult r = judge.ask(c.pose_a, c.pose_b, state);
+      EXPECT_LE((r.normal - normal).norm(), 1e-14) << "seed " << seed;
+    }
+  }
 }
 
 TEST(Penetration, HoldsWhereSquaresUnderflow) {
