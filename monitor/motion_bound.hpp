@@ -20,12 +20,10 @@ inline constexpr double kShiftUnderflow = 1e-150;
 // A velocity is a sum of products, each within a few 2^-52 of its factors' size.
 inline constexpr double kVelocityError = 0x1p-46;
 
-// `shift` and `turn` are upper bounds, rounding included, for the exactly normalised orientations.
+// Both figures are upper bounds, rounding included, for the exactly normalised orientations.
 struct Motion {
-  double shift = 0.0;       // |p2 - p1|, m
-  double turn = 0.0;        // |R - R1| + |R2 - R| for any R on the shorter turn, at most 2 sqrt(2)
-  Vec3 way = Vec3::Zero();  // p2 - p1, m
-  Vec3 turning = Vec3::Zero();  // along the shorter turn's axis, in the world: 2 sin(theta / 2)
+  double shift = 0.0;  // |p2 - p1|, m
+  double turn = 0.0;   // |R - R1| + |R2 - R| for any R on the shorter turn, at most 2 sqrt(2)
 };
 
 // Equal poses, bit for bit, give exactly no motion. Norms of the orientations within 0.5 .. 2.
