@@ -72,7 +72,7 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   }
   if (const YamlNode* refresh = map.optional("refresh_s")) {
     scene.refresh_s = read_number(*refresh, kRefreshes,
-                                  "seconds within which every pair is evaluated", complaints_)
+                                  "seconds within which every pair is refreshed", complaints_)
                           .value_or(scene.refresh_s);
   }
   if (const YamlNode* limit = map.optional("future_limit_ms")) {

@@ -40,7 +40,11 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
 std::string plain(std::string message) {
   const std::size_t start = message.find("$$$___magic___$$$");
   if (start == std::string::npos) return message;
-  return message.replace(start, message.find_first_of(" :,", start) - start, "it");
+  const bool quoted = start > 0 && message[start - 1] == '"';
+  const std::size_t first = start - (quoted ? 1 : 0);
+  const std::size_t end =
+      quoted ? message.find('"', start) + 1 : message.find_first_of(" :,", start);
+  return message.replace(first, end - first, "it");
 }
 
 bool lexicographic(const Vec3& a, const Vec3& b) {

@@ -10,9 +10,12 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "config/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -152,9 +155,20 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t copies_ = 0;
 };
 
+std::optional<YamlFault> fault_of_encoding(const std::string& text) {
+  const std::size_t end = end_of_utf8(text);
+  if (end == text.size()) return std::nullopt;
+  const std::string before = text.substr(0, end);
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t column = end - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  return YamlFault{static_cast<int>(line), static_cast<int>(column),
+                   "found a byte that is not UTF-8; expected the file in UTF-8"};
+}
+
 }  // namespace
 
 std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
+  if (const auto fault = fault_of_encoding(text)) return *fault;
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);

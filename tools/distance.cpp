@@ -103,7 +103,7 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
 }
 
 int run(const Options& options) {
-  if (!spares_input("clearance-distance", options.out, options.cases)) return kUsage;
+  if (!spares_inputs("clearance-distance", options.out, {options.cases})) return kUsage;
   std::ifstream file_in;
   std::ofstream file_out;
   if (options.cases != "-") {
@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", options.tolerance,
                  "Of --check, over the larger of a case's scale and distance")
       ->needs(check)
-      ->check(CLI::NonNegativeNumber)
+      ->check(clearance::number_from_zero())
       ->capture_default_str();
   if (const auto done = clearance::parse(app, argc, argv)) return *done;
   return clearance::run(options);

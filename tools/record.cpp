@@ -34,13 +34,14 @@ int run(int argc, char** argv, StopSignal& stop) {
   CLI::Option* const csv =
       app.add_option("--from-csv", arguments.from_csv, "Make it of this pose log, plain or gzip");
   app.add_option("--seconds", arguments.seconds, "Stop after this long; otherwise on Ctrl-C")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->excludes(csv);
   add_force(app, arguments.force);
   arguments.dds.add_to(app);
   app.footer(kFooter);
   if (const auto done = parse(app, argc, argv)) return *done;
-  if (!spares_input("clearance-record", arguments.out, arguments.from_csv)) return kUsage;
+  if (!spares_inputs("clearance-record", arguments.out, {arguments.from_csv, arguments.cell}))
+    return kUsage;
   if (!may_write("clearance-record", arguments.out, arguments.force)) return kFailed;
   const bool from_csv = !arguments.from_csv.empty();
   if (from_csv) stop.release();

@@ -28,9 +28,9 @@ Examples:
 void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("FILE", arguments.recording, "The recording (MCAP)")->required();
   app.add_option("--start", arguments.start_s, "Begin this many seconds after its first message")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   app.add_option("--end", arguments.end_s, "End this many seconds after its first message")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   app.add_flag("--progress", arguments.progress,
                "Show progress on stderr even when that is no terminal");
 
@@ -83,7 +83,7 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
           ->group(kOffline);
   app.add_option("--tolerance", arguments.tolerance, "How far off a reference may be, m")
       ->needs(reference)
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->capture_default_str()
       ->group(kOffline);
   app.add_option(
@@ -91,6 +91,7 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
          "Every pair is proved to be at least this far apart (m) in every tick, and to have "
          "been so at every instant since the tick before: nothing passes through in between")
       ->needs(offline)
+      ->check(finite_number())
       ->group(kOffline);
   app.add_option("--expect-no-zone", arguments.expect_no_zone,
                  "This zone is never active; repeatable")
@@ -103,12 +104,12 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
 
   const char* const kDds = "Over DDS";
   app.add_option("--rate", arguments.rate, "Times as fast as recorded")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->excludes(offline)
       ->capture_default_str()
       ->group(kDds);
   app.add_option("--wait", arguments.wait_s, "Seconds to wait for a first reader before beginning")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->excludes(offline)
       ->capture_default_str()
       ->group(kDds);

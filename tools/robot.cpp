@@ -51,11 +51,12 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
   app.add_option("--rate", arguments.rate_hz, "Batches a second")
+      ->check(finite_number())
       ->check(CLI::Range(0.1, 10000.0))
       ->capture_default_str();
   app.add_option("--seconds", arguments.seconds,
                  "Stop after this time; 0: run until a signal comes")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   app.add_option("--source", arguments.source, "Name of this source, 1 to 32 bytes")
       ->check([](const std::string& name) {
         return !name.empty() && name.size() <= kMaxSourceLength

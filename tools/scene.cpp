@@ -101,10 +101,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option(
          "--max-speed", robot.max_speed,
          "m/s that no point of the robot exceeds; bounds go unknown without it when poses are late")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->needs(urdf);
   app.add_option("--age-limit-ms", robot.age_limit_ms, "How old a pose may be")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str()
       ->needs(urdf);
   app.add_flag("--fixed-base", robot.fixed_base,
@@ -133,6 +133,10 @@ int run(int argc, char** argv) {
   if (!arguments.report.empty()) return report(arguments.report, arguments.json);
   if (arguments.output.empty()) {
     std::fputs("--output is missing: which file is to be written?\n", stderr);
+    return kUsage;
+  }
+  if (!spares_inputs("clearance-scene", arguments.output,
+                     {arguments.robot.urdf, arguments.robot.srdf})) {
     return kUsage;
   }
   if (!may_write("clearance-scene", arguments.output, arguments.force)) return kFailed;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kFrameMs = 100;
 constexpr std::int64_t kPlainNs = 1'000'000'000;
 
-constexpr const char* kFooter = R"(Ctrl-C or q ends it.
+constexpr const char* kFooter = R"(Ctrl-C ends it, and q in the full screen.
 
 Exit status:
   0  stopped by SIGINT, SIGTERM, q or --seconds
@@ -37,7 +37,7 @@ struct Arguments {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_zero());
   app.add_flag("--plain", arguments.plain,
                "One line a second instead of a full screen; so too without a terminal");
   app.add_option("--distances", arguments.topics.distances, "Topic name")->capture_default_str();

@@ -1,5 +1,6 @@
 #include "monitor/daemon/program.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <system_error>
@@ -16,6 +17,15 @@ namespace {
 int last_words(const char* name, const std::exception& error, ExitCode code) {
   std::fprintf(stderr, "%s: %s\n", name, error.what());
   return code;
+}
+
+CLI::Validator number(bool (*suits)(double), const char* expected) {
+  const auto fault = [suits, expected](const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && suits(value)) return std::string();
+    return "found '" + text + "'; expected " + expected;
+  };
+  return {fault, ""};
 }
 
 }  // namespace
@@ -50,13 +60,28 @@ std::optional<Scene> scene_or_errors(CellResult cell) {
   return std::nullopt;
 }
 
-bool spares_input(const char* program, const std::filesystem::path& output,
-                  const std::filesystem::path& input) {
+CLI::Validator finite_number() {
+  return number([](double value) { return std::isfinite(value); }, "a finite number");
+}
+CLI::Validator positive_number() {
+  return number([](double value) { return std::isfinite(value) && value > 0.0; },
+                "a number above 0");
+}
+CLI::Validator number_from_zero() {
+  return number([](double value) { return std::isfinite(value) && value >= 0.0; },
+                "a number, 0 or more");
+}
+
+bool spares_inputs(const char* program, const std::filesystem::path& output,
+                   std::initializer_list<std::filesystem::path> inputs) {
   std::error_code not_there;
-  if (!std::filesystem::equivalent(output, input, not_there)) return true;
-  std::fprintf(stderr, "%s: %s is the file that is read; expected another one to write\n", program,
-               output.c_str());
-  return false;
+  for (const std::filesystem::path& input : inputs) {
+    if (!std::filesystem::equivalent(output, input, not_there)) continue;
+    std::fprintf(stderr, "%s: %s is a file that is read; expected another one to write\n", program,
+                 output.c_str());
+    return false;
+  }
+  return true;
 }
 
 void add_force(CLI::App& app, bool& force) {

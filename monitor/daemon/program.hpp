@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -33,9 +34,15 @@ enum ExitCode : int {
 // The scene, or nothing after every error in the cell has gone to stderr, a line each.
 [[nodiscard]] std::optional<Scene> scene_or_errors(CellResult cell);
 
-// False, after saying so on stderr, when `output` is the file that is read: it would be destroyed.
-[[nodiscard]] bool spares_input(const char* program, const std::filesystem::path& output,
-                                const std::filesystem::path& input);
+// Of options: a finite number; such a number above 0; or from 0 on.
+[[nodiscard]] CLI::Validator finite_number();
+[[nodiscard]] CLI::Validator positive_number();
+[[nodiscard]] CLI::Validator number_from_zero();
+
+// False, after saying so on stderr, when `output` is one of the files that are read: it would be
+// destroyed.
+[[nodiscard]] bool spares_inputs(const char* program, const std::filesystem::path& output,
+                                 std::initializer_list<std::filesystem::path> inputs);
 
 // "--force", without which no program writes over a file.
 void add_force(CLI::App& app, bool& force);

@@ -154,7 +154,7 @@ const Mistake kMistakes[] = {
     {"InfiniteRefresh", "refresh_s: @.inf\n" + kBoxes,
      "found the number .inf, which is not a finite number; expected seconds within which every "
      "pair "
-     "is evaluated, from 0.001 to 1000000"},
+     "is refreshed, from 0.001 to 1000000"},
     {"NumberForFlag", with_shape("sphere: {radius: 1}, fixed: @1"),
      "found the number 1; expected true or false"},
     {"NameTooLong", "objects: [{name: @" + std::string(65, 'x') + ", sphere: {radius: 1}}]\n",

@@ -84,7 +84,7 @@ TEST(CellFuzz, EveryDamagedCellIsReadOrRefusedWithAPlace) {
   const std::string whole = shipped_text("mcintyre.yaml");
   ASSERT_FALSE(whole.empty());
   int scenes = 0, refused = 0;
-  for (std::uint32_t seed = 0; seed < 600; ++seed) {
+  for (std::uint32_t seed = 0; seed < 800; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     const std::string text = mutated(whole, random);

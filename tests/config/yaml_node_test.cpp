@@ -68,6 +68,17 @@ TEST(YamlNode, ASecondDocumentIsRefused) {
   EXPECT_NE(found.reason.find("second document"), std::string::npos);
 }
 
+TEST(YamlNode, WhatIsNotUtf8IsRefusedWhereItStands) {
+  EXPECT_EQ(tree("name: \u00e9\u20ac\U0001F916\n").entries.size(), 1u);
+  // Latin-1, a character cut short, an overlong one, a surrogate, beyond Unicode.
+  for (const char* bytes : {"\xff", "\xe2\x82", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80"}) {
+    const YamlFault found = fault("a: 1\nname: fl" + std::string(bytes) + "\n");
+    EXPECT_EQ(found.line, 2);
+    EXPECT_EQ(found.column, 9);
+    EXPECT_NE(found.reason.find("expected the file in UTF-8"), std::string::npos);
+  }
+}
+
 TEST(YamlNode, AliasesOfAliasesCannotExhaustMemory) {
   std::string text = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 12; ++i) {

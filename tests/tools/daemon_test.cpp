@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "monitor/monitor.hpp"
+#include "tests/monitor/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {
@@ -241,11 +242,23 @@ TEST(Daemon, RecordsWhatAnOfflineReplayGivesAgain) {
 
 TEST(DaemonCommand, NeverOverwritesARecording) {
   const test::CellFile cell(test::small_cell("small"));
-  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path()},
-                                                test::dds_arguments(test::own_dds())));
+  const test::ScratchFolder folder;
+  test::write_text(folder / "old", "precious");
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon,
+                      test::with({cell.path(), "--record", (folder / "old").string()}, dds));
   EXPECT_EQ(daemon.wait(), 5);
   EXPECT_TRUE(daemon.wrote("is there already; --force writes over it")) << daemon.output();
-  EXPECT_EQ(cell.scene().name, "small") << "the file is as it was";
+  EXPECT_EQ("precious", test::read_text(folder / "old"));
+}
+
+TEST(DaemonCommand, NeverRecordsOverItsCell) {
+  const test::CellFile cell(test::small_cell("small"));
+  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path(), "--force"},
+                                                test::dds_arguments(test::own_dds())));
+  EXPECT_EQ(daemon.wait(), 2);
+  EXPECT_TRUE(daemon.wrote("is a file that is read")) << daemon.output();
+  EXPECT_EQ(cell.scene().name, "small");
 }
 
 }  // namespace

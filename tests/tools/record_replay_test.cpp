@@ -186,17 +186,37 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));
 }
 
-TEST_F(RecordReplay, NeverWritesOverTheFileThatItReads) {
+TEST_F(RecordReplay, NeverWritesOverAFileThatItReads) {
   ASSERT_EQ(0, record_log()) << output;
-  const std::string before = read_text(folder / "run.mcap");
-  for (const char* option : {"-o", "--csv"}) {
-    EXPECT_EQ(2, replay({option, path("run.mcap"), "--force"}));
-    EXPECT_THAT(output, HasSubstr("is the file that is read; expected another one to write"));
-    EXPECT_EQ(before, read_text(folder / "run.mcap"));
+  write_text(folder / "reference.csv", "precious");
+  for (const char* read : {"run.mcap", "cell.yaml", "reference.csv"}) {
+    const std::string before = read_text(folder / read);
+    for (const char* option : {"-o", "--csv"}) {
+      EXPECT_EQ(2, replay({option, path(read), "--reference", path("reference.csv"), "--force"}));
+      EXPECT_THAT(output, HasSubstr("is a file that is read; expected another one to write"));
+      EXPECT_EQ(before, read_text(folder / read));
+    }
   }
   const std::string log = read_text(folder / "log.csv");
   EXPECT_EQ(2, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("log.csv"), "--force"}));
   EXPECT_EQ(log, read_text(folder / "log.csv"));
+}
+
+TEST_F(RecordReplay, TwoOutputsAreTwoFiles) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_EQ(2, replay({"-o", path("both"), "--csv", path("./both")}));
+  EXPECT_THAT(output, HasSubstr("name the same file"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "both"));
+}
+
+TEST_F(RecordReplay, ANumberThatIsNoneIsWrongUsage) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_EQ(2, replay({"--expect-min-distance", "nan"}));
+  EXPECT_THAT(output, HasSubstr("found 'nan'; expected a finite number"));
+  EXPECT_EQ(2, replay({"--start", "-1"}));
+  EXPECT_THAT(output, HasSubstr("found '-1'; expected a number, 0 or more"));
+  EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--rate", "inf"}));
+  EXPECT_THAT(output, HasSubstr("found 'inf'; expected a number above 0"));
 }
 
 TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {

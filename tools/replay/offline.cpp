@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 
 #include "monitor/daemon/program.hpp"
@@ -109,11 +110,24 @@ int replay_in(Scene& scene, const ReplayArguments& arguments) {
   return replay.damage.empty() ? kOk : kIncomplete;
 }
 
+bool are_one_file(const std::filesystem::path& first, const std::filesystem::path& second) {
+  if (first.empty() || second.empty()) return false;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(first)) ==
+         std::filesystem::weakly_canonical(std::filesystem::absolute(second));
+}
+
 }  // namespace
 
 int replay_without_dds(const ReplayArguments& arguments) {
+  if (are_one_file(arguments.out, arguments.csv)) {
+    say("-o and --csv name the same file; expected one for each");
+    return kUsage;
+  }
   for (const std::string& output : {arguments.out, arguments.csv}) {
-    if (!spares_input("clearance-replay", output, arguments.recording)) return kUsage;
+    if (!spares_inputs("clearance-replay", output,
+                       {arguments.recording, arguments.cell, arguments.reference})) {
+      return kUsage;
+    }
     if (!may_write("clearance-replay", output, arguments.force)) return kFailed;
   }
   std::optional<CellResult> cell = find_cell(arguments);

@@ -295,7 +295,8 @@ std::string final_summary(const Feed& feed, double seconds) {
   if (const auto* health = feed.health()) {
     text += fmt::format(
         "tick     p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us\n"
-        "daemon   {} overruns, {} skipped cycles, {} batches, {} lost\n",
+        "daemon   {} overruns, {} skipped cycles, {} batches, {} lost, as last told (each "
+        "second)\n",
         health->tick_p50_us, health->tick_p999_us, health->tick_max_us, health->overruns,
         health->skipped_cycles, health->batches, health->lost_batches);
   }
