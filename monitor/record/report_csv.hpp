@@ -12,8 +12,8 @@
 namespace clearance {
 
 // Columns: tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax,ay,az,bx,by,bz,
-// nx,ny,nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles; SI units, world frame, numbers that read back
-// exactly. Errors are kept: error() says what happened.
+// nx,ny,nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles; SI units, world
+// frame, numbers that read back exactly. Errors are kept: error() says what happened.
 class ReportCsv {
  public:
   // `all_pairs`: every pair of the scene; otherwise those that it publishes.
