@@ -342,19 +342,33 @@ void McapReader::end_data(const Record& record) {
                   "the checksum of everything before does not match: some bytes were changed");
   }
   data_ended_ = true;
+  crc_ = 0;  // the summary has one of its own, in the footer
 }
 
 void McapReader::end_file(const Record& record) {
   if (!data_ended_)
     return damage(record.offset, "the closing record stands before the end of the data");
-  pass_over(record);
-  if (done_) return;
+  const std::uint32_t before = crc_;
+  if (!read_body(record)) {
+    if (!done_) cut_off(record.offset);
+    return;
+  }
+  McapFields fields(body_);
+  const auto starts = fields.get_raw(2 * sizeof(std::uint64_t));  // of the summary's parts
+  const auto crc = fields.get<std::uint32_t>();
+  if (!fields.ok()) return damage(record.offset, "a record whose content does not fit its length");
+  if (crc != 0 && crc != mcap_crc(before, starts)) {
+    return damage(record.offset,
+                  "the checksum of the summary does not match: some of its bytes were changed; the "
+                  "messages are not in it");
+  }
   std::array<std::byte, kMcapMagic.size()> magic{};
   if (!file_.read(offset_, magic)) return cut_off(offset_);
   if (!std::ranges::equal(magic, std::as_bytes(std::span(kMcapMagic)))) {
     return damage(offset_, "the magic bytes at the end are wrong");
   }
   offset_ += magic.size();
+  if (offset_ != file_.size()) return damage(offset_, "more follows behind its end");
   done_ = true;
 }
 
