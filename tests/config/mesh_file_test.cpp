@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 
 #include "tests/config/cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
@@ -22,15 +22,8 @@ using testing::HasSubstr;
 // A directory of its own for each test, gone afterwards.
 class MeshFile : public testing::Test {
  protected:
-  MeshFile() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "clearance_mesh_XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
-  }
-  ~MeshFile() override { std::filesystem::remove_all(directory_); }
-
   void write(const std::string& name, const std::string& bytes) {
-    std::ofstream(directory_ / name, std::ios::binary) << bytes;
+    test::write_text(directory_ / name, bytes);
   }
 
   std::string cell(const std::string& mesh) const {
@@ -45,7 +38,7 @@ class MeshFile : public testing::Test {
     return errors_of(cell(mesh), directory_ / "cell.yaml");
   }
 
-  std::filesystem::path directory_;
+  test::ScratchFolder directory_;
 };
 
 // A unit cube's corners and one point within, as triangles of a binary STL: hull of 8 vertices, 6

@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "tests/config/cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
@@ -46,9 +46,6 @@ const std::string kSrdf = R"(<robot name="little">
 class RobotCellFile : public testing::Test {
  protected:
   RobotCellFile() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "clearance_robot_XXXXXX").string();
-    root_ = mkdtemp(pattern.data());
     std::filesystem::create_directories(root_ / "little_description" / "urdf");
     std::filesystem::create_directories(root_ / "cells");
     write("little_description/head.obj",
@@ -59,10 +56,9 @@ class RobotCellFile : public testing::Test {
     options_.srdf = root_ / "little_description" / "urdf" / "little.srdf";
     options_.directory = root_ / "cells";
   }
-  ~RobotCellFile() override { std::filesystem::remove_all(root_); }
 
   void write(const std::string& name, const std::string& text) {
-    std::ofstream(root_ / name) << text;
+    test::write_text(root_ / name, text);
   }
 
   RobotCell cell() {
@@ -82,7 +78,7 @@ class RobotCellFile : public testing::Test {
     return found == nullptr ? "" : found->text;
   }
 
-  std::filesystem::path root_;
+  test::ScratchFolder root_;
   RobotCellOptions options_;
 };
 

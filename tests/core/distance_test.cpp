@@ -13,6 +13,8 @@
 namespace clearance {
 namespace {
 
+using test::at;
+
 // Roundings of numbers of about one.
 constexpr double kRounding = 1e-14;
 

@@ -12,6 +12,8 @@
 namespace clearance {
 namespace {
 
+using test::at;
+
 using oracle::Body;
 using oracle::exact_distance;
 using oracle::ExactDistance;

@@ -16,6 +16,8 @@
 namespace clearance {
 namespace {
 
+using test::at;
+
 using oracle::Body;
 
 ConvexPolyhedron made(const Body& body) { return std::get<ConvexPolyhedron>(model(body)); }

@@ -5,7 +5,7 @@
 #include <zlib.h>
 
 #include "tests/monitor/recorded_runs.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "monitor/record/mcap_reader.hpp"
 #include "monitor/record/mcap_writer.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 namespace {

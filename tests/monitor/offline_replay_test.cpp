@@ -6,8 +6,7 @@
 #include "monitor/record/csv_poses.hpp"
 #include "monitor/record/report_csv.hpp"
 #include "monitor/record/report_recorder.hpp"
-#include "tests/monitor/recorded_runs.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/monitor/offline_replay_run.hpp"
 
 namespace clearance::test {
 namespace {
@@ -16,31 +15,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-class OfflineReplayTest : public testing::Test {
- protected:
-  ScratchFolder folder;
-  Scene scene = bench_cell();
-  std::filesystem::path run = folder / "run.mcap";
-
-  OfflineReplay replay(const OfflineReplayOptions& options = {}) {
-    return replay_offline(scene, run, options);
-  }
-  // Writes the run again with its messages changed as a whole.
-  void rewrite(const std::function<void(std::vector<Kept>&)>& change) {
-    std::vector<Kept> messages = messages_of(run);
-    change(messages);
-    write_messages(run, messages);
-  }
-  // The place of the report of a tick, from 1.
-  static std::size_t report_of(const std::vector<Kept>& messages, int tick) {
-    std::size_t place = 0;
-    for (; place < messages.size(); ++place) {
-      if (messages[place].kind == TopicKind::kDistances && --tick == 0) break;
-    }
-    return place;
-  }
-};
 
 TEST_F(OfflineReplayTest, GivesTheRecordedReportsBitForBit) {
   record_run(scene, run);
@@ -176,78 +150,6 @@ TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
   EXPECT_EQ(cycle, result.failures[0].cycle);
   EXPECT_THAT(result.failures[0].what,
               HasSubstr("zone 'stop': recorded no change, replayed active"));
-}
-
-TEST_F(OfflineReplayTest, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBroken) {
-  record_run(scene, run, {.nearest = 0.08});
-  EXPECT_TRUE(replay({.expect_min_distance = 0.0799}).ok());
-  const OfflineReplay result = replay({.expect_min_distance = 0.09});
-  ASSERT_EQ(1u, result.failures.size()) << result.text();
-  EXPECT_THAT(result.text(), HasSubstr("hand - box is 0.08"));
-  EXPECT_THAT(result.text(), HasSubstr("at least 0.09 m expected"));
-  EXPECT_GT(result.failures[0].cycle, 90u);
-  EXPECT_LT(result.failures[0].cycle, 101u);
-  EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
-}
-
-// The hand goes to and fro past the box, 1.2 m a tick; y: how far it keeps from the box's middle.
-void record_darts(const Scene& scene, const std::filesystem::path& file, double y) {
-  Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart);
-  for (int tick = 0; tick < 6; ++tick) {
-    const std::int64_t now_ns = kStart + tick * kTick;
-    PoseBatch batch{SourceName("arm"), static_cast<std::uint64_t>(tick + 1), scene.revision, {}};
-    batch.samples.push_back(sample(0, at(tick % 2 == 0 ? -0.6 : 0.6, y, 0), now_ns));
-    batch.samples.push_back(sample(1, at(0, 3, 3), now_ns));
-    recorder.poses(batch);
-    recorder.report(monitor.tick(batch.samples, now_ns),
-                    std::array{SourceUse{batch.source, batch.sequence_number}});
-  }
-  EXPECT_TRUE(recorder.close()) << recorder.error();
-}
-
-TEST_F(OfflineReplayTest, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMinimumDistance) {
-  record_darts(scene, run, 0.0);
-  const OfflineReplay result = replay({.expect_min_distance = 0.2});
-  ASSERT_EQ(1u, result.failures.size()) << result.text();
-  EXPECT_EQ(2u, result.failures[0].cycle);
-  EXPECT_THAT(result.text(), HasSubstr("hand - box was no more than -"));
-  EXPECT_THAT(result.text(),
-              HasSubstr("apart between this tick and the last, at least 0.2 m expected"));
-}
-
-// 0.45 m at the nearest; how far the hand goes would leave everything open.
-TEST_F(OfflineReplayTest, WhatPassesByBetweenTwoTicksIsLookedAtCloserBeforeItIsJudged) {
-  record_darts(scene, run, 0.6);
-  const OfflineReplay near = replay({.compare = Comparison::kBits, .expect_min_distance = 0.44});
-  EXPECT_TRUE(near.ok()) << near.text();
-  EXPECT_THAT(replay({.expect_min_distance = 0.46}).text(), HasSubstr("hand - box was no more"));
-}
-
-TEST_F(OfflineReplayTest, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
-  record_run(scene, run, {.nearest = 0.11});
-  EXPECT_TRUE(replay({.expect_no_zone = {"stop"}}).ok());
-  record_run(scene, folder / "near.mcap", {.nearest = 0.05});
-  run = folder / "near.mcap";
-  const OfflineReplay result = replay({.expect_no_zone = {"stop"}});
-  ASSERT_EQ(1u, result.failures.size());
-  EXPECT_THAT(result.failures[0].what,
-              HasSubstr("zone 'stop' is active: hand - box has a clearance of 0.09"));
-}
-
-TEST_F(OfflineReplayTest, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
-  record_run(scene, run);
-  EXPECT_THAT(replay({.expect_no_zone = {"halt"}}).error,
-              HasSubstr("the cell has no zone 'halt'; its zones are 'stop'"));
-}
-
-TEST_F(OfflineReplayTest, ExpectationsFailWhenAnObjectIsNeverSeen) {
-  scene.objects.push_back(moving("ghost", {ball(0.1)}));
-  scene.pairs.push_back({0, 3, false});
-  record_run(scene, run);
-  const OfflineReplay result = replay({.expect_min_distance = 0.01});
-  ASSERT_EQ(1u, result.failures.size());
-  EXPECT_THAT(result.failures[0].what, HasSubstr("never gives a usable pose of 'ghost'"));
 }
 
 TEST_F(OfflineReplayTest, WindowIsWhatIsHandedOutButAllIsRun) {

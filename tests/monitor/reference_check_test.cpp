@@ -7,7 +7,7 @@
 #include "monitor/record/csv_poses.hpp"
 #include "monitor/record/offline_replay.hpp"
 #include "tests/monitor/recorded_runs.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 namespace {

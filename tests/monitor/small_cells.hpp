@@ -18,6 +18,7 @@
 #include "config/scene.hpp"
 #include "core/shapes.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance::test {
 
@@ -26,12 +27,6 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
 
 [[nodiscard]] inline ConvexPolyhedron made(ShapeResult result) {
   return std::get<ConvexPolyhedron>(std::move(result));
-}
-
-[[nodiscard]] inline Pose at(double x, double y, double z) {
-  Pose pose;
-  pose.position = Vec3(x, y, z);
-  return pose;
 }
 
 [[nodiscard]] inline Part ball(double radius, const Pose& object_from_part = {}) {

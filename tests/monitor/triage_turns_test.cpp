@@ -33,6 +33,12 @@ Scene side_by_side(std::uint32_t count) {
   return test::cell_of(std::move(objects));
 }
 
+// Tick number t, with the first object there.
+const Report& tick_with_first_at(const Pose& pose, int t, Monitor& monitor) {
+  const PoseSample sample = test::sample(0, pose, kStart + t * kTick);
+  return monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+}
+
 TEST(Triage, TheRestIsEvaluatedTheStalestFirst) {
   Scene scene = side_by_side(20);
   scene.budget = 5;
@@ -40,8 +46,7 @@ TEST(Triage, TheRestIsEvaluatedTheStalestFirst) {
   for (int t = 0; t < 50; ++t) {
     std::vector<std::uint64_t> before;
     for (std::uint32_t p = 0; p < 20; ++p) before.push_back(monitor.pair(p).evaluated_cycle);
-    const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-6 * t, 0), t, monitor);
     EXPECT_EQ(report.queries, 5u);
     if (t < 20) continue;
     EXPECT_LE(report.oldest_evaluation_cycles, 5u) << "19 far pairs at four or five a tick";
@@ -64,8 +69,7 @@ TEST(Triage, EveryPublishedPairTellsHowLongAgoItWasRefreshedAndTheReportTheLonge
   Monitor monitor(scene);
   std::uint64_t longest = 0;
   for (int t = 0; t < 50; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 0, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 0, 0), t, monitor);
     std::uint64_t stalest = 0;
     for (const PairReport& pair : report.pairs) {
       ASSERT_EQ(pair.refresh_age_cycles, report.cycle - pair.evaluated_cycle) << "tick " << t;
@@ -81,8 +85,7 @@ TEST(Triage, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
   Scene scene = far_apart(200);
   Monitor monitor(scene);
   for (int t = 0; t < 100; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-6 * t, 0), t, monitor);
     EXPECT_LE(report.queries, 2u);
     EXPECT_LE(report.oldest_evaluation_cycles, 13u) << "199 pairs, 16 a tick";
   }
@@ -139,8 +142,7 @@ TEST(Triage, FirstBinsAreEvaluatedEveryTick) {
   // Between the two: 5 mm from the second post, which is the minimum, and 5 ticks from the near
   // one.
   for (int t = 0; t < 30; ++t) {
-    const PoseSample sample = test::sample(0, test::at(11.0, 0.205 - 0.005, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(11.0, 0.205 - 0.005, 0), t, monitor);
     EXPECT_EQ(report.minimum.pair, 1u);
     EXPECT_EQ(report.minimum.evaluated_cycle, report.cycle);
     EXPECT_EQ(monitor.pair(20).evaluated_cycle, report.cycle);
@@ -153,8 +155,7 @@ TEST(Triage, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
   scene.budget = 4;
   Monitor monitor(scene);
   for (int t = 0; t < 50; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 1e-4 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
     EXPECT_TRUE(report.zones[0].active);
     EXPECT_TRUE(report.zones[0].proved);
   }
@@ -165,8 +166,7 @@ TEST(Triage, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
   scene.zones = {test::zone_over(scene, 1000.0, 1000.0)};
   scene.budget = 4;
   Monitor monitor(scene);
-  const PoseSample sample = test::sample(0, test::at(0, 0, 0), kStart);
-  EXPECT_FALSE(monitor.tick(std::span(&sample, 1), kStart).zones[0].proved);
+  EXPECT_FALSE(tick_with_first_at(test::at(0, 0, 0), 0, monitor).zones[0].proved);
 }
 
 TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
@@ -176,8 +176,7 @@ TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
   Monitor monitor(scene);
   std::uint64_t oldest = 0;
   for (int t = 0; t < 50; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 1e-6 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-6 * t, 0), t, monitor);
     if (t >= 20) oldest = std::max(oldest, report.oldest_evaluation_cycles);
   }
   EXPECT_LE(oldest, 7u);
@@ -190,8 +189,7 @@ TEST(Triage, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCove
   scene.budget = 6;
   Monitor monitor(scene);
   for (int t = 0; t < 30; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 1e-4 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
     EXPECT_EQ(report.queries, 6u);
     EXPECT_TRUE(report.minimum_proved);
     EXPECT_TRUE(report.zones[0].proved);
@@ -204,8 +202,7 @@ TEST(Triage, PublishedPairsComeBeforeTheRest) {
   scene.budget = 3;
   Monitor monitor(scene);
   for (int t = 0; t < 30; ++t) {
-    const PoseSample sample = test::sample(0, test::at(0, 1e-5 * t, 0), kStart + t * kTick);
-    const Report& report = monitor.tick(std::span(&sample, 1), sample.stamp_ns);
+    const Report& report = tick_with_first_at(test::at(0, 1e-5 * t, 0), t, monitor);
     ASSERT_EQ(report.pairs.size(), 1u);
     EXPECT_EQ(report.pairs[0].pair, 17u);
     EXPECT_EQ(report.pairs[0].evaluated_cycle, report.cycle);

@@ -3,9 +3,9 @@
 
 #include "core/pose.hpp"
 
-namespace clearance {
+namespace clearance::test {
 
 // Not turned, with the object's origin there, m.
-inline Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
+[[nodiscard]] inline Pose at(double x, double y, double z) { return {{x, y, z}, {1, 0, 0, 0}}; }
 
-}  // namespace clearance
+}  // namespace clearance::test

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "monitor/monitor.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {

@@ -15,6 +15,7 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
@@ -29,21 +30,9 @@ struct Outcome {
 
 class DistanceTool : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = testing::TempDir() + "clearance-distance-XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string path(const char* file) const { return (folder_ / file).string(); }
 
-  [[nodiscard]] std::string path(const char* file) const { return folder_ + "/" + file; }
-
-  [[nodiscard]] std::string read(const char* file) const {
-    std::ifstream in(path(file));
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
+  [[nodiscard]] std::string read(const char* file) const { return test::read_text(path(file)); }
 
   // Arguments as a shell reads them; `in` is the standard input.
   Outcome run(const std::string& arguments, const std::string& in = "") {
@@ -62,7 +51,7 @@ class DistanceTool : public testing::Test {
     return result;
   }
 
-  std::string folder_;
+  test::ScratchFolder folder_;
 };
 
 constexpr const char* kCube =

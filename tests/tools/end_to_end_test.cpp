@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <csignal>
 
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/monitor/recorded_runs.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "monitor/record/csv_poses.hpp"
 #include "tests/monitor/recorded_runs.hpp"
-#include "tests/monitor/scratch_folder.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
@@ -17,9 +18,6 @@ using test::ChildProcess;
 class SceneProgram : public testing::Test {
  protected:
   SceneProgram() {
-    std::string pattern =
-        (std::filesystem::temp_directory_path() / "clearance_scene_XXXXXX").string();
-    directory_ = mkdtemp(pattern.data());
     std::ofstream(directory_ / "robot.urdf") << "<robot name=\"two\">\n"
                                                 "<link name=\"a\"><collision><geometry><sphere "
                                                 "radius=\"0.1\"/></geometry></collision></link>\n"
@@ -27,7 +25,6 @@ class SceneProgram : public testing::Test {
                                                 "size=\"1 1 1\"/></geometry></collision></link>\n"
                                                 "</robot>\n";
   }
-  ~SceneProgram() override { std::filesystem::remove_all(directory_); }
 
   int run(std::vector<std::string> arguments) {
     ChildProcess program(std::string(CLEARANCE_BIN) + "/clearance-scene", std::move(arguments));
@@ -38,7 +35,7 @@ class SceneProgram : public testing::Test {
 
   std::string file(const std::string& name) const { return (directory_ / name).string(); }
 
-  std::filesystem::path directory_;
+  test::ScratchFolder directory_;
   std::string output_;
 };
 
