@@ -67,7 +67,8 @@ struct TrackingState {
 struct DistanceOptions {
   double far_away = kInfinity;  // m: stop as soon as the lower bound reaches this
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
-  // Where they are not proved apart the lower bound may be -infinity then, and the rest says less.
+  // Where they are not proved apart, the status is kIterationLimit then and the lower bound may be
+  // -infinity.
   bool depth = true;
 };
 
