@@ -84,6 +84,12 @@ class DistanceBatch::Rounds {
     for (std::uint32_t pair = 0; pair < no_pair(); ++pair) loose_.push_back(pair);
   }
 
+  [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept {
+    const Slot slot = slots_[pair];
+    if (slot == kNowhere) return states_[pair].b.point;
+    return last_point(blocks_[slot / kBlockLanes], slot % kBlockLanes, kPointB);
+  }
+
   [[nodiscard]] std::size_t single_queries() const noexcept { return single_queries_; }
 
  private:
@@ -283,6 +289,10 @@ DistanceBatch& DistanceBatch::operator=(DistanceBatch&&) noexcept = default;
 std::span<const DistanceResult> DistanceBatch::evaluate(
     std::span<const Pose> world_from_body) noexcept {
   return rounds_->evaluate(world_from_body);
+}
+
+Vec3 DistanceBatch::point_on_b(std::size_t pair) const noexcept {
+  return rounds_->point_on_b(pair);
 }
 
 void DistanceBatch::forget() noexcept { rounds_->forget(); }

@@ -34,6 +34,10 @@ class DistanceBatch {
   // next call. No heap, deterministic.
   std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept;
 
+  // Of the last round: the pair's witness point on B as its tracking state has it, in B's own frame
+  // and before the radius.
+  [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept;
+
   // All tracking states become cold.
   void forget() noexcept;
 

@@ -12,6 +12,13 @@ namespace clearance {
   return a.radius + b.radius;
 }
 
+// B's witness point of a result with radii, from the core's (TrackingState); both and the result's
+// normal in the same frame.
+[[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_core, const Vec3& normal,
+                                       const ConvexPolyhedron& b) noexcept {
+  return std::isfinite(normal.x()) ? Vec3(on_core - b.radius * normal) : on_core;
+}
+
 // Witness points move from the cores' surfaces to the rounded bodies'.
 inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
                       const ConvexPolyhedron& b) noexcept {
@@ -23,7 +30,7 @@ inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
   r.upper -= sum - rounding;
   if (std::isfinite(r.normal.x())) {
     r.point_on_a += a.radius * r.normal;
-    r.point_on_b -= b.radius * r.normal;
+    r.point_on_b = on_rounded_b(r.point_on_b, r.normal, b);
   }
   if (r.upper < 0.0) {
     r.status = DistanceStatus::kOverlapping;

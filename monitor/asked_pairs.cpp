@@ -83,7 +83,8 @@ void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
 void AskedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-    if (is_known(group.pairs[i], evaluation)) settle(group.pairs[i], found[i], evaluation);
+    if (!is_known(group.pairs[i], evaluation)) continue;
+    settle(group.pairs[i], found[i], group.batch.point_on_b(i), evaluation);
   }
 }
 

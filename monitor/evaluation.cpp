@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/radii.hpp"
 #include "monitor/carried_direction.hpp"
 #include "monitor/rounding.hpp"
 
@@ -15,7 +16,9 @@ DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, table.tracking[row]);
 }
 
-void take_in(const DistanceResult& found, std::uint32_t row,
+// point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
+// off by what rounding makes of how far the two are apart.
+void take_in(const DistanceResult& found, const Vec3& point_on_b, std::uint32_t row,
              const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
@@ -29,15 +32,17 @@ void take_in(const DistanceResult& found, std::uint32_t row,
   ClosestPoints& closest = table.closest[row];
   closest.distance = std::clamp(found.distance, table.lower[row], table.upper[row]);
   closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
-  closest.witness_b = turn * found.point_on_b + a.world_from_part.position;
   closest.normal = turn * found.normal;
+  const Vec3 on_b = b.world_from_part_rotation * point_on_b + b.world_from_part.position;
+  closest.witness_b = on_rounded_b(on_b, closest.normal, *b.shape);
   table.gap[row] = kept_gap(bounds.lower, closest.normal, a, b);
   table.status[row] = found.status;
   table.row_evaluated_cycle[row] = evaluation.cycle;
 }
 
 void query(std::uint32_t row, Evaluation& evaluation) noexcept {
-  take_in(ask(row, evaluation), row, evaluation);
+  const DistanceResult found = ask(row, evaluation);
+  take_in(found, evaluation.table.tracking[row].b.point, row, evaluation);
   --evaluation.queries_left;
 }
 
@@ -107,7 +112,7 @@ RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
 }
 
 // What was known before adds nothing to a tight answer.
-void settle(std::uint32_t pair, const DistanceResult& found,
+void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
             const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const std::uint32_t row = table.first_row[pair];
@@ -118,7 +123,7 @@ void settle(std::uint32_t pair, const DistanceResult& found,
   } else {
     carry(pair, evaluation);
   }
-  take_in(found, row, evaluation);
+  take_in(found, point_on_b, row, evaluation);
   table.least_lower[pair] = table.lower[row];
   table.evaluated_cycle[pair] = evaluation.cycle;
 }
@@ -130,7 +135,9 @@ void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
     evaluate_rows(pair, evaluation);
     return;
   }
-  settle(pair, ask(table.first_row[pair], evaluation), evaluation);
+  const std::uint32_t row = table.first_row[pair];
+  const DistanceResult found = ask(row, evaluation);
+  settle(pair, found, table.tracking[row].b.point, evaluation);
   --evaluation.queries_left;
 }
 

@@ -28,9 +28,10 @@ struct Evaluation {
   return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
 }
 
-// Takes in the answer to a query of a pair's only row, which brings the pair up to date. Does not
-// count the query.
-void settle(std::uint32_t pair, const DistanceResult& found, const Evaluation& evaluation) noexcept;
+// Takes in the answer to a query of a pair's only row, which brings the pair up to date, and the
+// witness point on B in B's own frame (TrackingState). Does not count the query.
+void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
+            const Evaluation& evaluation) noexcept;
 
 // The bounds that a query tells are for the poses as it used them; these are for the exact ones.
 [[nodiscard]] RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,

@@ -63,9 +63,11 @@ Difference follow(const Motion& motion, const std::string& what) {
       const DistanceResult expected =
           distance(*shapes[a], *shapes[b], relative_pose(poses[a], poses[b]), states[i]);
       ++seen.answers;
-      if (same_bits(answers[i], expected)) continue;
+      const bool same_point = batch.point_on_b(i).cwiseEqual(states[i].b.point).all();
+      if (same_bits(answers[i], expected) && same_point) continue;
       ADD_FAILURE() << what << ", " << DistanceBatch::instruction_set() << ", step " << step
-                    << ", pair " << i << ": " << text(answers[i]) << ", not " << text(expected);
+                    << ", pair " << i << ": " << text(answers[i]) << ", not " << text(expected)
+                    << (same_point ? "" : ", or another point of B");
       return seen;
     }
   }

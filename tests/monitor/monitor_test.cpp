@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/monitor/report_bytes.hpp"
@@ -40,6 +41,24 @@ TEST(Monitor, ReportsDistanceWitnessesAndNormalInTheWorld) {
   EXPECT_EQ(pair.age_b_ns, 0);
   EXPECT_EQ(pair.evaluated_cycle, 1u);
   EXPECT_EQ(pair.refresh_age_cycles, 0u);
+}
+
+TEST(Monitor, PutsTheWitnessPointOfABodyAKilometreAwayOnItToItsOwnRounding) {
+  Random random(52);
+  for (int k = 0; k < 50; ++k) {
+    const Pose far{1000.0 * random.vec(1.0).normalized(), random.orientation()};
+    const Pose here{Vec3::Zero(), random.orientation()};
+    std::vector<Part> parts = {test::block(Vec3(0.1, 0.2, 0.3))};
+    if (k % 2 == 1) parts.push_back(test::ball(0.1));  // asked one by one, not in a batch
+    Scene scene = test::cell_of(
+        {test::moving("far", parts), test::fixed("here", {test::capsule(1.0, 0.25)}, here)});
+    scene.pairs[0].publish = true;
+    Monitor monitor(scene);
+    const PairReport& pair = tick_with(monitor, 0, far, kStart).pairs.at(0);
+    Vec3 from_axis = here.orientation.conjugate() * pair.witness_b;
+    from_axis.x() = std::max(0.0, std::abs(from_axis.x()) - 0.5);
+    EXPECT_NEAR(from_axis.norm(), 0.25, 1e-15);
+  }
 }
 
 TEST(Monitor, DistanceOfAnObjectIsThatOfItsClosestPart) {

@@ -113,9 +113,23 @@ TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
         << family.name;
     EXPECT_EQ(sign * r.lines[0][upper].get<double>(), expected.upper) << family.name;
     EXPECT_EQ(r.lines[0]["status"], name(expected.status)) << family.name;
-    const Vec3 on_b = transform(c.pose_a, expected.point_on_b);
-    EXPECT_EQ(r.lines[0]["deepest_b"][2].get<double>(), on_b.z()) << family.name;
+    const Vec3 on_a = transform(c.pose_a, expected.point_on_a);
+    EXPECT_EQ(r.lines[0]["deepest_a"][2].get<double>(), on_a.z()) << family.name;
   }
+}
+
+TEST_F(DistanceTool, PutsTheWitnessPointOfABodyFarFromTheOtherOneOnItToItsOwnRounding) {
+  const Outcome r =
+      run("--cases - --out -", R"({"id":"far","a":{"vertices":[[0,0,0]],"radius":0.5},)"
+                               R"("b":{"vertices":[[0,0,0]],"radius":0.25},)"
+                               R"("pose_a":[700,-500,510,0.1,0.2,0.3,0.9],)"
+                               R"("pose_b":[0.5,0.25,-0.25,0,0,0,1]})"
+                               "\n");
+  ASSERT_EQ(r.lines.size(), 1u) << r.err;
+  const Vec3 from_middle(r.lines[0]["witness_b"][0].get<double>() - 0.5,
+                         r.lines[0]["witness_b"][1].get<double>() - 0.25,
+                         r.lines[0]["witness_b"][2].get<double>() + 0.25);
+  EXPECT_NEAR(from_middle.norm(), 0.25, 2e-16);
 }
 
 TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {

@@ -7,6 +7,7 @@
 #include "core/active_side.hpp"
 #include "core/dqp3.hpp"
 #include "core/precision.hpp"
+#include "core/radii.hpp"
 
 namespace clearance {
 namespace {
@@ -14,10 +15,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-OrderedJson world_point(const Pose& world_from_a, const Vec3& point_in_a) {
-  const Vec3 p = transform(world_from_a, point_in_a);
-  return OrderedJson::array({p.x(), p.y(), p.z()});
-}
+OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
 // Of two bodies that overlap, in frame A: where a search for the closest points ends.
 Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
@@ -32,26 +30,32 @@ Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 }
 
 OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& world_from_a,
-                    const Pose& world_from_b, const DistanceResult& r) {
+                    const Pose& world_from_b, const DistanceAnswer& answer) {
+  const DistanceResult& r = answer.result;
   const bool overlapping = r.upper < 0.0;
   const Vec3 shared =
-      overlapping ? shared_point(a, b, relative_pose(world_from_a, world_from_b)) : Vec3::Zero();
+      overlapping
+          ? transform(world_from_a, shared_point(a, b, relative_pose(world_from_a, world_from_b)))
+          : Vec3::Zero();
   const auto positive = [](double value) { return std::max(0.0, value); };
+  const Vec3 normal = transform({Vec3::Zero(), world_from_a.orientation}, r.normal);
+  const Vec3 on_a = transform(world_from_a, r.point_on_a);
+  // Through A's frame it would be off by what rounding makes of how far the two are apart.
+  const Vec3 on_b = on_rounded_b(transform(world_from_b, answer.own_point_on_b), normal, b);
   OrderedJson out;
   out["distance"] = overlapping ? 0.0 : positive(r.distance);
   out["lower"] = positive(r.lower);
   out["upper"] = positive(r.upper);
-  out["witness_a"] = world_point(world_from_a, overlapping ? shared : r.point_on_a);
-  out["witness_b"] = world_point(world_from_a, overlapping ? shared : r.point_on_b);
+  out["witness_a"] = entry(overlapping ? shared : on_a);
+  out["witness_b"] = entry(overlapping ? shared : on_b);
   out["penetration"] = r.lower > 0.0            ? 0.0
                        : std::isnan(r.distance) ? r.distance
                                                 : positive(-r.distance);
   out["penetration_lower"] = positive(-r.upper);
   out["penetration_upper"] = positive(-r.lower);
-  const Vec3 normal = transform({Vec3::Zero(), world_from_a.orientation}, r.normal);
-  out["normal"] = OrderedJson::array({normal.x(), normal.y(), normal.z()});
-  out["deepest_a"] = world_point(world_from_a, r.point_on_a);
-  out["deepest_b"] = world_point(world_from_a, r.point_on_b);
+  out["normal"] = entry(normal);
+  out["deepest_a"] = entry(on_a);
+  out["deepest_b"] = entry(on_b);
   out["status"] = name(r.status);
   out["iterations"] = r.iterations;
   return out;
@@ -62,7 +66,7 @@ OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
 OrderedJson Answerer::answer(const DistanceCase& question) {
   OrderedJson out;
   out["id"] = question.id;
-  const std::vector<DistanceResult> results = run(question);
+  const std::vector<DistanceAnswer> results = run(question);
   if (!question.motion) {
     const auto& [pose_a, pose_b] = question.poses.front();
     out.update(figures(question.a, question.b, pose_a, pose_b, results.front()));
@@ -93,21 +97,22 @@ void Answerer::print_summary(std::size_t lines, std::size_t bad_lines) const {
 }
 
 // One pass over the motion gives the answers; further ones are only for the clock.
-std::vector<DistanceResult> Answerer::run(const DistanceCase& question) {
+std::vector<DistanceAnswer> Answerer::run(const DistanceCase& question) {
   const std::vector<std::pair<Pose, Pose>>& poses = question.poses;
-  std::vector<DistanceResult> results(poses.size());
+  std::vector<DistanceAnswer> results(poses.size());
   for (int pass = 0; pass < repeat_; ++pass) {
     TrackingState state;
     const Clock::time_point start = Clock::now();
     for (std::size_t k = 0; k < poses.size(); ++k) {
       if (cold_) state = {};
-      results[k] = distance(question.a, question.b, poses[k].first, poses[k].second, state);
+      results[k].result = distance(question.a, question.b, poses[k].first, poses[k].second, state);
+      results[k].own_point_on_b = state.b.point;
     }
     time_ += Clock::now() - start;
     queries_ += poses.size();
   }
-  for (const DistanceResult& r : results) {
-    not_converged_ += r.status == DistanceStatus::kIterationLimit ? 1 : 0;
+  for (const DistanceAnswer& answer : results) {
+    not_converged_ += answer.result.status == DistanceStatus::kIterationLimit ? 1 : 0;
   }
   return results;
 }

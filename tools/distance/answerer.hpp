@@ -11,6 +11,11 @@
 
 namespace clearance {
 
+struct DistanceAnswer {
+  DistanceResult result;
+  Vec3 own_point_on_b;  // the witness point in B's own frame, before the radius
+};
+
 class Answerer {
  public:
   // `cold`: forget the state between the poses of a motion. `repeat`: ask everything so often, for
@@ -24,7 +29,7 @@ class Answerer {
   void print_summary(std::size_t lines, std::size_t bad_lines) const;
 
  private:
-  std::vector<DistanceResult> run(const DistanceCase& question);
+  std::vector<DistanceAnswer> run(const DistanceCase& question);
 
   bool cold_;
   int repeat_;
