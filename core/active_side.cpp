@@ -55,4 +55,14 @@ bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
   return false;
 }
 
+// On an unbounded body another pair's point may be so far out that rounding takes it off its
+// feature. The closest points are no farther away than this, where one of the bodies is bounded:
+// the distance is at most that of any two points.
+void ActiveSide::place_near(const TrackingState::Side& hint, const ActiveSide& other,
+                            double apart) noexcept {
+  const double farthest = body_.bounding_radius + 2.0 * (other.body_.bounding_radius + apart);
+  if (place_tracked(hint) && (body_.bounded() || own_.norm() <= farthest)) return;
+  place_cold(other.point_to_common(other.body_.interior));
+}
+
 }  // namespace clearance

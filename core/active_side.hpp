@@ -74,9 +74,10 @@ class ActiveSide {
   // Where a query starts that knows nothing: a vertex that is far out towards `other` (common
   // frame); inside, where the body has none.
   void place_cold(const Vec3& other) noexcept;
-  // Where the last query ended, re-anchored on the feature. False, and nothing done, if the hint is
-  // unusable.
+  // Where the last query ended, re-anchored on the feature. False if the hint is unusable.
   [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;
+  // One or the other. apart: m, between the bodies' origins.
+  void place_near(const TrackingState::Side& hint, const ActiveSide& other, double apart) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
     return {static_cast<std::uint8_t>(feature_), false, index_, own_};
   }

@@ -94,12 +94,6 @@ DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& 
   return r;
 }
 
-void place(ActiveSide& side, const TrackingState::Side& hint, const ActiveSide& other) noexcept {
-  if (!side.place_tracked(hint)) {
-    side.place_cold(other.point_to_common(other.body().interior));
-  }
-}
-
 // The distance that the optimal active set proves by itself: what lies behind both features along
 // `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
 // n.
@@ -173,8 +167,9 @@ const char* name(DistanceStatus status) noexcept {
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-  place(side_a, state.a, side_b);
-  place(side_b, state.b, side_a);
+  const double apart = a_from_b.translation.norm();
+  side_a.place_near(state.a, side_b, apart);
+  side_b.place_near(state.b, side_a, apart);
   DistanceResult result = core_distance(side_a, side_b, a_from_b);
   state = {side_a.tracked(), side_b.tracked()};
   if (!(result.lower > 0.0)) {

@@ -73,8 +73,9 @@ Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 std::uint16_t settle_apart(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                            const RelativePose& moved, TrackingState& state) noexcept {
   ActiveSide side_a(a, nullptr), side_b(b, &moved);
-  if (!side_a.place_tracked(state.a)) side_a.place_cold(side_b.point_to_common(b.interior));
-  if (!side_b.place_tracked(state.b)) side_b.place_cold(a.interior);
+  const double apart = moved.translation.norm();
+  side_a.place_near(state.a, side_b, apart);
+  side_b.place_near(state.b, side_a, apart);
   const std::uint16_t iterations = dqp3(side_a, side_b, 0.0).iterations;
   state = {side_a.tracked(), side_b.tracked()};
   return iterations;

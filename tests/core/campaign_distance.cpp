@@ -94,7 +94,7 @@ class Campaign {
     const std::size_t most =
         std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
     out.feature = random.integer(-2, static_cast<int>(most) + 1);
-    out.point = random.in_box(random.log_uniform(1e-3, 1e6));
+    out.point = random.in_box(random.log_uniform(1e-3, 1e18));
     if (random.chance(0.1)) out.point.x() = std::nan("");
     if (random.chance(0.1)) out.point.y() = kInfinity;
     return out;

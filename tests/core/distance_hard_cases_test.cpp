@@ -97,6 +97,26 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
   }
 }
 
+TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
+  // On a wedge without end, 1e17 m out, rounding took the point 23 m off its facet: the box was
+  // said to touch it.
+  Random random(141500011);
+  for (const hard::CaseFamily& family : hard::case_families()) {
+    if (std::string(family.name) != "without_end") continue;
+    const hard::HardCase c = family.make(random);
+    DistanceJudge judge(c.a, c.b);
+    const auto truth = judge.truth(c.pose_a, c.pose_b);
+    for (const bool deep : {false, true}) {
+      TrackingState state;
+      state.a = {2, deep, 0, Vec3(-1.53301e17, 3.15683e16, 0.0)};
+      state.b = {0, false, 3, Vec3(-1.85647e16, 2.07706e16, -7.44492e16)};
+      const auto faults =
+          judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
+      EXPECT_TRUE(faults.empty()) << joined(faults);
+    }
+  }
+}
+
 class DistanceAlongMotions : public testing::TestWithParam<hard::MotionFamily> {};
 
 TEST_P(DistanceAlongMotions, HoldsAgainstTheExactTruthAtEveryStep) {

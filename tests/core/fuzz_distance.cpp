@@ -83,6 +83,7 @@ TrackingState::Side any_side(Bytes& bytes) {
   out.dimension = bytes.byte() % 8;
   out.feature = bytes.byte() % 64 - 2;
   out.point = {bytes.byte() / 64.0 - 2.0, bytes.byte() / 64.0 - 2.0, bytes.byte() / 64.0 - 2.0};
+  out.point *= std::ldexp(1.0, bytes.byte() % 64);
   return out;
 }
 
@@ -104,6 +105,7 @@ void run(Bytes bytes) {
   hard::HardCase c = family.make(random);
   TrackingState state;
   if (bytes.byte() % 2 == 1) state = {any_side(bytes), any_side(bytes)};
+  state.a.deep = bytes.byte() % 2 == 1;
   change(c, bytes);
   if (!has_truth(c)) return;
   DistanceJudge judge(c.a, c.b);
