@@ -28,13 +28,15 @@ enum class FeatureKind : std::uint8_t {
 };
 inline constexpr std::size_t kFeatureKinds = 7;
 
-// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0.
+// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
+// first of them up to the points are not read of a plain block, nor kept.
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
   kPositionErrorA,
   kPositionErrorB,
-  kUnboundedA,
+  kBeyondPlain,
+  kUnboundedA = kBeyondPlain,
   kUnboundedB,
   kRadiusA,
   kRadiusB,
@@ -72,15 +74,19 @@ static_assert(kSidesOfB + kMostSidesOfTwo * kSideRows <= kRows - kFeatureRows);
 struct alignas(64) BatchBlock {
   std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};
   std::array<std::uint32_t, kBlockLanes> pair{};  // of a lane not in use: one past the last pair
-  // How often what repeats does, of A's feature and of B's: in each lane, and the most since the
-  // block was empty. Every lane is filled up to the most, by repeating its last.
-  std::array<std::uint8_t, kBlockLanes> repeats_a{}, repeats_b{};
+  // The most often that what repeats does in a lane since the block was empty, of A's feature and
+  // of B's. Every lane has as many, its last several times.
   std::uint8_t most_a = 0, most_b = 0;
-  std::uint8_t lanes = 0;   // in use: [0, lanes), but for those that a pair has left
-  std::uint8_t failed = 0;  // of the last round: bit i, lane i is for distance()
-  bool plain = true;  // no body in it has been unbounded, a point, a segment, or with a radius
+  std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
+  std::uint8_t taken = 0;  // bit i: a pair is in lane i
+  bool plain = true;       // no body in it has been unbounded, a point, a segment, or with a radius
   FeatureKind kind = FeatureKind::kVertexVertex;
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
+};
+
+// The lanes of a block whose pairs are for distance(): bit i, lane i.
+struct FailedLanes {
+  std::uint32_t block, lanes;
 };
 
 // One round of the vector code over all blocks.
@@ -88,6 +94,7 @@ struct BatchRound {
   BatchBlock* blocks = nullptr;
   const Pose* world_from_body = nullptr;
   DistanceResult* results = nullptr;  // [pair]
+  FailedLanes* failed = nullptr;      // room for all blocks and one more
   struct List {
     const std::uint32_t* blocks = nullptr;
     std::size_t count = 0;
@@ -96,9 +103,9 @@ struct BatchRound {
 };
 
 // Judges every lane: where the features of the last query are the closest still and the bounds are
-// tight, writes what distance() would, bit for bit; the others are marked as failed.
-// Picks the widest vectors that the machine has; the results do not depend on it.
-void run_batch(const BatchRound& round) noexcept;
+// tight, writes what distance() would, bit for bit; the others are listed as failed, in so many
+// blocks. Picks the widest vectors that the machine has; the results do not depend on it.
+[[nodiscard]] std::size_t run_batch(const BatchRound& round) noexcept;
 
 // The instruction set that run_batch uses here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", "SCALAR".
 [[nodiscard]] const char* batch_instruction_set() noexcept;

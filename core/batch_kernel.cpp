@@ -132,8 +132,9 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   return bits[0];
 }
 
+// Lists what has failed behind the first `count`; how much there is then.
 template <FeatureKind kKind>
-void judge_list(const BatchRound& round) {
+std::size_t judge_list(const BatchRound& round, std::size_t count) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
@@ -141,18 +142,21 @@ void judge_list(const BatchRound& round) {
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {
       good |= judge<kKind>(block, first, round) << first;
     }
-    block.failed = static_cast<std::uint8_t>(~good);
+    const auto failed = static_cast<std::uint32_t>(block.taken & ~good);
+    round.failed[count] = {list.blocks[k], failed};
+    count += failed != 0;
   }
+  return count;
 }
 
-void judge_all(const BatchRound& round) {
-  judge_list<FeatureKind::kVertexVertex>(round);
-  judge_list<FeatureKind::kVertexEdge>(round);
-  judge_list<FeatureKind::kEdgeVertex>(round);
-  judge_list<FeatureKind::kVertexFacet>(round);
-  judge_list<FeatureKind::kFacetVertex>(round);
-  judge_list<FeatureKind::kEdgeEdge>(round);
-  judge_list<FeatureKind::kFacetFacet>(round);
+std::size_t judge_all(const BatchRound& round) {
+  std::size_t count = judge_list<FeatureKind::kVertexVertex>(round, 0);
+  count = judge_list<FeatureKind::kVertexEdge>(round, count);
+  count = judge_list<FeatureKind::kEdgeVertex>(round, count);
+  count = judge_list<FeatureKind::kVertexFacet>(round, count);
+  count = judge_list<FeatureKind::kFacetVertex>(round, count);
+  count = judge_list<FeatureKind::kEdgeEdge>(round, count);
+  return judge_list<FeatureKind::kFacetFacet>(round, count);
 }
 
 const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
@@ -167,7 +171,9 @@ namespace clearance {
 HWY_EXPORT(judge_all);
 HWY_EXPORT(instruction_set);
 
-void run_batch(const BatchRound& round) noexcept { HWY_DYNAMIC_DISPATCH(judge_all)(round); }
+std::size_t run_batch(const BatchRound& round) noexcept {
+  return HWY_DYNAMIC_DISPATCH(judge_all)(round);
+}
 
 const char* batch_instruction_set() noexcept { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
 

@@ -1,5 +1,7 @@
 #include "core/batch_lane.hpp"
 
+#include <algorithm>
+
 namespace clearance {
 namespace {
 
@@ -19,23 +21,6 @@ class LaneWriter {
     put(v.y());
     put(v.z());
   }
-  void put(const Vertex& vertex) noexcept { put(vertex.position); }
-  void put(const Edge& edge) noexcept {
-    put(edge.point);
-    put(edge.direction);
-    put(edge.begin);
-    put(edge.end);
-    put(edge.inward[0]);
-    put(edge.inward[1]);
-  }
-  void put(const Facet& facet) noexcept {
-    put(facet.normal);
-    put(facet.offset);
-  }
-  void put(const FacetSide& side) noexcept {
-    put(side.inward);
-    put(side.offset);
-  }
 
  private:
   double* at_;
@@ -45,106 +30,142 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
   return repeats <= static_cast<std::int32_t>(most);
 }
 
-// A feature with what vector code needs of it; a facet without sides is one.
-bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
-  switch (side.dimension) {
-    case 0:
-      return few(body.vertices[side.feature].edges);
-    case 1:
-      return true;
-    case 2:
-      return few(body.facets[side.feature].sides);
-    default:
-      return false;
-  }
-}
-
 // How often what repeats of the feature does.
 std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
   if (side.dimension == 0) return body.vertices[side.feature].edges;
   return side.dimension == 2 ? body.facets[side.feature].sides : 0;
 }
 
-void put_feature(LaneWriter& to, const ConvexPolyhedron& body, const Side& side) noexcept {
-  if (side.dimension == 0) to.put(body.vertices[side.feature]);
-  if (side.dimension == 1) to.put(body.edges[side.feature]);
-  if (side.dimension == 2) to.put(body.facets[side.feature]);
+// A feature with what vector code needs of it; a facet without sides is one.
+bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
+  return side.dimension <= 2 && few(repeats(body, side));
 }
 
-void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexPolyhedron& body,
-                 const Side& side) noexcept {
-  LaneWriter to(block, lane, row);
-  for (std::int32_t i = 0; i < repeats(body, side); ++i) {
-    if (side.dimension == 0) {
-      to.put(body.outgoing_of(body.vertices[side.feature], i));
-    } else {
-      to.put(body.side_of(body.facets[side.feature], i));
-    }
-  }
-}
+// Vertices, edges and facets as LaneWriters and loops see them, by their dimension.
+template <int kDimension>
+struct LaneFeature;
 
-// Fills `lane` from its own count up to `most` with its last; a half-space, which has no sides,
-// with zeros, within which everything lies.
-void pad(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t stride,
-         std::size_t count, std::size_t most) noexcept {
-  for (std::size_t i = count; i < most; ++i) {
-    for (std::size_t k = 0; k < stride; ++k) {
-      block.rows[row + stride * i + k][lane] =
-          count > 0 ? block.rows[row + stride * (count - 1) + k][lane] : 0.0;
-    }
-  }
-}
+template <>
+struct LaneFeature<0> {
+  static constexpr std::size_t kStride = kDirectionRows;
+  const Vertex& vertex;
+  const VectorRows& table;
 
-// Where what repeats of one body's feature stands in a block.
-struct RepeatRows {
-  std::size_t row, stride;
+  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
+      : vertex(body.vertices[side.feature]), table(body.outgoing) {}
+  void put(LaneWriter& to) const noexcept { to.put(vertex.position); }
+  [[nodiscard]] std::int32_t repeats() const noexcept { return vertex.edges; }
+  [[nodiscard]] const double* row() const noexcept { return table.row(vertex.first_edge); }
 };
 
-RepeatRows rows_of_a(FeatureKind kind) noexcept {
-  switch (kind) {
-    case FeatureKind::kVertexVertex:
-      return {kFeatureRows + kDirectionsOfA, kDirectionRows};
-    case FeatureKind::kVertexEdge:
-      return {kFeatureRows + kDirectionsAtEdge, kDirectionRows};
-    case FeatureKind::kVertexFacet:
-      return {kFeatureRows + kDirectionsAtFacet, kDirectionRows};
-    case FeatureKind::kFacetVertex:
-      return {kFeatureRows + kSides, kSideRows};
-    case FeatureKind::kFacetFacet:
-      return {kFeatureRows + kSidesOfA, kSideRows};
-    default:
-      return {};
+template <>
+struct LaneFeature<1> {
+  static constexpr std::size_t kStride = 0;
+  const Edge& edge;
+
+  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
+      : edge(body.edges[side.feature]) {}
+  void put(LaneWriter& to) const noexcept {
+    to.put(edge.point);
+    to.put(edge.direction);
+    to.put(edge.begin);
+    to.put(edge.end);
+    to.put(edge.inward[0]);
+    to.put(edge.inward[1]);
+  }
+};
+
+template <>
+struct LaneFeature<2> {
+  static constexpr std::size_t kStride = kSideRows;
+  const Facet& facet;
+  const VectorRows& table;
+
+  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
+      : facet(body.facets[side.feature]), table(body.facet_sides) {}
+  void put(LaneWriter& to) const noexcept {
+    to.put(facet.normal);
+    to.put(facet.offset);
+  }
+  [[nodiscard]] std::int32_t repeats() const noexcept { return facet.sides; }
+  [[nodiscard]] const double* row() const noexcept { return table.row(facet.first_side); }
+};
+
+// What repeats of one body's feature in a lane, from `row` on: `most` times, its last once more
+// where there are less; of a half-space, which has no sides, zeros, within which everything lies.
+template <int kDimension>
+void put_row(BatchBlock& block, std::size_t lane, std::size_t row,
+             const LaneFeature<kDimension>& of, std::size_t most) noexcept {
+  constexpr std::size_t kStride = LaneFeature<kDimension>::kStride;
+  const auto count = static_cast<std::size_t>(of.repeats());
+  const double* const from = of.row();
+  LaneWriter to(block, lane, row);
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t which = std::min(i, count - 1);
+    for (std::size_t k = 0; k < kStride; ++k) to.put(count > 0 ? from[k * count + which] : 0.0);
   }
 }
 
-RepeatRows rows_of_b(FeatureKind kind) noexcept {
-  switch (kind) {
-    case FeatureKind::kVertexVertex:
-      return {kFeatureRows + kDirectionsOfB, kDirectionRows};
-    case FeatureKind::kEdgeVertex:
-      return {kFeatureRows + kDirectionsAtEdge, kDirectionRows};
-    case FeatureKind::kFacetVertex:
-      return {kFeatureRows + kDirectionsAtFacet, kDirectionRows};
-    case FeatureKind::kVertexFacet:
-      return {kFeatureRows + kSides, kSideRows};
-    case FeatureKind::kFacetFacet:
-      return {kFeatureRows + kSidesOfB, kSideRows};
-    default:
-      return {};
+// The same of a lane that has been written when less was the most.
+void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t stride,
+              std::size_t before, std::size_t most) noexcept {
+  for (std::size_t i = stride * before; i < stride * most; ++i) {
+    block.rows[row + i][lane] = before > 0 ? block.rows[row + i - stride][lane] : 0.0;
   }
 }
 
-// Every lane is filled up to the most that any needs; `changed` has only its own.
-void level(BatchBlock& block, std::size_t changed, const RepeatRows& at,
-           const std::array<std::uint8_t, kBlockLanes>& counts, std::uint8_t& most) noexcept {
-  if (counts[changed] > most) {
-    most = counts[changed];
-    for (std::size_t lane = 0; lane < block.lanes; ++lane) {
-      if (lane != changed) pad(block, lane, at.row, at.stride, counts[lane], most);
+// Every lane has as many as any needs.
+template <int kDimension>
+void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row,
+                 const LaneFeature<kDimension>& of, std::uint8_t& most) noexcept {
+  const auto count = static_cast<std::uint8_t>(of.repeats());
+  if (count > most) {
+    for (std::size_t other = 0; other < block.lanes; ++other) {
+      lengthen(block, other, kFeatureRows + row, LaneFeature<kDimension>::kStride, most, count);
     }
+    most = count;
   }
-  pad(block, changed, at.row, at.stride, counts[changed], most);
+  put_row(block, lane, kFeatureRows + row, of, most);
 }
+
+// What repeats of both features, of A's first; the edge's neighbours are among its own numbers.
+template <int kOfA, int kOfB>
+void put_repeats(BatchBlock& block, std::size_t lane, const LaneFeature<kOfA>& a,
+                 const LaneFeature<kOfB>& b) noexcept {
+  constexpr bool kAlike = kOfA == kOfB;
+  constexpr std::size_t kAtVertex = kOfA + kOfB == 1 ? kDirectionsAtEdge : kDirectionsAtFacet;
+  constexpr std::size_t kRow[] = {kAlike ? kDirectionsOfA : kAtVertex, 0,
+                                  kAlike ? kSidesOfA : kSides};
+  constexpr std::size_t kRowOfB[] = {kAlike ? kDirectionsOfB : kAtVertex, 0,
+                                     kAlike ? kSidesOfB : kSides};
+  if constexpr (kOfA != 1) {
+    put_repeats(block, lane, kRow[kOfA], a, block.most_a);
+  }
+  if constexpr (kOfB != 1) {
+    put_repeats(block, lane, kRowOfB[kOfB], b, block.most_b);
+  }
+}
+
+template <int kOfA, int kOfB>
+void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
+                  const ConvexPolyhedron& b, const TrackingState& state) noexcept {
+  const LaneFeature<kOfA> of_a(a, state.a);
+  const LaneFeature<kOfB> of_b(b, state.b);
+  LaneWriter to(block, lane, kFeatureRows);
+  if constexpr (kOfB > kOfA) {  // the owner
+    of_b.put(to);
+    of_a.put(to);
+  } else {
+    of_a.put(to);
+    of_b.put(to);
+  }
+  put_repeats(block, lane, of_a, of_b);
+}
+
+constexpr std::array kPutFeatures = {put_features<0, 0>, put_features<0, 1>, put_features<1, 0>,
+                                     put_features<0, 2>, put_features<2, 0>, put_features<1, 1>,
+                                     put_features<2, 2>};
+static_assert(kPutFeatures.size() == kFeatureKinds);
 
 bool point_or_segment(const ConvexPolyhedron& body) noexcept {
   return body.facets.empty() && !body.vertices.empty();
@@ -158,6 +179,12 @@ bool plain(const ConvexPolyhedron& body) noexcept {
   return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }
 
+// Zeros until then: nobody has read these rows.
+void stay_plain_no_longer(BatchBlock& block) noexcept {
+  block.plain = false;
+  for (std::size_t row = kBeyondPlain; row < kPointA; ++row) block.rows[row].fill(0.0);
+}
+
 void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                 const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   LaneWriter to(block, lane, 0);
@@ -165,13 +192,17 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   to.put(b.bounding_radius);
   to.put(a.position_error);
   to.put(b.position_error);
+  put_last_points(block, lane, state);
+  if (block.plain) {
+    if (plain(a) && plain(b)) return;
+    stay_plain_no_longer(block);
+  }
   to.put(a.bounded() ? 0.0 : 1.0);
   to.put(b.bounded() ? 0.0 : 1.0);
   to.put(a.radius);
   to.put(b.radius);
   to.put(bare(a, state.a) ? 1.0 : 0.0);
   to.put(bare(b, state.b) ? 1.0 : 0.0);
-  put_last_points(block, lane, state);
 }
 
 }  // namespace
@@ -203,21 +234,17 @@ std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a, const ConvexP
   }
 }
 
+void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noexcept {
+  block.kind = kind;
+  block.pair.fill(no_pair);
+  block.lanes = block.taken = block.most_a = block.most_b = 0;
+  block.plain = true;
+}
+
 void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   put_common(block, lane, a, b, state);
-  LaneWriter to(block, lane, kFeatureRows);
-  const bool b_first = state.b.dimension > state.a.dimension;  // the owner
-  put_feature(to, b_first ? b : a, b_first ? state.b : state.a);
-  put_feature(to, b_first ? a : b, b_first ? state.a : state.b);
-  const RepeatRows of_a = rows_of_a(block.kind), of_b = rows_of_b(block.kind);
-  if (of_a.stride > 0) put_repeats(block, lane, of_a.row, a, state.a);
-  if (of_b.stride > 0) put_repeats(block, lane, of_b.row, b, state.b);
-  block.repeats_a[lane] = static_cast<std::uint8_t>(repeats(a, state.a));
-  block.repeats_b[lane] = static_cast<std::uint8_t>(repeats(b, state.b));
-  level(block, lane, of_a, block.repeats_a, block.most_a);
-  level(block, lane, of_b, block.repeats_b, block.most_b);
-  block.plain = block.plain && plain(a) && plain(b);
+  kPutFeatures[static_cast<std::size_t>(block.kind)](block, lane, a, b, state);
 }
 
 void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& state) noexcept {

@@ -13,6 +13,9 @@ namespace clearance {
                                                       const ConvexPolyhedron& b,
                                                       const TrackingState& state) noexcept;
 
+// Without pairs, for those of one kind. no_pair: one past the last.
+void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noexcept;
+
 // Writes the rows of a lane in use. `state` is of the block's kind.
 void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                const ConvexPolyhedron& b, const TrackingState& state) noexcept;

@@ -182,6 +182,28 @@ Pose turned_to(int feature, double x) {
   return {Vec3(x, 0.0, 0.0), about * turn};
 }
 
+// All pairs leave the blocks of one kind for those of another, again and again.
+TEST(DistanceBatch, GivesTheBitsOfSingleQueriesWhenAllFeaturesChangeAtOnce) {
+  Motion motion;
+  for (std::uint32_t i = 0; i < 150; ++i) {
+    motion.bodies.push_back(std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5})));
+    motion.bodies.push_back(std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5})));
+    motion.pairs.push_back({2 * i, 2 * i + 1});
+  }
+  for (const auto& [a, b] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 1}, {0, 0}}) {
+    std::vector<Pose>& poses = motion.poses.emplace_back();
+    while (poses.size() < motion.bodies.size()) {
+      poses.push_back(turned_to(a, -1.0));
+      poses.push_back(turned_to(b, 1.0));
+    }
+  }
+  for (const std::int64_t target : vector_widths()) {
+    const OnlyWith only(target);
+    const Difference seen = follow(motion, "all at once");
+    EXPECT_EQ(seen.single_queries, seen.answers);
+  }
+}
+
 TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
   const auto cube = std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5}));
   const ConvexPolyhedron* const bodies[] = {&cube, &cube};
