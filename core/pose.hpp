@@ -20,6 +20,17 @@ struct Twist {
   Vec3 angular = Vec3::Zero();  // rad/s
 };
 
+// R(q / |q|) of any non-zero q without a square root: N(q) / |q|^2. Its entries are within 2^-49.
+[[nodiscard]] inline Mat3 rotation_matrix(const Eigen::Quaterniond& q) noexcept {
+  const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const double s = 2.0 / ((w * w + x * x) + (y * y + z * z));
+  Mat3 r;
+  r << 1.0 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1.0 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1.0 - s * (x * x + y * y);
+  return r;
+}
+
 // Pose of an object whose frame is `inner` as placed in `outer`: outer_from_inner.
 [[nodiscard]] Pose compose(const Pose& outer, const Pose& inner) noexcept;
 

@@ -47,7 +47,7 @@ void AskedPairs::form_groups(const std::vector<PlacedPart>& parts, const PairTab
   };
   std::vector<BodyPair> of_bodies;
   for (const std::uint32_t pair : single) {
-    const std::uint32_t row = table.first_row[pair];
+    const std::uint32_t row = table.entries[pair].first_row;
     of_bodies.push_back({body(table.part_a[row]), body(table.part_b[row])});
   }
   world_from_body_.resize(bodies.size());
@@ -55,7 +55,8 @@ void AskedPairs::form_groups(const std::vector<PlacedPart>& parts, const PairTab
     const std::size_t count = std::min(kGroup, single.size() - first);
     const auto own = std::span(single).subspan(first, count);
     groups_.push_back({{own.begin(), own.end()},
-                       DistanceBatch(bodies, std::span(of_bodies).subspan(first, count))});
+                       DistanceBatch(bodies, std::span(of_bodies).subspan(first, count)),
+                       0});
   }
 }
 
@@ -67,11 +68,7 @@ void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
     evaluate_group(groups_[i], evaluation);
   };
   pool.run(static_cast<std::uint32_t>(groups_.size()), {.claim = 1, .least = 2}, one);
-  for (const Group& group : groups_) {
-    evaluation.queries_left -= static_cast<std::uint32_t>(
-        std::count_if(group.pairs.begin(), group.pairs.end(),
-                      [&](std::uint32_t pair) { return is_evaluated(pair, evaluation); }));
-  }
+  for (const Group& group : groups_) evaluation.queries_left -= group.known;
   known_.clear();
   for (const std::uint32_t pair : many_parts_) {
     if (is_known(pair, evaluation)) known_.push_back(pair);
@@ -82,8 +79,10 @@ void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
 // Also those that are not known, to no use: which they are differs from tick to tick.
 void AskedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
+  group.known = 0;
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
     if (!is_known(group.pairs[i], evaluation)) continue;
+    ++group.known;
     settle(group.pairs[i], found[i], group.batch.point_on_b(i), evaluation);
   }
 }

@@ -32,6 +32,7 @@ class AskedPairs {
   struct Group {
     std::vector<std::uint32_t> pairs;
     DistanceBatch batch;
+    std::uint32_t known = 0;  // of the pairs, in this tick
   };
   void form_groups(const std::vector<PlacedPart>& parts, const PairTable& table);
   void evaluate_group(Group& group, const Evaluation& evaluation) noexcept;

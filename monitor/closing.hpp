@@ -8,16 +8,24 @@
 
 namespace clearance {
 
-// Velocity of the body's point that is at `point_in_world` now, m/s.
+// Velocity of the body's point that is at `point_in_world` now, m/s. Number by number, here and
+// below: vector code has to wait until all three of a cross product are stored, 7 ns.
 [[nodiscard]] inline Vec3 velocity_at(const Vec3& point_in_world, const Pose& world_from_body,
                                       const Twist& twist) noexcept {
-  return twist.linear + twist.angular.cross(point_in_world - world_from_body.position);
+  const Vec3& w = twist.angular;
+  const double x = point_in_world.x() - world_from_body.position.x();
+  const double y = point_in_world.y() - world_from_body.position.y();
+  const double z = point_in_world.z() - world_from_body.position.z();
+  return {twist.linear.x() + (w.y() * z - w.z() * y), twist.linear.y() + (w.z() * x - w.x() * z),
+          twist.linear.z() + (w.x() * y - w.y() * x)};
 }
 
 // m/s, positive when approaching; `normal` is a unit vector from A towards B. NaN without a normal.
 [[nodiscard]] inline double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b,
                                           const Vec3& normal) noexcept {
-  return normal.dot(velocity_a - velocity_b);
+  return normal.x() * (velocity_a.x() - velocity_b.x()) +
+         normal.y() * (velocity_a.y() - velocity_b.y()) +
+         normal.z() * (velocity_a.z() - velocity_b.z());
 }
 
 // s. Infinity when not approaching. In contact (distance <= 0): 0, unless the two are known to be

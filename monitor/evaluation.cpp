@@ -17,20 +17,22 @@ DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
 }
 
 // point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
-// off by what rounding makes of how far the two are apart.
-void take_in(const DistanceResult& found, const Vec3& point_on_b, std::uint32_t row,
-             const Evaluation& evaluation) noexcept {
+// off by what rounding makes of how far the two are apart. `known`: bounds of the row before.
+void take_in(const DistanceResult& found, const Vec3& point_on_b, const RowBounds& known,
+             std::uint32_t row, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
   // What was carried is true as well, and a query that was cut short may know less.
   const RowBounds bounds = for_exact_poses(found, a, b);
-  table.lower[row] = std::max(table.lower[row], bounds.lower);
-  table.upper[row] = std::min(table.upper[row], bounds.upper);
+  const double lower = std::max(known.lower, bounds.lower);
+  const double upper = std::min(known.upper, bounds.upper);
+  table.lower[row] = lower;
+  table.upper[row] = upper;
 
   const Mat3& turn = a.world_from_part_rotation;
   ClosestPoints& closest = table.closest[row];
-  closest.distance = std::clamp(found.distance, table.lower[row], table.upper[row]);
+  closest.distance = std::min(std::max(found.distance, lower), upper);
   closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
   closest.normal = turn * found.normal;
   const Vec3 on_b = b.world_from_part_rotation * point_on_b + b.world_from_part.position;
@@ -42,7 +44,9 @@ void take_in(const DistanceResult& found, const Vec3& point_on_b, std::uint32_t 
 
 void query(std::uint32_t row, Evaluation& evaluation) noexcept {
   const DistanceResult found = ask(row, evaluation);
-  take_in(found, evaluation.table.tracking[row].b.point, row, evaluation);
+  const PairTable& table = evaluation.table;
+  const RowBounds known{table.lower[row], table.upper[row]};
+  take_in(found, table.tracking[row].b.point, known, row, evaluation);
   --evaluation.queries_left;
 }
 
@@ -52,8 +56,8 @@ void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
 
 // The row that was the closest, as far as is known, and mostly still is.
 std::uint32_t likely_row(std::uint32_t pair, const PairTable& table) noexcept {
-  const auto first = table.upper.begin() + table.first_row[pair];
-  const auto end = table.upper.begin() + table.first_row[pair + 1];
+  const auto first = table.upper.begin() + table.entries[pair].first_row;
+  const auto end = table.upper.begin() + table.entries[pair].end_row;
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
@@ -83,13 +87,14 @@ bool settle_row(std::uint32_t row, double travelled, double smallest_upper,
 
 void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const double travelled = table.carried_cycle[pair] == evaluation.cycle
+  const double travelled = table.entries[pair].carried_cycle == evaluation.cycle
                                ? 0.0
                                : travelled_since(pair, evaluation.objects, table);
   const std::uint32_t likely = likely_row(pair, table);
   bool all_that_matter = settle_row(likely, travelled, kInfinity, evaluation);
   double smallest_upper = table.upper[likely], least = table.lower[likely];
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     if (row == likely) continue;
     if (!stays_out(row, travelled, smallest_upper, table)) {
       if (!settle_row(row, travelled, smallest_upper, evaluation)) all_that_matter = false;
@@ -98,8 +103,8 @@ void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
     least = std::min(least, table.lower[row]);
   }
   note_carried(pair, evaluation.objects, evaluation.cycle, table);
-  table.least_lower[pair] = least;
-  if (all_that_matter) table.evaluated_cycle[pair] = evaluation.cycle;
+  table.entries[pair].least_lower = least;
+  if (all_that_matter) table.entries[pair].evaluated_cycle = evaluation.cycle;
 }
 
 }  // namespace
@@ -115,17 +120,18 @@ RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
 void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
             const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const std::uint32_t row = table.first_row[pair];
+  const std::uint32_t row = table.entries[pair].first_row;
+  PairEntry& entry = table.entries[pair];
+  RowBounds known;
   if (found.status == DistanceStatus::kConverged) {
-    table.lower[row] = -kInfinity;
-    table.upper[row] = kInfinity;
     note_carried(pair, evaluation.objects, evaluation.cycle, table);
   } else {
     carry(pair, evaluation);
+    known = {table.lower[row], table.upper[row]};
   }
-  take_in(found, point_on_b, row, evaluation);
-  table.least_lower[pair] = table.lower[row];
-  table.evaluated_cycle[pair] = evaluation.cycle;
+  take_in(found, point_on_b, known, row, evaluation);
+  entry.least_lower = table.lower[row];
+  entry.evaluated_cycle = evaluation.cycle;
 }
 
 void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
@@ -135,7 +141,7 @@ void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
     evaluate_rows(pair, evaluation);
     return;
   }
-  const std::uint32_t row = table.first_row[pair];
+  const std::uint32_t row = table.entries[pair].first_row;
   const DistanceResult found = ask(row, evaluation);
   settle(pair, found, table.tracking[row].b.point, evaluation);
   --evaluation.queries_left;

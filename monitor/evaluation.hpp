@@ -20,12 +20,12 @@ struct Evaluation {
 // Both objects' poses are known.
 [[nodiscard]] inline bool is_known(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
-  return evaluation.objects[table.object_a[pair]].known() &&
-         evaluation.objects[table.object_b[pair]].known();
+  return evaluation.objects[table.entries[pair].object_a].known() &&
+         evaluation.objects[table.entries[pair].object_b].known();
 }
 // The pair was evaluated in this tick, all rows that matter.
 [[nodiscard]] inline bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  return evaluation.table.evaluated_cycle[pair] == evaluation.cycle;
+  return evaluation.table.entries[pair].evaluated_cycle == evaluation.cycle;
 }
 
 // Takes in the answer to a query of a pair's only row, which brings the pair up to date, and the

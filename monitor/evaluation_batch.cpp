@@ -24,8 +24,8 @@ std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& eval
 std::uint32_t queries_of(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   if (table.rows_of(pair) == 1) return 1;
-  const auto first = table.row_evaluated_cycle.begin() + table.first_row[pair];
-  const auto end = table.row_evaluated_cycle.begin() + table.first_row[pair + 1];
+  const auto first = table.row_evaluated_cycle.begin() + table.entries[pair].first_row;
+  const auto end = table.row_evaluated_cycle.begin() + table.entries[pair].end_row;
   return static_cast<std::uint32_t>(std::count(first, end, evaluation.cycle));
 }
 

@@ -33,12 +33,12 @@ bool HullQuery::possible(std::uint32_t pair, const PairTable& table) const noexc
   const auto has_model = [this](std::uint32_t object) {
     return hulls_[object] != nullptr || only_part_[object] != kNoModel;
   };
-  return has_model(table.object_a[pair]) && has_model(table.object_b[pair]);
+  return has_model(table.entries[pair].object_a) && has_model(table.entries[pair].object_b);
 }
 
 double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  const PlacedPart& a = model(evaluation.table.object_a[pair], evaluation);
-  const PlacedPart& b = model(evaluation.table.object_b[pair], evaluation);
+  const PlacedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
+  const PlacedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
   TrackingState cold;
   --evaluation.queries_left;
   const DistanceResult found =

@@ -39,9 +39,10 @@ struct Monitor::State {
   const Scene& scene;
   std::vector<ObjectState> objects;
   std::vector<PlacedPart> parts;
-  std::vector<double> reach;              // by object: as EnclosingBall::reach, m
   std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
+  std::vector<std::uint32_t> moving;      // objects that are not fixed
   std::vector<std::uint32_t> stirred;     // objects of which this tick knows something else
+  bool any_lost = false;                  // an object is not known, or has leapt
   // Of any two known objects together: how far they may have moved unseen, and may have been from
   // where they are now since the last tick, m.
   double most_unseen = 0.0, most_strayed = 0.0;
@@ -129,11 +130,11 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       pool(options.workers, options.on_worker_start),
       triage(the_scene, parts, table, pool),
       zones(the_scene) {
-  for (const EnclosingBall& ball : enclosing_balls(scene.objects.size(), parts)) {
-    reach.push_back(ball.reach);
-  }
-  for (const Object& object : scene.objects) objects.push_back(initial_state(object));
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  const std::vector<EnclosingBall> balls = enclosing_balls(scene.objects.size(), parts);
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    objects.push_back(initial_state(scene.objects[i]));
+    objects[i].reach = balls[i].reach;
+    if (!scene.objects[i].fixed) moving.push_back(i);
     first_part[i + 1] = first_part[i] + static_cast<std::uint32_t>(scene.objects[i].parts.size());
   }
   stirred.reserve(objects.size());
@@ -178,19 +179,20 @@ void Monitor::State::refuse(std::uint32_t object, Reject cause) noexcept {
 
 void Monitor::State::move() noexcept {
   stirred.clear();
-  const bool first_tick = report.cycle == 1;
-  for (std::uint32_t i = 0; i < objects.size(); ++i) {
-    if (scene.objects[i].fixed && !first_tick) continue;
+  if (report.cycle == 1) {
+    for (std::uint32_t i = 0; i < objects.size(); ++i) stirred.push_back(i);
+  }
+  // One loop for each step: no object has to wait for the roots and quotients of the one before.
+  for (const std::uint32_t i : moving) {
     ObjectState& object = objects[i];
     const bool was_late = object.late;
     const double might_have_moved = object.may_have_moved;
     advance(scene.objects[i], report.now_ns, object);
-    travel(reach[i], object);
-    if (object.moved || object.late != was_late || object.may_have_moved != might_have_moved ||
-        first_tick) {
-      stirred.push_back(i);
-    }
+    const bool stirs =
+        object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
+    if (stirs && report.cycle > 1) stirred.push_back(i);
   }
+  for (const std::uint32_t i : moving) travel(objects[i].reach, objects[i]);
   for (const std::uint32_t i : stirred) {
     if (!objects[i].seen) continue;
     for (std::uint32_t part = first_part[i]; part < first_part[i + 1]; ++part) {
@@ -201,10 +203,12 @@ void Monitor::State::move() noexcept {
 
 void Monitor::State::look_at_inputs() noexcept {
   bool any = false;
+  any_lost = false;
   LargestTwo unseen, strayed;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  for (const std::uint32_t i : moving) {
     const ObjectState& object = objects[i];
-    if (scene.objects[i].fixed || !object.seen) continue;
+    any_lost = any_lost || !object.known() || object.leapt;
+    if (!object.seen) continue;
     report.newest_pose_ns =
         any ? std::max(report.newest_pose_ns, object.stamp_ns) : object.stamp_ns;
     report.oldest_pose_ns =
@@ -229,7 +233,7 @@ void Monitor::State::report_pairs() noexcept {
     const std::uint32_t pair = published.pair;
     const PairSummary state = summary(pair);
     write_report(pair, state, published);
-    if (table.carried_cycle[pair] == report.cycle) count_in(pair, state);
+    if (table.entries[pair].carried_cycle == report.cycle) count_in(pair, state);
   }
   for (const std::uint32_t pair : triage.current()) {
     if (!scene.pairs[pair].publish) count_in(pair, summary(pair));
@@ -256,7 +260,8 @@ void Monitor::State::report_whole() noexcept {
     const Clearance others = rest();
     closest.add_rest(others.now, others.since);
   }
-  zones.finish(objects, pending(), report.cycle, report.zones);
+  zones.finish(any_lost ? std::span<const ObjectState>(objects) : std::span<const ObjectState>(),
+               pending(), report.cycle, report.zones);
 
   report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
   report.lower_all_since = report.unknown > 0 ? -kInfinity : closest.lower_since();
@@ -285,6 +290,7 @@ PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
   const bool closely = scene.pairs[pair].publish || zones.has(pair);
   PairSummary summary = summary_of(pair, objects, parts, report.cycle, table,
                                    closely ? Since::kByRelative : Since::kByTravel);
+  if (!triage.any_passage()) return summary;
   const PassageBounds passage = triage.passage(pair);
   summary.lower_since = std::min(summary.lower, std::max(summary.lower_since, passage.lower));
   summary.upper_since = std::min(summary.upper_since, passage.upper);

@@ -1,6 +1,7 @@
 #include "monitor/motion_bound.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "monitor/rounding.hpp"
 
@@ -14,7 +15,7 @@ double turn_at_most(const Vec4& before, const Vec4& after) noexcept {
   const Vec4 from = before / before.norm();
   const Vec4 to = after / after.norm();
   // |q2 - q1| = 2 sin(theta / 4): free of cancellation. q and -q are the same orientation.
-  const double step = std::min((to - from).norm(), (to + from).norm());
+  const double step = std::sqrt(std::min((to - from).squaredNorm(), (to + from).squaredNorm()));
   return rounded_up(2.0 * step) + kTurnRounding;
 }
 

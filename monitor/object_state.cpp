@@ -57,6 +57,7 @@ ObjectState initial_state(const Object& object) noexcept {
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
   state.age_ns = 0;
   state.twist_known = true;  // at rest
+  state.plain = true;
   return state;
 }
 
@@ -122,6 +123,8 @@ void travel(double reach, ObjectState& state) noexcept {
   } else if (state.travel > 0.0) {
     state.travelled = rounded_up(state.travelled + state.travel);
   }
+  state.plain =
+      state.seen && !state.began && !state.late && !state.leapt && state.unseen_since == 0.0;
 }
 
 }  // namespace clearance

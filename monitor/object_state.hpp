@@ -14,11 +14,13 @@ namespace clearance {
 
 struct ObjectState {
   // What every pair asks of both its objects each tick comes first: one cache line.
-  bool seen = false;            // some pose is in use; always so for a fixed object
-  bool late = false;            // that pose is older than the object's limit
-  bool moved = false;           // it is not that of the last tick
-  bool began = false;           // nothing was known of it at the last tick
-  bool leapt = false;           // something was, but that is farther off than anything moves
+  bool seen = false;   // some pose is in use; always so for a fixed object
+  bool late = false;   // that pose is older than the object's limit
+  bool moved = false;  // it is not that of the last tick
+  bool began = false;  // nothing was known of it at the last tick
+  bool leapt = false;  // something was, but that is farther off than anything moves
+  // None of the exceptions: known and on time, now and at the last tick, and no leap between.
+  bool plain = false;
   double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
   double unseen_since = 0.0;    // the larger of that at the last tick, if known then, and now, m
   // No point of it has moved farther than these: since the last tick (infinity: nobody can say),

@@ -23,15 +23,17 @@ void PairCounts::update(const std::vector<ObjectState>& objects,
   regained_.clear();
   for (const std::uint32_t i : changed) {
     const bool known = objects[i].known();
+    const bool fresh = known && !objects[i].late;
+    if (known_.has(i) == known && fresh_.has(i) == fresh) continue;
     if (set(i, known, known_) && known) regained_.push_back(i);
-    set(i, known && !objects[i].late, fresh_);
+    set(i, fresh, fresh_);
   }
 }
 
 bool PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
   std::uint64_t& word = kind.members[object / 64];
   const std::uint64_t bit = std::uint64_t{1} << object % 64;
-  if (static_cast<bool>(word & bit) == is_member) return false;
+  if (kind.has(object) == is_member) return false;
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < words_; ++i) {
     pairs += static_cast<std::uint64_t>(

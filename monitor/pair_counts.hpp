@@ -35,6 +35,9 @@ class PairCounts {
   struct Kind {
     std::vector<std::uint64_t> members;
     std::uint64_t pairs = 0;
+    [[nodiscard]] bool has(std::size_t object) const noexcept {
+      return (members[object / 64] >> object % 64 & 1) != 0;
+    }
   };
   // False: nothing changed.
   bool set(std::size_t object, bool is_member, Kind& kind) noexcept;

@@ -52,17 +52,18 @@ std::uint32_t closest_row(std::uint32_t first, std::uint32_t end, const PairTabl
   return closest;
 }
 
-RowBounds bounds_as_carried(std::uint32_t pair, const PairTable& table) noexcept {
-  const auto first = table.upper.begin() + table.first_row[pair];
-  const auto end = table.upper.begin() + table.first_row[pair + 1];
-  return {table.least_lower[pair], *std::min_element(first, end)};
+RowBounds bounds_as_carried(const PairEntry& entry, const PairTable& table) noexcept {
+  const auto first = table.upper.begin() + entry.first_row;
+  const auto end = table.upper.begin() + entry.end_row;
+  return {entry.least_lower, *std::min_element(first, end)};
 }
 
 RowBounds pair_bounds_now(std::uint32_t pair, const std::vector<ObjectState>& objects,
                           const std::vector<PlacedPart>& parts, const PairTable& table) noexcept {
   const double travelled = travelled_since(pair, objects, table);
   RowBounds least{kInfinity, kInfinity};
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     const RowBounds now = bounds_now(row, travelled, parts, table);
     least.lower = std::min(least.lower, now.lower);
     least.upper = std::min(least.upper, now.upper);
@@ -83,6 +84,51 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
   return status;
 }
 
+// Of two objects that were known at the last tick and have not leapt since.
+double lower_on_the_way(const ObjectState& a, const ObjectState& b, double before, double now,
+                        Since since) noexcept {
+  double travel = rounded_up(a.travel + b.travel);
+  if (travel == 0.0) return now;
+  const bool matters = travel > kSmallTravel * now && a.travel > 0.0 && b.travel > 0.0;
+  if (since == Since::kByRelative && matters) {
+    travel = std::min(travel, relative_travel(a, b));
+  }
+  return lower_between(before, now, travel);
+}
+
+// What summary_of() tells of the usual pair, brought up to date in this tick, in a third of the
+// time.
+PairSummary summary_of_one_row(const PairEntry& entry, const ObjectState& a, const ObjectState& b,
+                               std::uint64_t cycle, const PairTable& table, Since since) noexcept {
+  const std::uint32_t row = entry.first_row;
+  const std::uint64_t evaluated = table.row_evaluated_cycle[row];
+  const double upper = table.upper[row];
+  return {
+      .status = evaluated == cycle ? status_of(table.status[row]) : PairStatus::kCarried,
+      .lower = entry.least_lower,
+      .upper = upper,
+      .lower_since = lower_on_the_way(a, b, entry.lower_before, entry.least_lower, since),
+      .upper_since = upper,
+      .row = row,
+      .evaluated_cycle = evaluated,
+  };
+}
+
+// What late objects may have moved unseen.
+void count_lateness_in(const ObjectState& a, const ObjectState& b, PairSummary& summary) noexcept {
+  const double unseen_since = a.unseen_since + b.unseen_since;
+  if (unseen_since > 0.0) {
+    summary.lower_since = rounded_down(summary.lower_since - rounded_up(unseen_since));
+    summary.upper_since = rounded_up(summary.upper_since + rounded_up(unseen_since));
+  }
+  if (!a.late && !b.late) return;
+  const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
+  summary.lower = rounded_down(summary.lower - may_have_moved);
+  summary.upper = rounded_up(summary.upper + may_have_moved);
+  summary.lower_since = std::min(summary.lower, summary.lower_since);
+  summary.status = PairStatus::kStale;
+}
+
 }  // namespace
 
 PairReport unknown_report() noexcept {
@@ -98,58 +144,42 @@ PairReport unknown_report() noexcept {
 double lower_since_last_tick(std::uint32_t pair, double lower,
                              const std::vector<ObjectState>& objects, std::uint64_t cycle,
                              const PairTable& table, Since since) noexcept {
-  const ObjectState& a = objects[table.object_a[pair]];
-  const ObjectState& b = objects[table.object_b[pair]];
+  const ObjectState& a = objects[table.entries[pair].object_a];
+  const ObjectState& b = objects[table.entries[pair].object_b];
   if (a.began || b.began) return lower;
   if (a.leapt || b.leapt) return -kInfinity;
-  double travel = rounded_up(a.travel + b.travel);
-  if (travel == 0.0) return lower;
-  const bool matters = travel > kSmallTravel * lower && a.travel > 0.0 && b.travel > 0.0;
-  if (since == Since::kByRelative && matters) {
-    travel = std::min(travel, relative_travel(a, b));
-  }
-  return lower_between(lower_last_tick(pair, objects, cycle, table), lower, travel);
+  return lower_on_the_way(a, b, lower_last_tick(pair, objects, cycle, table), lower, since);
 }
 
 PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
                        const std::vector<PlacedPart>& parts, std::uint64_t cycle,
                        const PairTable& table, Since since) noexcept {
-  const ObjectState& a = objects[table.object_a[pair]];
-  const ObjectState& b = objects[table.object_b[pair]];
+  const PairEntry& entry = table.entries[pair];
+  const ObjectState& a = objects[entry.object_a];
+  const ObjectState& b = objects[entry.object_b];
+  const bool carried = entry.carried_cycle == cycle;
+  if (a.plain && b.plain && carried && entry.end_row - entry.first_row == 1) {
+    return summary_of_one_row(entry, a, b, cycle, table, since);
+  }
   PairSummary summary;
   if (!a.known() || !b.known()) return summary;
-  const std::uint32_t first = table.first_row[pair];
-  const std::uint32_t end = table.first_row[pair + 1];
-  const bool carried = table.carried_cycle[pair] == cycle;
   const RowBounds now =
-      carried ? bounds_as_carried(pair, table) : pair_bounds_now(pair, objects, parts, table);
+      carried ? bounds_as_carried(entry, table) : pair_bounds_now(pair, objects, parts, table);
   summary.lower = now.lower;
-  summary.upper = now.upper;
-  summary.lower_since = lower_since_last_tick(pair, summary.lower, objects, cycle, table, since);
-  summary.upper_since = summary.upper;
-  summary.row = closest_row(first, end, table);
+  summary.upper = summary.upper_since = now.upper;
+  summary.lower_since = lower_since_last_tick(pair, now.lower, objects, cycle, table, since);
+  summary.row = closest_row(entry.first_row, entry.end_row, table);
   summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
-  const double unseen_since = a.unseen_since + b.unseen_since;
-  if (unseen_since > 0.0) {
-    summary.lower_since = rounded_down(summary.lower_since - rounded_up(unseen_since));
-    summary.upper_since = rounded_up(summary.upper_since + rounded_up(unseen_since));
-  }
-  if (!a.late && !b.late) {
-    summary.status = evaluated_status(first, end, summary.row, cycle, table);
-    return summary;
-  }
-  const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
-  summary.lower = rounded_down(summary.lower - may_have_moved);
-  summary.upper = rounded_up(summary.upper + may_have_moved);
-  summary.status = PairStatus::kStale;
+  summary.status = evaluated_status(entry.first_row, entry.end_row, summary.row, cycle, table);
+  if (!a.plain || !b.plain) count_lateness_in(a, b, summary);
   return summary;
 }
 
 void report_on(std::uint32_t pair, const PairSummary& summary,
                const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
                const PairTable& table, PairReport& report) noexcept {
-  const ObjectState& a = objects[table.object_a[pair]];
-  const ObjectState& b = objects[table.object_b[pair]];
+  const ObjectState& a = objects[table.entries[pair].object_a];
+  const ObjectState& b = objects[table.entries[pair].object_b];
   if (summary.status == PairStatus::kUnknown) report = unknown_report();
   report.pair = pair;
   report.age_a_ns = a.age_ns;

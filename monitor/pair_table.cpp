@@ -30,25 +30,21 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   for (const ObjectPair& pair : scene.pairs) {
     all_rows += parts_by_object[pair.first].size() * parts_by_object[pair.second].size();
   }
-  for (auto* column : {&object_a, &object_b, &first_row}) column->reserve(scene.pairs.size() + 1);
+  entries.reserve(scene.pairs.size());
   for (auto* column : {&part_a, &part_b}) column->reserve(all_rows);
-  first_row.push_back(0);
   for (const ObjectPair& pair : scene.pairs) {
-    object_a.push_back(pair.first);
-    object_b.push_back(pair.second);
+    PairEntry& entry = entries.emplace_back();
+    entry.object_a = pair.first;
+    entry.object_b = pair.second;
+    entry.first_row = rows();
     for (const std::uint32_t a : parts_by_object[pair.first]) {
       for (const std::uint32_t b : parts_by_object[pair.second]) {
         part_a.push_back(a);
         part_b.push_back(b);
       }
     }
-    first_row.push_back(rows());
+    entry.end_row = rows();
   }
-  carried_at.resize(pairs());
-  carried_cycle.assign(pairs(), 0);
-  least_lower.assign(pairs(), -kInfinity);
-  lower_before.assign(pairs(), -kInfinity);
-  evaluated_cycle.assign(pairs(), 0);
   lower.assign(rows(), -kInfinity);
   upper.assign(rows(), kInfinity);
   row_evaluated_cycle.assign(rows(), 0);
@@ -60,21 +56,22 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
 
 double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
                        const PairTable& table) noexcept {
-  const Travelled& then = table.carried_at[pair];
-  const double sum = between(then.a, objects[table.object_a[pair]].travelled) +
-                     between(then.b, objects[table.object_b[pair]].travelled);
+  const Travelled& then = table.entries[pair].carried_at;
+  const double sum = between(then.a, objects[table.entries[pair].object_a].travelled) +
+                     between(then.b, objects[table.entries[pair].object_b].travelled);
   return rounded_up(sum);
 }
 
 double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
                        std::uint64_t cycle, const PairTable& table) noexcept {
-  if (table.carried_cycle[pair] == cycle) return table.lower_before[pair];
-  const Travelled& then = table.carried_at[pair];
-  const double before_a = objects[table.object_a[pair]].travelled_before;
-  const double before_b = objects[table.object_b[pair]].travelled_before;
+  if (table.entries[pair].carried_cycle == cycle) return table.entries[pair].lower_before;
+  const Travelled& then = table.entries[pair].carried_at;
+  const double before_a = objects[table.entries[pair].object_a].travelled_before;
+  const double before_b = objects[table.entries[pair].object_b].travelled_before;
+  const double lower = table.entries[pair].least_lower;
+  if (then.a == before_a && then.b == before_b) return lower;
   if (then.a > before_a || then.b > before_b) return -kInfinity;  // its bounds are of this tick
   const double travelled = between(then.a, before_a) + between(then.b, before_b);
-  const double lower = table.least_lower[pair];
   return travelled > 0.0 ? rounded_down(lower - rounded_up(travelled)) : lower;
 }
 
@@ -102,32 +99,34 @@ RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<Plac
 
 void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
            const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
-  if (table.carried_cycle[pair] == cycle) return;
+  if (table.entries[pair].carried_cycle == cycle) return;
   const double travelled = travelled_since(pair, objects, table);
   note_carried(pair, objects, cycle, table);
   double least = kInfinity;
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     const RowBounds now = bounds_now(row, travelled, parts, table);
     table.lower[row] = now.lower;
     table.upper[row] = now.upper;
     least = std::min(least, now.lower);
   }
-  table.least_lower[pair] = least;
+  table.entries[pair].least_lower = least;
 }
 
 void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
                   PairTable& table) noexcept {
-  table.lower_before[pair] = lower_last_tick(pair, objects, cycle, table);
-  table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
-                            objects[table.object_b[pair]].travelled};
-  table.carried_cycle[pair] = cycle;
+  table.entries[pair].lower_before = lower_last_tick(pair, objects, cycle, table);
+  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].travelled,
+                                    objects[table.entries[pair].object_b].travelled};
+  table.entries[pair].carried_cycle = cycle;
 }
 
 void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& objects,
            PairTable& table) noexcept {
   const double travelled = travelled_since(pair, objects, table);
   double least = kInfinity;
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     if (travelled > 0.0) {
       table.lower[row] = rounded_down(table.lower[row] - travelled);
       table.upper[row] = rounded_up(table.upper[row] + travelled);
@@ -135,17 +134,18 @@ void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& object
     table.lower[row] = std::max(table.lower[row], to);
     least = std::min(least, table.lower[row]);
   }
-  table.least_lower[pair] = least;
-  table.carried_at[pair] = {objects[table.object_a[pair]].travelled,
-                            objects[table.object_b[pair]].travelled};
+  table.entries[pair].least_lower = least;
+  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].travelled,
+                                    objects[table.entries[pair].object_b].travelled};
 }
 
 void forget(std::uint32_t pair, PairTable& table) noexcept {
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     table.lower[row] = -kInfinity;
     table.upper[row] = kInfinity;
   }
-  table.least_lower[pair] = table.lower_before[pair] = -kInfinity;
+  table.entries[pair].least_lower = table.entries[pair].lower_before = -kInfinity;
 }
 
 }  // namespace clearance

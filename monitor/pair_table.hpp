@@ -36,15 +36,19 @@ struct RowBounds {
   double lower = -kInfinity, upper = kInfinity;  // m
 };
 
+// Of an object pair, all that ticks ask of it whether it is evaluated or not: one cache line.
+struct alignas(64) PairEntry {
+  std::uint32_t object_a = 0, object_b = 0;
+  std::uint32_t first_row = 0, end_row = 0;  // its rows, the latter excluded
+  Travelled carried_at;                      // when they were last brought up to date
+  std::uint64_t carried_cycle = 0;           // the tick in which that was; 0: never
+  double least_lower = -kInfinity;           // over its rows then, m
+  double lower_before = -kInfinity;          // for the poses of the tick before that, m
+  std::uint64_t evaluated_cycle = 0;         // when all rows that matter last were; 0: never
+};
+
 struct PairTable {
-  // By object pair, as in Scene::pairs.
-  std::vector<std::uint32_t> object_a, object_b;
-  std::vector<std::uint32_t> first_row;        // pair p: rows first_row[p] .. first_row[p + 1]
-  std::vector<Travelled> carried_at;           // when its rows were last brought up to date
-  std::vector<std::uint64_t> carried_cycle;    // the tick in which that was; 0: never
-  std::vector<double> least_lower;             // over its rows then, m
-  std::vector<double> lower_before;            // for the poses of the tick before that, m
-  std::vector<std::uint64_t> evaluated_cycle;  // when all rows that matter last were; 0: never
+  std::vector<PairEntry> entries;  // as in Scene::pairs
 
   // By row.
   std::vector<std::uint32_t> part_a, part_b;       // indices into parts_of(scene)
@@ -57,10 +61,10 @@ struct PairTable {
 
   PairTable(const Scene& scene, const std::vector<PlacedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {
-    return static_cast<std::uint32_t>(object_a.size());
+    return static_cast<std::uint32_t>(entries.size());
   }
   [[nodiscard]] std::uint32_t rows_of(std::uint32_t pair) const noexcept {
-    return first_row[pair + 1] - first_row[pair];
+    return entries[pair].end_row - entries[pair].first_row;
   }
   [[nodiscard]] std::uint32_t rows() const noexcept {
     return static_cast<std::uint32_t>(part_a.size());

@@ -13,11 +13,12 @@ namespace {
 PassageBounds look_closer(std::uint32_t pair, double level, double travel,
                           Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
-  if (table.carried_cycle[pair] != evaluation.cycle) {
+  if (table.entries[pair].carried_cycle != evaluation.cycle) {
     travel = rounded_up(travel + travelled_since(pair, evaluation.objects, table));
   }
   PassageBounds all{.lower = kInfinity};
-  for (std::uint32_t row = table.first_row[pair]; row < table.first_row[pair + 1]; ++row) {
+  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
+       ++row) {
     PassageBounds bounds{.lower = rounded_down(table.lower[row] - travel)};
     const bool matters = bounds.lower < level && !(all.upper < level);
     if (matters && evaluation.queries_left >= Passage::kLeastQueries) {
@@ -34,8 +35,8 @@ PassageBounds look_closer(std::uint32_t pair, double level, double travel,
 }  // namespace
 
 PassageBounds passage_of(std::uint32_t pair, double level, Evaluation& evaluation) noexcept {
-  const ObjectState& a = evaluation.objects[evaluation.table.object_a[pair]];
-  const ObjectState& b = evaluation.objects[evaluation.table.object_b[pair]];
+  const ObjectState& a = evaluation.objects[evaluation.table.entries[pair].object_a];
+  const ObjectState& b = evaluation.objects[evaluation.table.entries[pair].object_b];
   if (a.began || b.began || a.leapt || b.leapt) return {};
   const double unseen = rounded_up(a.unseen_since + b.unseen_since);
   const PassageBounds found =
@@ -43,24 +44,22 @@ PassageBounds passage_of(std::uint32_t pair, double level, Evaluation& evaluatio
   return {rounded_down(found.lower - unseen), rounded_up(found.upper + unseen)};
 }
 
-void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
-                          Evaluation& evaluation) noexcept {
+void PassageRound::look_at(std::uint32_t pair, const ZoneRound& zones,
+                           Evaluation& evaluation) noexcept {
+  if (decided_.size() == decided_.capacity()) return;
   const PairTable& table = evaluation.table;
+  const PairEntry& entry = table.entries[pair];
   const std::vector<ObjectState>& objects = evaluation.objects;
-  const ObjectState& a = objects[table.object_a[pair]];
-  const ObjectState& b = objects[table.object_b[pair]];
-  const double travel = rounded_up(a.travel + b.travel);
-  if (travel == 0.0 || a.began || b.began || a.leapt || b.leapt) return;
-  if (!zones.has(pair) || decided_.size() == decided_.capacity()) return;
+  const ObjectState& a = objects[entry.object_a];
+  const ObjectState& b = objects[entry.object_b];
+  if (a.travel + b.travel == 0.0 || a.began || b.began || a.leapt || b.leapt) return;
 
   const double unseen_now = rounded_up(a.may_have_moved + b.may_have_moved);
   const double unseen = rounded_up(a.unseen_since + b.unseen_since);
-  const double now = rounded_down(table.least_lower[pair] - unseen_now);
-  // Most pairs are decided by less than what is known.
-  const double at_least = table.least_lower[pair] - 2.0 * travel - unseen;
-  if (!(zones.undecided(pair, now, at_least) > -kInfinity)) return;
-  const double known = lower_since_last_tick(pair, table.least_lower[pair], objects,
-                                             evaluation.cycle, table, Since::kByRelative);
+  const double now = rounded_down(entry.least_lower - unseen_now);
+  if (!(zones.undecided(pair, now, -kInfinity) > -kInfinity)) return;
+  const double known = lower_since_last_tick(pair, entry.least_lower, objects, evaluation.cycle,
+                                             table, Since::kByRelative);
   PassageBounds bounds{.lower = rounded_down(known - unseen)};
   double level = zones.undecided(pair, now, bounds.lower);
   if (!(level > -kInfinity)) return;
@@ -75,7 +74,7 @@ void PassageRound::decide(std::uint32_t pair, const ZoneRound& zones,
 
 void PassageRound::finish() noexcept { std::ranges::sort(decided_, {}, &Decided::pair); }
 
-PassageBounds PassageRound::find(std::uint32_t pair) const noexcept {
+PassageBounds PassageRound::of(std::uint32_t pair) const noexcept {
   const auto found = std::ranges::lower_bound(decided_, pair, {}, &Decided::pair);
   return found == decided_.end() || found->pair != pair ? PassageBounds{} : found->bounds;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "monitor/passage.hpp"
+#include "monitor/rounding.hpp"
 #include "monitor/zone_round.hpp"
 
 namespace clearance {
@@ -23,20 +24,31 @@ class PassageRound {
   void begin() noexcept { decided_.clear(); }
 
   // A known pair whose rows are up to date; once a tick.
-  void decide(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept;
+  void decide(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept {
+    if (!is_far(pair, zones.outside_from(pair), evaluation)) look_at(pair, zones, evaluation);
+  }
 
   // After the last of them.
   void finish() noexcept;
 
   // What looking closer has told about a pair this tick, for where its objects may have been.
   // Nothing: infinite.
-  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept {
-    return decided_.empty() ? PassageBounds{} : find(pair);
-  }
+  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept;
+  // About any pair.
+  [[nodiscard]] bool any() const noexcept { return !decided_.empty(); }
 
  private:
-  [[nodiscard]] PassageBounds find(std::uint32_t pair) const noexcept;
-
+  // Most pairs are decided by less than what is known.
+  [[nodiscard]] static bool is_far(std::uint32_t pair, double outside_from,
+                                   const Evaluation& evaluation) noexcept {
+    if (outside_from == -kInfinity) return true;  // of what?
+    const PairEntry& entry = evaluation.table.entries[pair];
+    const ObjectState& a = evaluation.objects[entry.object_a];
+    const ObjectState& b = evaluation.objects[entry.object_b];
+    const double strayed = 2.0 * (a.travel + b.travel) + (a.unseen_since + b.unseen_since);
+    return rounded_down(entry.least_lower - rounded_up(strayed)) >= outside_from;
+  }
+  void look_at(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept;
   struct Decided {
     std::uint32_t pair;
     PassageBounds bounds;

@@ -80,8 +80,8 @@ void RefreshQueue::bring_back(const BroadPhase& broad_phase,
     for (; brought_back_ < pairs.size() && left > 0; ++brought_back_, --left) {
       const std::uint32_t pair = pairs[brought_back_];
       if (!aside_[pair]) continue;
-      const std::uint32_t a = table.object_a[pair];
-      const std::uint32_t other = a == object ? table.object_b[pair] : a;
+      const std::uint32_t a = table.entries[pair].object_a;
+      const std::uint32_t other = a == object ? table.entries[pair].object_b : a;
       if (!objects[object].known() || !objects[other].known()) {
         const std::uint32_t missing = objects[object].known() ? other : object;
         oldest_aside_[missing] = std::min(oldest_aside_[missing], refreshed_[pair]);

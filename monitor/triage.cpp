@@ -106,7 +106,13 @@ bool Triage::has_room(const PairTable& table) const noexcept {
 }
 
 void Triage::look_at_asked(Evaluation& evaluation) noexcept {
-  if (asked_done_) asked_.evaluate(pool_, evaluation);
+  if (asked_done_) {
+    asked_.evaluate(pool_, evaluation);
+    for (const std::uint32_t pair : asked_.pairs()) {
+      if (is_evaluated(pair, evaluation)) list(pair);
+    }
+    return;
+  }
   for (const std::uint32_t pair : asked_.pairs()) {
     if (is_known(pair, evaluation)) look_at(pair, evaluation);
   }
@@ -144,7 +150,7 @@ void Triage::settle_woken(Evaluation& evaluation) noexcept {
       }
       look_at(pair, evaluation);
       queue_.enter(pair);
-      if (broad_phase_.sleep(pair, evaluation.table.least_lower[pair])) continue;
+      if (broad_phase_.sleep(pair, evaluation.table.entries[pair].least_lower)) continue;
     }
     queue_.enter(pair);
     awake_.push_back(pair);
@@ -225,8 +231,9 @@ void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
     const std::uint64_t last = queue_.refreshed_cycle(pair);
     if (last == evaluation.cycle) return;
     if (!is_known(pair, evaluation)) {
-      const std::uint32_t a = evaluation.table.object_a[pair];
-      queue_.set_aside(pair, evaluation.objects[a].known() ? evaluation.table.object_b[pair] : a);
+      const std::uint32_t a = evaluation.table.entries[pair].object_a;
+      queue_.set_aside(pair,
+                       evaluation.objects[a].known() ? evaluation.table.entries[pair].object_b : a);
       continue;
     }
     const bool overdue = evaluation.cycle - last >= refresh_ticks_;
@@ -251,7 +258,7 @@ void Triage::evaluate_restless(Evaluation& evaluation) noexcept {
   scratch_.clear();
   for (const std::uint32_t pair : awake_) {
     if (scratch_.size() == kMostRestless) break;
-    const std::uint64_t last = evaluation.table.evaluated_cycle[pair];
+    const std::uint64_t last = evaluation.table.entries[pair].evaluated_cycle;
     if (last + kRestlessTicks >= evaluation.cycle && last > 0) continue;
     if (is_known(pair, evaluation)) scratch_.push_back(pair);
   }
@@ -261,18 +268,19 @@ void Triage::evaluate_restless(Evaluation& evaluation) noexcept {
 void Triage::put_to_sleep(const Evaluation& evaluation) noexcept {
   const auto sleeps = [&](std::uint32_t pair) {
     return is_known(pair, evaluation) &&
-           broad_phase_.sleep(pair, evaluation.table.least_lower[pair]);
+           broad_phase_.sleep(pair, evaluation.table.entries[pair].least_lower);
   };
   awake_.erase(std::remove_if(awake_.begin(), awake_.end(), sleeps), awake_.end());
 }
 
 // As many as the budget allows; pairs of equal age in their own order.
 void Triage::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept {
-  const std::vector<std::uint64_t>& cycle = evaluation.table.evaluated_cycle;
+  const std::vector<PairEntry>& entries = evaluation.table.entries;
   // A pair takes one query or more, so no more pairs than this have a turn.
   if (pairs.size() > evaluation.queries_left) {
-    const auto staler = [&cycle](std::uint32_t left, std::uint32_t right) {
-      return std::tie(cycle[left], left) < std::tie(cycle[right], right);
+    const auto staler = [&entries](std::uint32_t left, std::uint32_t right) {
+      return std::tie(entries[left].evaluated_cycle, left) <
+             std::tie(entries[right].evaluated_cycle, right);
     };
     const auto end = pairs.begin() + evaluation.queries_left;
     std::nth_element(pairs.begin(), end, pairs.end(), staler);
@@ -283,7 +291,8 @@ void Triage::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evalua
 }
 
 std::uint64_t Triage::refreshed_cycle(std::uint32_t pair, const PairTable& table) const noexcept {
-  return broad_phase_.left_out(pair) ? table.evaluated_cycle[pair] : queue_.refreshed_cycle(pair);
+  return broad_phase_.left_out(pair) ? table.entries[pair].evaluated_cycle
+                                     : queue_.refreshed_cycle(pair);
 }
 
 void Triage::find_oldest(const Evaluation& evaluation) noexcept {
@@ -292,7 +301,7 @@ void Triage::find_oldest(const Evaluation& evaluation) noexcept {
   if (!asked_.every_tick() || asked_done_) return;
   for (const std::uint32_t pair : asked_.pairs()) {
     if (!is_known(pair, evaluation)) continue;
-    oldest_refresh_ = std::min(oldest_refresh_, evaluation.table.evaluated_cycle[pair]);
+    oldest_refresh_ = std::min(oldest_refresh_, evaluation.table.entries[pair].evaluated_cycle);
   }
 }
 

@@ -61,6 +61,7 @@ class Triage {
   [[nodiscard]] PassageBounds passage(std::uint32_t pair) const noexcept {
     return passages_.of(pair);
   }
+  [[nodiscard]] bool any_passage() const noexcept { return passages_.any(); }
   // the tick in which a pair was last refreshed: evaluated, or proved far by the balls or the hulls
   // around its objects; 0: never;
   [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair,

@@ -58,8 +58,8 @@ void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
 void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   const auto upper_of = [&table](std::uint32_t pair) {
-    return *std::min_element(table.upper.begin() + table.first_row[pair],
-                             table.upper.begin() + table.first_row[pair + 1]);
+    return *std::min_element(table.upper.begin() + table.entries[pair].first_row,
+                             table.upper.begin() + table.entries[pair].end_row);
   };
   double smallest_upper = kInfinity;
   for (const std::uint32_t pair : current_) {
@@ -68,17 +68,18 @@ void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
   scratch_.clear();
   for (const std::uint32_t pair : current_) {
     const bool done = is_evaluated(pair, evaluation);
-    if (!done && table.least_lower[pair] < smallest_upper) scratch_.push_back(pair);
+    if (!done && table.entries[pair].least_lower < smallest_upper) scratch_.push_back(pair);
   }
   const auto later = [&table](std::uint32_t left, std::uint32_t right) {
-    return std::tie(table.least_lower[left], left) > std::tie(table.least_lower[right], right);
+    return std::tie(table.entries[left].least_lower, left) >
+           std::tie(table.entries[right].least_lower, right);
   };
   std::make_heap(scratch_.begin(), scratch_.end(), later);
   auto end = scratch_.end();
   for (std::ptrdiff_t size = 1; evaluation.queries_left > 0; size *= 2) {
     auto first = end;
     while (first != scratch_.begin() && end - first < size &&
-           table.least_lower[scratch_.front()] < smallest_upper) {
+           table.entries[scratch_.front()].least_lower < smallest_upper) {
       std::pop_heap(scratch_.begin(), first--, later);
     }
     if (first == end) break;

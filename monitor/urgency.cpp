@@ -58,10 +58,10 @@ BroadPhase::Levels Urgency::levels() const {
 
 std::size_t Urgency::bin_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
                             const PairTable& table) const noexcept {
-  const std::uint32_t a = table.object_a[pair];
-  const std::uint32_t b = table.object_b[pair];
+  const std::uint32_t a = table.entries[pair].object_a;
+  const std::uint32_t b = table.entries[pair].object_b;
   const double lower =
-      table.least_lower[pair] - objects[a].may_have_moved - objects[b].may_have_moved;
+      table.entries[pair].least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
   const double slack = lower - std::max(zone_levels_[pair], 0.0);
   if (!(slack > 0.0)) return 0;
   const double speed = speed_of(a, objects[a]) + speed_of(b, objects[b]);
