@@ -22,7 +22,7 @@ bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& 
   for (std::int32_t i = 0; i < facet.sides; ++i) {
     const EdgeUse& use = body.facet_edges[facet.first_side + i];
     const Edge& e = body.edges[use.edge];
-    if ((p - e.point).dot(e.inward[use.side]) < -slack) return false;
+    if (e.inward.row(use.side).dot(p - e.point) < -slack) return false;
   }
   return true;
 }

@@ -33,8 +33,8 @@ inline constexpr std::size_t kFeatureKinds = 7;
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
-  kPositionErrorA,
-  kPositionErrorB,
+  kSlackA,  // ConvexPolyhedron::slack_as_a, slack_as_b
+  kSlackB,
   kBeyondPlain,
   kUnboundedA = kBeyondPlain,
   kUnboundedB,

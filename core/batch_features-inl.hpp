@@ -115,7 +115,6 @@ struct OwnerFrame {
     c.own_b = kMoved ? on_owner : on_other;
     c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
     c.normal = n;
-    if constexpr (kMoved) c.normal = -rotate(pose.rotation, n);
   }
 };
 
@@ -127,14 +126,19 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   const Points from_start = frame.point_in(vertex) - point;
   const Lanes s = dot(from_start, direction);
   const LaneMask within = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
-  const Points rough = from_start - times(s, direction);
-  const Points g = rough - times(dot(rough, direction), direction);
-  c.apart = c.proved = norm(g);
+  const Points across = cross(from_start, direction), g = cross(direction, across);
+  const Points out = frame.direction_out(g);
+  c.apart = c.proved = norm(across);
+  const LaneMask slender = hn::Lt(c.apart, hn::Mul(all(kSlender), hn::Abs(s)));
+  Lanes length = c.apart;
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), slender))) {
+    length = hn::IfThenElse(slender, norm(g), length);
+  }
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
   const Lanes side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(g);
-  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(frame.direction_out(g));
+  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(out);
   c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
-  frame.express(point + times(s, direction), vertex, over(g, c.apart), c);
+  frame.express(point + times(s, direction), vertex, over(kMoved ? -out : g, length), c);
   return c;
 }
 
@@ -157,11 +161,11 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Points tip = frame.point_in(vertex);
   c.apart = c.proved = hn::Sub(dot(normal, tip), at.lanes(3));
   const Lanes within = least_within<kMoved>(at, kSides, tip);
-  const Lanes away =
-      Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(frame.direction_out(normal));
+  const Points out = frame.direction_out(normal);
+  const Lanes away = Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(out);
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
-  frame.express(tip - times(c.apart, normal), vertex, normal, c);
+  frame.express(tip - times(c.apart, normal), vertex, kMoved ? -out : normal, c);
   return c;
 }
 

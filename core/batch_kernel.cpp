@@ -28,23 +28,24 @@ HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses&
   const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
   const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
   Lanes reach_a = radius_a, reach_b = radius_b, tight = all(kTightUlps[0]);
+  Lanes on_features = hn::Add(row(kSlackA), row(kSlackB));
   if (!plain) {
     const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
     const auto far = [&](Lanes of_other)
                          HWY_ATTR { return hn::Add(hn::Add(of_other, apart), farthest); };
+    const auto add = [&](Lanes at, double ulps, Lanes reach) HWY_ATTR {
+      on_features = hn::Add(on_features, hn::Mul(at, hn::Mul(all(kUlp * ulps), reach)));
+    };
     reach_a = hn::Max(radius_a, hn::Mul(at_a, far(radius_b)));
     reach_b = hn::Max(radius_b, hn::Mul(at_b, far(radius_a)));
+    add(at_a, kUlpsOnA, reach_a);
+    add(at_b, kUlpsOnB, reach_b);
     tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
   }
   const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
-  const Lanes ulps =
-      hn::Add(hn::Add(hn::Mul(all(kUlpsOnA), reach_a), hn::Mul(all(kUlpsOnB), reach_b)),
-              hn::Mul(all(kUlpsBetween), apart));
-  Lanes slack = hn::Add(hn::Mul(all(kUlp), ulps), row(kPositionErrorA));
-  slack = hn::Add(slack, row(kPositionErrorB));
   const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), farthest));
-  slack = hn::Add(slack, hn::Mul(pose.rotation_error, turned));
-  slack = hn::Add(hn::Add(slack, pose.translation_error), all(kUnderflow));
+  const Lanes between = hn::Add(hn::Mul(all(kUlp * kUlpsBetween), apart), pose.translation_error);
+  const Lanes slack = hn::Add(hn::Add(on_features, between), hn::Mul(pose.rotation_error, turned));
   return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
 }
 

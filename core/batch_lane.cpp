@@ -70,8 +70,8 @@ struct LaneFeature<1> {
     to.put(edge.direction);
     to.put(edge.begin);
     to.put(edge.end);
-    to.put(edge.inward[0]);
-    to.put(edge.inward[1]);
+    to.put(edge.inward.row(0));
+    to.put(edge.inward.row(1));
   }
 };
 
@@ -190,8 +190,8 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   LaneWriter to(block, lane, 0);
   to.put(a.bounding_radius);
   to.put(b.bounding_radius);
-  to.put(a.position_error);
-  to.put(b.position_error);
+  to.put(a.slack_as_a);
+  to.put(b.slack_as_b);
   put_last_points(block, lane, state);
   if (block.plain) {
     if (plain(a) && plain(b)) return;

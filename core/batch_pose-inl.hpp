@@ -33,13 +33,15 @@ struct RelativePoses {
   Lanes rotation_error, translation_error;
 };
 
+// As the sums of Diagonals: each row's begins at the diagonal.
 HWY_INLINE Points rotate(const Rotations& r, const Points& p) {
-  return {dot(r.x, p), dot(r.y, p), dot(r.z, p)};
+  return {dot({r.x.x, r.x.y, r.x.z}, {p.x, p.y, p.z}), dot({r.y.y, r.y.z, r.y.x}, {p.y, p.z, p.x}),
+          dot({r.z.z, r.z.x, r.z.y}, {p.z, p.x, p.y})};
 }
 
 HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
-  return {dot({r.x.x, r.y.x, r.z.x}, p), dot({r.x.y, r.y.y, r.z.y}, p),
-          dot({r.x.z, r.y.z, r.z.z}, p)};
+  return {dot({r.x.x, r.y.x, r.z.x}, {p.x, p.y, p.z}), dot({r.y.y, r.z.y, r.x.y}, {p.y, p.z, p.x}),
+          dot({r.z.z, r.x.z, r.y.z}, {p.z, p.x, p.y})};
 }
 
 // A pose is eight numbers: position, one that means nothing, x, y, z, w.
@@ -61,20 +63,24 @@ HWY_INLINE Quaternions relative(const Quaternions& a, const Quaternions& b) {
                         HWY_ATTR { return hn::Add(hn::Mul(p, q), hn::Mul(r, s)); };
   const auto minus = [](Lanes p, Lanes q, Lanes r, Lanes s)
                          HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
-  return {hn::Add(minus(a.w, b.x, a.x, b.w), minus(a.z, b.y, a.y, b.z)),
-          hn::Add(minus(a.w, b.y, a.y, b.w), minus(a.x, b.z, a.z, b.x)),
-          hn::Add(minus(a.w, b.z, a.z, b.w), minus(a.y, b.x, a.x, b.y)),
-          hn::Add(plus(a.w, b.w, a.x, b.x), plus(a.y, b.y, a.z, b.z))};
+  return {hn::Sub(plus(a.w, b.x, a.z, b.y), plus(a.y, b.z, a.x, b.w)),
+          hn::Add(minus(a.w, b.y, a.z, b.x), minus(a.x, b.z, a.y, b.w)),
+          hn::Add(minus(a.y, b.x, a.x, b.y), minus(a.w, b.z, a.z, b.w)),
+          hn::Add(plus(a.x, b.x, a.y, b.y), plus(a.z, b.z, a.w, b.w))};
 }
 
 // 2 / |q|^2
-HWY_INLINE Lanes twice_over_square(const Quaternions& q) {
-  return hn::Div(all(2.0), hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
-                                   hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z))));
+HWY_INLINE Lanes two_over_square(const Quaternions& q) {
+  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
+                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+  const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
+  const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
+  if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
+  return hn::IfThenElse(unit, of_unit, hn::Div(two, square));
 }
 
 HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
-  const Lanes s = twice_over_square(q), one = all(1.0);
+  const Lanes s = two_over_square(q), one = all(1.0);
   const Lanes xx = hn::Mul(q.x, q.x), yy = hn::Mul(q.y, q.y), zz = hn::Mul(q.z, q.z);
   const Lanes xy = hn::Mul(q.x, q.y), xz = hn::Mul(q.x, q.z), yz = hn::Mul(q.y, q.z);
   const Lanes wx = hn::Mul(q.w, q.x), wy = hn::Mul(q.w, q.y), wz = hn::Mul(q.w, q.z);
@@ -90,7 +96,7 @@ HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
 HWY_INLINE Points turn_back(const Quaternions& q, const Points& v) {
   const Points u{q.x, q.y, q.z};
   const Points c = cross(u, v);
-  return v + times(twice_over_square(q), cross(u, c) - times(q.w, c));
+  return v + times(two_over_square(q), cross(u, c) - times(q.w, c));
 }
 
 HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b) {

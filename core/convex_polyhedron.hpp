@@ -27,9 +27,9 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
 struct Facet {
+  Vec3 point;     // a point of the facet (for a facet without edges: any point of its plane)
   Vec3 normal;    // outward, unit
   double offset;  // d, m
-  Vec3 point;     // a point of the facet (for a facet without edges: any point of its plane)
   // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none.
   std::int32_t first_side;
   std::int32_t sides;
@@ -39,14 +39,15 @@ struct Facet {
 struct Edge {
   Vec3 point;  // where the edge starts (s = 0): its first vertex; on a full line, any point of it
   Vec3 direction;          // unit
+  // Row k: unit, in the plane of facet[k], across the edge into that facet; zero for a segment. By
+  // columns: as vector registers read both at once.
+  Eigen::Matrix<double, 2, 3> inward;
   double begin;            // 0, or -infinity for a full line (the only edge without a first vertex)
   double end;              // length, m; infinity for a ray or a full line
   std::int32_t vertex[2];  // start, end; kNone where the edge does not end
   // The two facets that meet here; kNone for a segment's only edge. facet[0] lies to the left of
   // the direction as seen from outside, facet[1] to the right.
   std::int32_t facet[2];
-  Vec3 inward[2];  // unit, in the plane of facet[k], across the edge into that facet; zero for a
-                   // segment
 };
 
 // An edge as one of its facets or vertices sees it.
@@ -124,6 +125,9 @@ struct ConvexPolyhedron {
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;
+  // What is certain of Precision::slack whatever the pose, as A of a pair and as B, m; of an
+  // unbounded body without its reach. Made by add_walking_tables().
+  double slack_as_a = 0.0, slack_as_b = 0.0;
   double radius = 0.0;  // the body is the polyhedron plus a ball of this radius, m (exact)
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }

@@ -186,7 +186,7 @@ void DepthSearch::arcs() noexcept {
       full_circle(edge);
       continue;
     }
-    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward[0], edge.point};
+    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point};
     settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
   }
 }

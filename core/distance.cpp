@@ -15,19 +15,20 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 namespace HWY_NAMESPACE {
 
+HWY_INLINE DistanceResult rounded_result_of(const Walk& w) {
+  DistanceResult result = result_of(w);
+  add_radii(result, w.a, w.b);
+  return result;
+}
+
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  DistanceResult result;
-  if (state.a.deep) {
-    result = distance(a, b, pose_of(a_from_b), state);
-  } else if (walk(a, b, a_from_b, state, result) == WalkEnd::kProved) {
-    add_radii(result, a, b);
-  } else {
-    result = by_search(a, b, pose_of(a_from_b), state, true);
-  }
-  return result;
+  if (state.a.deep) return distance(a, b, pose_of(a_from_b), state);
+  Walk w(a, b, a_from_b, state);
+  if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
+  return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
 }  // namespace HWY_NAMESPACE

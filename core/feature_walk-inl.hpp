@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/feature_walk.hpp"
 #include "core/level_walk-inl.hpp"
@@ -45,8 +46,8 @@ inline HWY_NOINLINE Step leave_either(Walk& w, const Vertex& of_a, const Vertex&
 HWY_INLINE Step vertex_vertex(Walk& w) {
   const Vertex& of_a = w.a.vertices[w.on_a.feature];
   const Vertex& of_b = w.b.vertices[w.on_b.feature];
-  w.point_a = load3(of_a.position);
-  w.own_b = load3(of_b.position);
+  w.point_a = load3_alone(of_a.position);
+  w.own_b = load3_alone(of_b.position);
   w.point_b = point_to_a(w.a_from_b, w.own_b);
   const Quad g = w.point_b - w.point_a, back = -direction_to_b(w.a_from_b, g);
   const double apart = norm(g), limit = -kCertainRate * apart;
@@ -62,14 +63,17 @@ template <bool kMoved>
 HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
   const Edge& edge = o.owner().edges[o.on_owner().feature];
   const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad tip = load3(vertex.position), start = load3(edge.point), e = load3(edge.direction);
+  const Quad tip = load3_alone(vertex.position), start = load3_of_4(edge.point),
+             e = load3_of_4(edge.direction);
   const Quad from_start = o.point_in(tip) - start;
   const double s = dot(from_start, e);
   if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]), Step::kMoved;
   if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]), Step::kMoved;
-  const Quad rough = from_start - s * e;
-  const Quad g = rough - dot(rough, e) * e;  // what cancellation has left
-  const double apart = norm(g), limit = -kCertainRate * apart;
+  // As long as the way from the edge to the vertex, and at right angles to it; then that way. No
+  // difference of long vectors: cancellation leaves nothing along the edge.
+  const Quad across = cross(from_start, e), g = cross(e, across);
+  const double apart = norm(across), limit = -kCertainRate * apart;
+  const double length = HWY_UNLIKELY(apart < kSlender * std::abs(s)) ? norm(g) : apart;
   const double side = steepest_side(edge, g);
   const Quad back = -o.direction_out(g);
   if (!(side < limit)) {
@@ -87,7 +91,7 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
     return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge), Step::kMoved;
   }
   o.w.apart = o.w.proved = apart;
-  o.express(start + s * e, tip, g / spread(apart));
+  o.express(start + s * e, tip, (kMoved ? back : g) / spread(length));
   return Step::kHolds;
 }
 
@@ -95,7 +99,7 @@ template <bool kMoved>
 HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   const Facet& facet = o.owner().facets[o.on_owner().feature];
   const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad own_tip = load3(vertex.position), n = load3(facet.normal);
+  const Quad own_tip = load3_alone(vertex.position), n = load3_of_4(facet.normal);
   const Quad tip = o.point_in(own_tip);
   const double apart = dot(n, tip) - facet.offset;
   if (!(apart > 0.0)) return Step::kLost;
@@ -114,7 +118,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
     return to_vertex(o.on_other(), next), Step::kMoved;
   }
   o.w.apart = o.w.proved = apart;
-  o.express(tip - apart * n, own_tip, n);
+  o.express(tip - apart * n, own_tip, kMoved ? back : n);
   return Step::kHolds;
 }
 
@@ -129,8 +133,8 @@ HWY_INLINE Step edge_edge(Walk& w) {
   const Edge& first = w.a.edges[w.on_a.feature];
   const Edge& second = w.b.edges[w.on_b.feature];
   if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
-  const Quad e = load3(first.direction), own_f = load3(second.direction);
-  const Quad start_a = load3(first.point), own_start_b = load3(second.point);
+  const Quad e = load3_of_4(first.direction), own_f = load3_of_4(second.direction);
+  const Quad start_a = load3_of_4(first.point), own_start_b = load3_of_4(second.point);
   const Quad f = direction_to_a(w.a_from_b, own_f);
   const Quad start_b = point_to_a(w.a_from_b, own_start_b);
   const Quad between = start_b - start_a, n = cross(e, f);
@@ -200,39 +204,48 @@ HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
   to_vertex(side, body.start.at(vec3(towards)));
 }
 
-HWY_INLINE WalkEnd conclude(const Walk& w, int steps, DistanceResult& r) {
+HWY_INLINE WalkEnd conclude(Walk& w) {
   const RelativeQuads& pose = w.a_from_b;
   const Precision p =
       precision(w.a, w.b, {pose.rotation_error, pose.translation_error, pose.apart}, w.apart);
-  r.distance = w.apart;
-  r.lower = w.proved - p.slack;
-  r.upper = w.apart + p.slack;
-  r.normal = vec3(w.normal);
-  r.point_on_a = vec3(w.point_a);
-  r.point_on_b = vec3(w.point_b);
-  r.status = DistanceStatus::kConverged;
-  r.iterations = static_cast<std::uint16_t>(steps);
+  w.slack = p.slack;
   w.on_a.point = vec3(w.point_a);
   w.on_b.point = vec3(w.own_b);
-  const bool proved = w.proved > p.slack && w.apart - w.proved <= p.tight;
-  return proved ? WalkEnd::kProved : WalkEnd::kSettled;
+  const bool tight = w.proved == w.apart || w.apart - w.proved <= p.tight;
+  return tight && w.proved > p.slack ? WalkEnd::kProved : WalkEnd::kSettled;
 }
 
-HWY_INLINE WalkEnd walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativeQuads& a_from_b, TrackingState& state, DistanceResult& r) {
-  if (!a.bounded() && !b.bounded()) return WalkEnd::kLost;
-  Walk w(a, b, a_from_b, state);
-  if (!exists(a, state.a) || !exists(b, state.b)) {
-    const Quad towards = point_to_a(a_from_b, load3(b.interior)) - load3(a.interior);
-    start(a, towards, state.a);
-    start(b, -direction_to_b(a_from_b, towards), state.b);
+HWY_INLINE WalkEnd walk(Walk& w) {
+  if (!w.a.bounded() && !w.b.bounded()) return WalkEnd::kLost;
+  if (!exists(w.a, w.on_a) || !exists(w.b, w.on_b)) {
+    const Quad towards = point_to_a(w.a_from_b, load3(w.b.interior)) - load3(w.a.interior);
+    start(w.a, towards, w.on_a);
+    start(w.b, -direction_to_b(w.a_from_b, towards), w.on_b);
   }
-  for (int steps = 1; steps <= kSteps; ++steps) {
+  while (w.steps < kSteps) {
+    ++w.steps;
     const Step result = step(w);
-    if (result == Step::kHolds) return conclude(w, steps, r);
+    if (result == Step::kHolds) return conclude(w);
     if (result == Step::kLost) return WalkEnd::kLost;
   }
   return WalkEnd::kLost;
+}
+
+// Of a walk that is not lost. A result begins with twelve numbers; fours of them are stored one
+// over the other's end, and the status last.
+HWY_INLINE DistanceResult result_of(const Walk& w) {
+  static_assert(offsetof(DistanceResult, normal) == 3 * sizeof(double));
+  static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
+  static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
+  DistanceResult r;
+  double* numbers = &r.distance;
+  store4(quad(w.apart, w.proved - w.slack, w.apart + w.slack, 0.0), numbers);
+  store4(w.normal, numbers + 3);
+  store4(w.point_a, numbers + 6);
+  store4(w.point_b, numbers + 9);
+  r.status = DistanceStatus::kConverged;
+  r.iterations = static_cast<std::uint16_t>(w.steps);
+  return r;
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -10,7 +10,11 @@ namespace clearance::HWY_NAMESPACE {
 
 WalkEnd walk_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                       const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) {
-  return walk(a, b, quads_of(a_from_b), state, r);
+  const RelativeQuads quads = quads_of(a_from_b);
+  Walk w(a, b, quads, state);
+  const WalkEnd end = walk(w);
+  if (end != WalkEnd::kLost) r = result_of(w);
+  return end;
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -23,7 +23,7 @@ inline Lambda of_facet(const ActiveSide& side, const Vec3& towards) noexcept {
 inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
   const Edge& edge = side.edge();
   if (edge.facet[0] == kNone) return {};
-  const double left = edge.inward[0].dot(towards), right = edge.inward[1].dot(towards);
+  const double left = edge.inward.row(0).dot(towards), right = edge.inward.row(1).dot(towards);
   return left >= right ? Lambda{left, Feature::kFacet, edge.facet[0]}
                        : Lambda{right, Feature::kFacet, edge.facet[1]};
 }

@@ -32,10 +32,9 @@ HWY_INLINE double lost_by_tilt(const Walk& w, double tilt) {
 // From an edge to the facet beside it that rises along g, or is level; false: both fall.
 HWY_INLINE bool rises_beside(const Edge& edge, Quad g, double limit, Side& side) {
   if (edge.facet[0] == kNone) return false;
-  const double left = dot(load3(edge.inward[0]), g), right = dot(load3(edge.inward[1]), g);
-  const double steeper = std::max(left, right);
-  if (steeper < limit) return false;
-  to_facet(side, edge.facet[left == steeper ? 0 : 1]);
+  const SideRates rates = side_rates(edge, g);
+  if (rates.steeper() < limit) return false;
+  to_facet(side, edge.facet[rates.left == rates.steeper() ? 0 : 1]);
   return true;
 }
 
@@ -99,8 +98,8 @@ inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index
 // Of the owner's edge, the part that faces the other's facet (or the other way round).
 template <bool kMoved>
 HWY_INLINE Span facing(const Owned<kMoved>& edge_of, const Edge& edge, std::int32_t facet) {
-  return within(edge_of.other(), facet, vec3(edge_of.point_out(load3(edge.point))),
-                vec3(edge_of.direction_out(load3(edge.direction))), {edge.begin, edge.end});
+  return within(edge_of.other(), facet, vec3(edge_of.point_out(load3_of_4(edge.point))),
+                vec3(edge_of.direction_out(load3_of_4(edge.direction))), {edge.begin, edge.end});
 }
 
 // Halfway between the last witness points, along an edge of the owner.
@@ -119,7 +118,8 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   if (!o.owner().bounded()) return Step::kLost;
   const Span span = facing(o, edge, o.on_other().feature);
   if (span.empty()) return to_edge(o.on_other(), span.beyond), Step::kMoved;
-  const Quad start = load3(edge.point), e = load3(edge.direction), n = load3(facet.normal);
+  const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction),
+             n = load3_of_4(facet.normal);
   const Quad down = -o.direction_in(n);
   const double rise = dot(e, down);
   if (!(std::abs(rise) <= kCertainRate)) {
@@ -134,12 +134,12 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   if (!(apart > 0.0)) return Step::kLost;
   o.w.apart = apart;
   o.w.proved = apart - lost_by_tilt(o.w, std::abs(rise));
-  o.opposite().express(tip - apart * n, own, n);
+  o.opposite().express(tip - apart * n, own, o.opposite().normal(n));
   return Step::kHolds;
 }
 
 HWY_INLINE Quad onto(const Facet& facet, Quad p) {
-  const Quad n = load3(facet.normal);
+  const Quad n = load3_of_4(facet.normal);
   return p - (dot(n, p) - facet.offset) * n;
 }
 
@@ -157,7 +157,7 @@ inline bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) 
   const Edge& edge = o.owner().edges[index];
   const Span span = facing(o, edge, o.on_other().feature);
   if (span.empty()) return to_edge(o.on_owner(), index), false;
-  const Quad start = load3(edge.point), e = load3(edge.direction);
+  const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
   point = start + std::clamp(dot(point - start, e), span.from, span.to) * e;
   return true;
 }
@@ -204,7 +204,7 @@ inline HWY_NOINLINE Step leave_facets(Walk& w, Quad n, Quad m) {
 inline HWY_NOINLINE Step facet_facet(Walk& w) {
   const Facet& of_a = w.a.facets[w.on_a.feature];
   const Facet& of_b = w.b.facets[w.on_b.feature];
-  const Quad n = load3(of_a.normal), m = load3(of_b.normal);
+  const Quad n = load3_of_4(of_a.normal), m = load3_of_4(of_b.normal);
   const Quad tilt = direction_to_b(w.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
   if (HWY_UNLIKELY(!(tilt2 <= kLevelTilt * kLevelTilt))) return leave_facets(w, n, m);
@@ -237,7 +237,7 @@ inline Step to_facing_ends(Walk& w, const Edge& first, const Edge& second, bool 
 inline HWY_NOINLINE Step parallel_edges(Walk& w, const Quad& start_b, const Quad& f) {
   const Edge& first = w.a.edges[w.on_a.feature];
   const Edge& second = w.b.edges[w.on_b.feature];
-  const Quad start_a = load3(first.point), e = load3(first.direction);
+  const Quad start_a = load3_of_4(first.point), e = load3_of_4(first.direction);
   const double cosine = dot(e, f), begin = dot(start_b - start_a, e);
   const double end = begin + cosine * second.end;
   const double from = std::max(0.0, std::min(begin, end));
@@ -245,7 +245,7 @@ inline HWY_NOINLINE Step parallel_edges(Walk& w, const Quad& start_b, const Quad
   if (!(from < to)) return to_facing_ends(w, first, second, !(from < first.end), cosine > 0.0);
   const double s = std::clamp(halfway(Owned<false>{w}, start_a, e), from, to);
   w.point_a = start_a + s * e;
-  w.own_b = load3(second.point) + ((s - begin) * cosine) * load3(second.direction);
+  w.own_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
   w.point_b = point_to_a(w.a_from_b, w.own_b);
   const Quad rough = w.point_b - w.point_a;
   const Quad g = rough - dot(rough, e) * e;  // what cancellation has left

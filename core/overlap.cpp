@@ -50,7 +50,7 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
       e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
   const double sine = n.norm();
   if (!(sine > kCrossing)) return false;
-  const double inwards = n.dot(e.inward[0] + e.inward[1]);
+  const double inwards = (e.inward * n).sum();
   out = {n / (inwards > 0.0 ? -sine : sine)};
   return true;
 }

@@ -38,17 +38,22 @@ struct PlacePrecision {
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
   const double apart = b_in_a.apart;
-  double tight = kTightUlps[0];
+  double tight = kTightUlps[0], on_features = a.slack_as_a + b.slack_as_b;
   p.reach_a = a.bounding_radius;
   p.reach_b = b.bounding_radius;
-  if (!a.bounded()) p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
-  if (!b.bounded()) p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
+  if (!a.bounded()) {
+    p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
+    on_features += kUlp * kUlpsOnA * p.reach_a;
+  }
+  if (!b.bounded()) {
+    p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
+    on_features += kUlp * kUlpsOnB * p.reach_b;
+  }
   if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
   p.size = p.reach_a + p.reach_b + apart;
   const double turned = a.bounded() ? std::min(p.reach_b, p.reach_a + apart + farthest) : p.reach_b;
-  p.slack = kUlp * (kUlpsOnA * p.reach_a + kUlpsOnB * p.reach_b + kUlpsBetween * apart) +
-            a.position_error + b.position_error + b_in_a.rotation_error * turned +
-            b_in_a.translation_error + kUnderflow;
+  p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
+            b_in_a.rotation_error * turned;
   p.tight = tight * kUlp * p.size;
   return p;
 }

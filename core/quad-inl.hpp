@@ -43,6 +43,8 @@ HWY_INLINE unsigned less(Quad a, Quad b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v < b.v)));
 }
 HWY_INLINE Quad with_signs(Quad a, Quad signs) { return {Doubles(Bits(a.v) ^ Bits(signs.v))}; }
+// The fourth lane zero.
+HWY_INLINE Quad first3(Quad a) { return {Doubles(Bits(a.v) & Bits{-1, -1, -1, 0})}; }
 
 #else
 using Doubles = double __attribute__((vector_size(16)));
@@ -81,6 +83,7 @@ HWY_INLINE unsigned less(Quad a, Quad b) {
 HWY_INLINE Quad with_signs(Quad a, Quad signs) {
   return {{Doubles(Bits(a.v[0]) ^ Bits(signs.v[0])), Doubles(Bits(a.v[1]) ^ Bits(signs.v[1]))}};
 }
+HWY_INLINE Quad first3(Quad a) { return {{a.v[0], Doubles(Bits(a.v[1]) & Bits{-1, 0})}}; }
 #endif
 
 template <int i, int j, int k, int l>
@@ -96,13 +99,28 @@ HWY_INLINE Quad load4(const double* p) {
   std::memcpy(&a, p, sizeof a);
   return a;
 }
+// Three doubles that another one follows in the same object.
+HWY_INLINE Quad load3_of_4(const Vec3& p) { return load4(p.data()); }
+// Three doubles that something else of eight bytes follows in the same object. It is not let in:
+// integers would be subnormal doubles, which are slow.
+HWY_INLINE Quad load3_alone(const Vec3& p) { return first3(load4(p.data())); }
+HWY_INLINE void store4(Quad a, double* p) { std::memcpy(p, &a, sizeof a); }
 HWY_INLINE Vec3 vec3(Quad a) { return {lane(a, 0), lane(a, 1), lane(a, 2)}; }
 HWY_INLINE Quad operator*(double s, Quad a) { return spread(s) * a; }
 HWY_INLINE Quad operator-(Quad a) { return with_signs(a, spread(-0.0)); }
 
+// Two doubles of a register of two, on any target.
+using Pair = double __attribute__((vector_size(16)));
+HWY_INLINE Pair pair(double s) { return Pair{s, s}; }
+HWY_INLINE Pair load2(const double* p) {
+  Pair a;
+  std::memcpy(&a, p, sizeof a);
+  return a;
+}
+
 HWY_INLINE Quad yzx(Quad a) { return pick<1, 2, 0, 3>(a); }
 HWY_INLINE Quad zxy(Quad a) { return pick<2, 0, 1, 3>(a); }
-HWY_INLINE Quad cross(Quad a, Quad b) { return yzx(a * yzx(b) - yzx(a) * b); }
+HWY_INLINE Quad cross(Quad a, Quad b) { return yzx(a) * zxy(b) - zxy(a) * yzx(b); }
 HWY_INLINE double sum3(Quad a) { return (lane(a, 0) + lane(a, 1)) + lane(a, 2); }
 HWY_INLINE double dot(Quad a, Quad b) { return sum3(a * b); }
 HWY_INLINE double norm(Quad a) { return std::sqrt(dot(a, a)); }

@@ -6,6 +6,8 @@
 #define CLEARANCE_CORE_RELATIVE_QUADS
 #endif
 
+#include <cmath>
+
 #include "core/exact_orientation.hpp"
 #include "core/pose.hpp"
 #include "core/quad-inl.hpp"
@@ -14,18 +16,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// B as seen from A, and the rotation's rows as well: A's axes as seen from B.
+// A matrix of three rows by its cyclic diagonals: what stands at (i, i), at (i, i + 1) and at
+// (i, i + 2), modulo 3. Its product with a vector takes that vector turned by no, one and two
+// places: nothing is spread over a register, and no rows or columns have to be put together.
+struct Diagonals {
+  Quad main, next, last;
+};
+HWY_INLINE Quad operator*(const Diagonals& m, Quad v) {
+  return (m.main * v + m.next * yzx(v)) + m.last * zxy(v);
+}
+
+// B as seen from A, and the rotation the other way as well.
 struct RelativeQuads {
-  Quad column[3], row[3];
+  Diagonals rotation, transposed;
   Quad translation;
   double rotation_error, translation_error, apart;  // as in RelativePose
 };
 
-HWY_INLINE Quad combined(const Quad (&axes)[3], Quad v) {
-  return (lane(v, 0) * axes[0] + lane(v, 1) * axes[1]) + lane(v, 2) * axes[2];
-}
-HWY_INLINE Quad direction_to_a(const RelativeQuads& r, Quad v) { return combined(r.column, v); }
-HWY_INLINE Quad direction_to_b(const RelativeQuads& r, Quad v) { return combined(r.row, v); }
+HWY_INLINE Quad direction_to_a(const RelativeQuads& r, Quad v) { return r.rotation * v; }
+HWY_INLINE Quad direction_to_b(const RelativeQuads& r, Quad v) { return r.transposed * v; }
 HWY_INLINE Quad point_to_a(const RelativeQuads& r, Quad p) {
   return direction_to_a(r, p) + r.translation;
 }
@@ -35,16 +44,21 @@ HWY_INLINE Quad point_to_b(const RelativeQuads& r, Quad p) {
 
 // conj(a) * b: the orientation of B as seen from A.
 HWY_INLINE Quad relative(Quad a, Quad b) {
-  const Quad signs = quad(-0.0, -0.0, -0.0, 0.0);
-  return (spread(lane(a, 3)) * b + with_signs(pick<0, 1, 2, 0>(a) * pick<3, 3, 3, 0>(b), signs)) +
-         (pick<2, 0, 1, 1>(a) * pick<1, 2, 0, 1>(b) +
-          with_signs(pick<1, 2, 0, 2>(a) * pick<2, 0, 1, 2>(b), signs));
+  const Quad by_x = with_signs(pick<3, 2, 1, 0>(a), quad(0.0, -0.0, 0.0, 0.0));
+  const Quad by_y = with_signs(pick<2, 3, 0, 1>(a), quad(0.0, 0.0, -0.0, 0.0));
+  const Quad by_z = with_signs(pick<1, 0, 3, 2>(a), quad(-0.0, 0.0, 0.0, 0.0));
+  const Quad by_w = with_signs(a, quad(-0.0, -0.0, -0.0, 0.0));
+  return (spread(lane(b, 0)) * by_x + spread(lane(b, 1)) * by_y) +
+         (spread(lane(b, 2)) * by_z + spread(lane(b, 3)) * by_w);
 }
 
-// 2 / |q|^2, of any non-zero quaternion: what makes rotations of it without a square root.
+// 2 / |q|^2, of any non-zero quaternion: what makes rotations of it without a square root. Of unit
+// quaternions to a dozen digits without a division: kMatrixError says why.
 HWY_INLINE double two_over_square(Quad q) {
   const Quad s = q * q;
-  return 2.0 / ((lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2)));
+  const double square = (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
+  if (HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit)) return 2.0 * (2.0 - square);
+  return 2.0 / square;
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.
@@ -54,13 +68,8 @@ HWY_INLINE void set_rotation(Quad q, RelativeQuads& r) {
   const Quad d = spread(1.0) - s * (yzx(squares) + zxy(squares));  // 00, 11, 22
   const Quad p = s * (products + by_w);                            // 10, 21, 02
   const Quad m = s * (products - by_w);                            // 01, 12, 20
-  const Quad p_next = zxy(p), m_next = zxy(m);
-  r.column[0] = pick<0, 5, 2, 3>(pick<0, 1, 6, 3>(d, m), p_next);
-  r.column[1] = pick<0, 1, 6, 3>(pick<4, 1, 2, 3>(d, m), p_next);
-  r.column[2] = pick<4, 1, 2, 3>(pick<0, 5, 2, 3>(d, m), p_next);
-  r.row[0] = pick<0, 5, 2, 3>(pick<0, 1, 6, 3>(d, p), m_next);
-  r.row[1] = pick<0, 1, 6, 3>(pick<4, 1, 2, 3>(d, p), m_next);
-  r.row[2] = pick<4, 1, 2, 3>(pick<0, 5, 2, 3>(d, p), m_next);
+  r.rotation = {d, m, zxy(p)};
+  r.transposed = {d, p, zxy(m)};
 }
 
 // R(q/|q|)^T v by two cross products.
@@ -72,9 +81,7 @@ HWY_INLINE Quad turn_back(Quad q, Quad v) {
 HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativeQuads& r) {
   const ExactOrientations exact = exact_orientations(a.orientation, b.orientation);
   if (exact.equal) {
-    r.column[0] = r.row[0] = quad(1.0, 0.0, 0.0, 0.0);
-    r.column[1] = r.row[1] = quad(0.0, 1.0, 0.0, 0.0);
-    r.column[2] = r.row[2] = quad(0.0, 0.0, 1.0, 0.0);
+    r.rotation = r.transposed = {spread(1.0), spread(0.0), spread(0.0)};
   }
   if (exact.rotation) r.rotation_error = 0.0;
   if (exact.translation) r.translation_error = kPermutedTranslationError * r.apart;
@@ -83,7 +90,7 @@ HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativeQuads& r) {
 HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b) {
   const Quad a = load4(world_from_a.orientation.coeffs().data());
   const Quad q = relative(a, load4(world_from_b.orientation.coeffs().data()));
-  const Quad between = load3(world_from_b.position) - load3(world_from_a.position);
+  const Quad between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
   RelativeQuads r;
   set_rotation(q, r);
   r.translation = turn_back(a, between);
@@ -98,11 +105,10 @@ HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& wo
 
 HWY_INLINE RelativeQuads quads_of(const RelativePose& pose) {
   RelativeQuads r;
-  for (int i = 0; i < 3; ++i) {
-    r.column[i] = load3(pose.rotation.col(i).data());
-    const auto row = pose.rotation.row(i);
-    r.row[i] = quad(row[0], row[1], row[2], 0.0);
-  }
+  const Mat3& m = pose.rotation;
+  const Quad main = quad(m(0, 0), m(1, 1), m(2, 2), 0.0);
+  r.rotation = {main, quad(m(0, 1), m(1, 2), m(2, 0), 0.0), quad(m(0, 2), m(1, 0), m(2, 1), 0.0)};
+  r.transposed = {main, yzx(r.rotation.last), zxy(r.rotation.next)};
   r.translation = load3(pose.translation);
   r.rotation_error = pose.rotation_error;
   r.translation_error = pose.translation_error;
@@ -112,7 +118,11 @@ HWY_INLINE RelativeQuads quads_of(const RelativePose& pose) {
 
 HWY_INLINE RelativePose pose_of(const RelativeQuads& r) {
   RelativePose pose;
-  for (int i = 0; i < 3; ++i) pose.rotation.col(i) = vec3(r.column[i]);
+  for (int i = 0; i < 3; ++i) {
+    pose.rotation(i, i) = lane(r.rotation.main, i);
+    pose.rotation(i, (i + 1) % 3) = lane(r.rotation.next, i);
+    pose.rotation(i, (i + 2) % 3) = lane(r.rotation.last, i);
+  }
   pose.translation = vec3(r.translation);
   pose.rotation_error = r.rotation_error;
   pose.translation_error = r.translation_error;

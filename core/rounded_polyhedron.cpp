@@ -85,7 +85,7 @@ class Assembler {
   void add_facet(const Integer4& plane) {
     const Integer3 normal = head(plane);
     body_.facets.push_back(
-        {unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), Vec3::Zero(), 0, 0});
+        {Vec3::Zero(), unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), 0, 0});
   }
 
   void add_edge(const SolidEdge& edge) {
@@ -101,8 +101,8 @@ class Assembler {
     result.vertex[1] = edge.full_line ? kNone : edge.end;
     result.facet[0] = edge.left;
     result.facet[1] = edge.right;
-    result.inward[0] = unit_cross(left, direction);
-    result.inward[1] = unit_cross(direction, right);
+    result.inward.row(0) = unit_cross(left, direction);
+    result.inward.row(1) = unit_cross(direction, right);
     body_.edges.push_back(result);
   }
 

@@ -10,10 +10,15 @@ inline constexpr double kUlp = 0x1p-53;
 // Times this, a result of up to six roundings is no longer below the exact one.
 inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 
+// For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
+inline constexpr double kNearlyUnit = 0x1p-28;
+
 // Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
-// s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. What multiplies it is
-// off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most 3: 9. The
-// subtraction from 1 on the diagonal: 2.
+// s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. (Near 1, |q|^2 is off
+// by one ulp for its products, one for their two sums and one for the sum of those, and 2 - |q|^2 is
+// exact; or below 1, half an ulp for the last sum and one for 2 - |q|^2; 2^-55 is a quarter.) What
+// multiplies it is off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most
+// 3: 9. The subtraction from 1 on the diagonal: 2.
 inline constexpr double kMatrixError = 20 * kUlp;
 
 // Error of a Hamilton product: a component is four products in three roundings each, at most two
@@ -46,6 +51,10 @@ inline constexpr double kTightUlps[] = {8.0, 16.0, 48.0};
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
+
+// Of a vector at an angle below this to an edge, rounding may turn its cross product with the edge
+// (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
+inline constexpr double kSlender = 0x1p-20;
 
 // Unit vectors are off by 2^-52 and their products by three roundings more: a rate of approach
 // beyond this, per unit length, has the sign that exact arithmetic would give.

@@ -134,11 +134,11 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   ConvexPolyhedron body;
   body.edges.push_back({start,
                         line.direction,
+                        Eigen::Matrix<double, 2, 3>::Zero(),
                         0.0,
                         line.length.value,
                         {0, 1},
-                        {kNone, kNone},
-                        {Vec3::Zero(), Vec3::Zero()}});
+                        {kNone, kNone}});
   body.vertices = {{start, 0, 1}, {end, 1, 1}};
   body.vertex_edges = {{0, 0}, {0, 1}};
   body.anchors = {start, end};

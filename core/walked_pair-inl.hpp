@@ -37,8 +37,10 @@ struct Walk {
   Quad own_b;             // point_b in frame B
   Quad normal;            // unit, from A to B, frame A
   double apart;           // m: |point_b - point_a|
-  double proved;   // m: how far apart the direction proves the cores, before the slack of Precision
-  int levels = 0;  // steps to features that are level
+  double proved;  // m: how far apart the direction proves the cores, before the slack of Precision
+  double slack;   // m: of Precision
+  int steps = 0;
+  int levels = 0;  // of these, to features that are level
 
   // Rounding may have them go in circles.
   [[nodiscard]] HWY_INLINE Step levelled() {
@@ -108,10 +110,21 @@ HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
   return steepest(body, vertex, vec3(g));
 }
 
-// How steeply the facets beside an edge rise along g; a segment's only edge has none.
+// How fast the facets beside an edge, left and right, rise along g.
+struct SideRates {
+  double left, right;
+  [[nodiscard]] HWY_INLINE double steeper() const { return std::max(left, right); }
+};
+HWY_INLINE SideRates side_rates(const Edge& edge, Quad g) {
+  const double* inward = edge.inward.data();
+  const Pair rates = (load2(inward) * pair(lane(g, 0)) + load2(inward + 2) * pair(lane(g, 1))) +
+                     load2(inward + 4) * pair(lane(g, 2));
+  return {rates[0], rates[1]};
+}
+
+// The faster of the two; a segment's only edge has no facets.
 HWY_INLINE double steepest_side(const Edge& edge, Quad g) {
-  if (edge.facet[0] == kNone) return -kInfinity;
-  return std::max(dot(load3(edge.inward[0]), g), dot(load3(edge.inward[1]), g));
+  return edge.facet[0] == kNone ? -kInfinity : side_rates(edge, g).steeper();
 }
 
 // One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
@@ -132,12 +145,14 @@ struct Owned {
     return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
   }
   [[nodiscard]] HWY_INLINE Owned<!kMoved> opposite() const { return {w}; }
-  // What was found in the owner's frame; n: unit, from the owner towards the other.
+  // The normal, from what points out of the owner.
+  [[nodiscard]] HWY_INLINE Quad normal(Quad n) const { return kMoved ? -direction_out(n) : n; }
+  // Witness points, each in its own frame; n: the normal, in frame A.
   HWY_INLINE void express(Quad on_the_owner, Quad on_the_other, Quad n) const {
     w.point_a = kMoved ? on_the_other : on_the_owner;
     w.own_b = kMoved ? on_the_owner : on_the_other;
     w.point_b = point_to_a(w.a_from_b, w.own_b);
-    w.normal = kMoved ? -direction_to_a(w.a_from_b, n) : n;
+    w.normal = n;
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/rounding.hpp"
+
 namespace clearance {
 namespace {
 
@@ -39,7 +41,7 @@ void add_facet_sides(ConvexPolyhedron& body) {
     for (std::int32_t i = 0; i < facet.sides; ++i) {
       const EdgeUse& use = body.facet_edges[facet.first_side + i];
       const Edge& edge = body.edges[use.edge];
-      const Vec3& inward = edge.inward[use.side];
+      const Vec3 inward = edge.inward.row(use.side);
       body.set_side(facet, i, {inward, inward.dot(edge.point)});
     }
   }
@@ -48,6 +50,9 @@ void add_facet_sides(ConvexPolyhedron& body) {
 }  // namespace
 
 void add_walking_tables(ConvexPolyhedron& body) {
+  const double reach = body.bounded() ? body.bounding_radius : 0.0;
+  body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
+  body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   add_outgoing(body);
   add_facet_sides(body);
   if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {

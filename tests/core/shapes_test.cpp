@@ -140,7 +140,7 @@ TEST(PolyhedronInvariants, NoticeEveryKindOfDamage) {
   EXPECT_THAT(damaged([](auto& b) { b.facets[2].offset += 1e-9; }), Not(IsEmpty()));
   EXPECT_THAT(damaged([](auto& b) { b.facets[2].normal *= 1.0 + 1e-9; }), Not(IsEmpty()));
   EXPECT_THAT(damaged([](auto& b) { b.edges[3].end += 1e-9; }), Not(IsEmpty()));
-  EXPECT_THAT(damaged([](auto& b) { b.edges[3].inward[1] *= -1.0; }), Not(IsEmpty()));
+  EXPECT_THAT(damaged([](auto& b) { b.edges[3].inward.row(1) *= -1.0; }), Not(IsEmpty()));
   EXPECT_THAT(damaged([](auto& b) { std::swap(b.edges[3].facet[0], b.edges[3].facet[1]); }),
               Not(IsEmpty()));
   EXPECT_THAT(damaged([](auto& b) { std::swap(b.facet_edges[0], b.facet_edges[1]); }),

@@ -24,7 +24,7 @@ class MovedBody {
     for (std::size_t i = 0; i < own_.edges.size(); ++i) {
       moved_.edges[i].point = point(own_.edges[i].point);
       moved_.edges[i].direction = rotation_ * own_.edges[i].direction;
-      for (int k : {0, 1}) moved_.edges[i].inward[k] = rotation_ * own_.edges[i].inward[k];
+      moved_.edges[i].inward = own_.edges[i].inward * rotation_.transpose();
     }
     for (std::size_t i = 0; i < own_.vertices.size(); ++i) {
       moved_.vertices[i].position = point(own_.vertices[i].position);

@@ -67,8 +67,7 @@ inline bool release_all(ActiveSide& side, const Vec3& towards_in_common, double 
   if (!(best.rate > least)) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
   if (side.feature() == Feature::kEdge) {
-    const bool both =
-        side.edge().inward[0].dot(towards) > least && side.edge().inward[1].dot(towards) > least;
+    const bool both = (side.edge().inward * towards).minCoeff() > least;
     if (both)
       side.place_inside(side.own());
     else
