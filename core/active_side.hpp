@@ -38,10 +38,7 @@ class ActiveSide {
   [[nodiscard]] Vec3 direction_to_common(const Vec3& v) const noexcept {
     return pose_ ? Vec3(pose_->rotation * v) : v;
   }
-  // How far direction_to_own can be from the exact rotation, per unit length; 0: it is exact.
-  [[nodiscard]] double direction_error() const noexcept {
-    return pose_ && pose_->rotation_error > 0.0 ? pose_->rotation_error + 0x1p-50 : 0.0;
-  }
+  [[nodiscard]] const RelativePose* pose() const noexcept { return pose_; }
   [[nodiscard]] Vec3 direction_to_own(const Vec3& v) const noexcept {
     return pose_ ? Vec3(pose_->rotation.transpose() * v) : v;
   }

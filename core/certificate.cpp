@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/polar_cone.hpp"
 #include "core/support.hpp"
 #include "core/towards.hpp"
 
@@ -45,50 +46,6 @@ double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double
   return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
 }
 
-// A unit vector or its product with another, rounding included: 2^-52 and three roundings each.
-constexpr double kRounding = 0x1p-50;
-
-// How far from level a body's level line is, seen along n, or a bundle from falling; at most, its
-// own error included.
-double off_level(const LevelRays& rays, const ActiveSide& s, const Vec3& line,
-                 const Vec3& n) noexcept {
-  if (rays.directions == 0) return 0.0;
-  return std::abs(line.dot(n)) + rays.spread + kRounding + s.direction_error();
-}
-
-// Two unbounded bodies are apart only if some direction has both bodies' rays falling away or
-// standing exactly across it. How far from `n` (an angle) there certainly is one; infinity: none is
-// known.
-double tilt_to_proof(const Vec3& n, const ActiveSide& a, const ActiveSide& b) noexcept {
-  const double margin = 0x1p-40 + a.direction_error() + b.direction_error();
-  const LevelRays of_a = level_rays(a.body(), a.direction_to_own(n), margin);
-  const LevelRays of_b = level_rays(b.body(), -b.direction_to_own(n), margin);
-  const bool exact = a.direction_error() == 0.0 && b.direction_error() == 0.0;
-  if (exact && of_a.exactly_level && of_b.exactly_level) return 0.0;
-  if (of_a.directions > 1 || of_b.directions > 1) return kInfinity;
-  // One level line or bundle each: the direction across both is near n, and turns no other ray
-  // upwards. What n has to be moved by, within the plane of the lines, has their products with n;
-  // 2^-30 is for the rounding of the sine, of which no less than 2^-10 passes, and for squares of
-  // the tilt.
-  const Vec3 line_a = a.direction_to_common(of_a.direction);
-  const Vec3 line_b = b.direction_to_common(of_b.direction);
-  const double sine = of_a.directions + of_b.directions < 2 ? 1.0 : line_a.cross(line_b).norm();
-  const double tilt =
-      (1.0 + 0x1p-30) * (off_level(of_a, a, line_a, n) + off_level(of_b, b, line_b, n)) / sine;
-  return tilt < 0x1p-40 - kRounding ? tilt : kInfinity;
-}
-
-// Against the exact normal of a facet its own body's rays are level or fall, whatever rounding
-// says: it is a proof when the other body's rays certainly fall away. n: the normal in the common
-// frame.
-double tilt_to_facet_proof(const Vec3& n, const ActiveSide& own, const ActiveSide& other) noexcept {
-  const double tilt = 0x1p-52 + own.direction_error();
-  const double margin = 0x1p-40 + kRounding + own.direction_error() + other.direction_error();
-  const bool falls =
-      level_rays(other.body(), other.direction_to_own(Vec3(-n)), margin).directions == 0;
-  return falls ? tilt : kInfinity;
-}
-
 // How far a body's anchors are from one of them, at most.
 double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
   double out = 0.0;
@@ -98,18 +55,15 @@ double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
 
 double separation_of_unbounded(const Separator& s, const ActiveSide& a,
                                const ActiveSide& b) noexcept {
-  const Vec3& n = s.normal;
-  double tilt = tilt_to_proof(n, a, b);
-  if (s.facet_of_a != kNone) tilt = std::min(tilt, tilt_to_facet_proof(n, a, b));
-  if (s.facet_of_b != kNone) tilt = std::min(tilt, tilt_to_facet_proof(-n, b, a));
-  if (!(tilt < kInfinity)) return -kInfinity;
+  const auto [n, off] = PolarCone(a, b).nearest(s);
+  if (!(off < kInfinity)) return -kInfinity;
   const Vec3& on_a = a.body().anchors[support(a.body(), n).anchor];
   const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(n)).anchor];
   const Vec3 between = b.point_to_common(on_b) - on_a;
   const double origins = b.point_to_common(Vec3::Zero()).norm();
   const double moved = std::min(between.norm() + spread(a.body(), on_a) + spread(b.body(), on_b),
                                 a.body().bounding_radius + b.body().bounding_radius + origins);
-  return n.dot(between) - tilt * moved;
+  return n.dot(between) - off * moved;
 }
 
 }  // namespace

@@ -101,6 +101,7 @@ struct FacetSide {
 struct Ray {
   Vec3 direction;  // unit, unless exact
   bool exact;  // then `direction` is the exact direction up to a positive factor, not a rounded one
+  Vec3 rest = Vec3::Zero();  // direction + rest is the exact direction up to a factor, to 2^-104
 };
 
 struct ConvexPolyhedron {
@@ -114,6 +115,9 @@ struct ConvexPolyhedron {
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
+  // Of an unbounded body, a facet each: a multiple of its normal that is exactly three doubles;
+  // zero where there is none.
+  std::vector<Vec3> exact_normals;
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/depth_search.hpp"
+#include "core/polar_cone.hpp"
 
 namespace clearance {
 namespace {
@@ -27,13 +28,48 @@ Separator separator(const DifferenceBody& body, const DepthSearch::Best& best, c
   return {-b.direction_to_common(b.body().facets[best.facet].normal), kNone, best.facet};
 }
 
+// At no distance, for heights: corners are anchors, and of an unbounded body, too, no more than
+// those counts there.
+Precision precision_of_corners(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                               const RelativePose& a_from_b) noexcept {
+  Precision p = precision(a, b, a_from_b, 0.0);
+  const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;
+  p.size -= beyond_a + beyond_b;
+  p.slack -= kUlp * (kUlpsOnA * beyond_a + kUlpsOnB * beyond_b);
+  return p;
+}
+
+// What a height that the search has found may be off by.
+double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
+                          double height) noexcept {
+  // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
+  const double apart = a_from_b.translation.norm();
+  const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(height));
+  return kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
+}
+
 // How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
 // edge of X, has a direction exactly there in which X reaches exactly as far as that feature.
 double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
-                 const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+                 const ActiveSide& a, const ActiveSide& b, const Precision& p,
+                 double rounding) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
-  if (feature_of_x && body.y().bounded()) return best.height + kOnArc * p.size + p.slack;
+  if (feature_of_x && body.y().bounded()) return best.height + rounding;
   return -separation(s, a, b, p) + p.slack;
+}
+
+// Between unbounded bodies whose lines all but run along each other, directions that neither facets
+// nor arcs say.
+void try_across_near_parallels(const ActiveSide& a, const ActiveSide& b, const Precision& p,
+                               Depth& out) noexcept {
+  if (a.body().bounded() || b.body().bounded()) return;
+  PolarCone(a, b).across_near_parallels([&](const Separator& s) {
+    const double value = -separation(s, a, b, p);
+    if (!(value + p.slack < out.upper)) return;
+    out.value = value;
+    out.upper = value + p.slack;
+    out.normal = s.normal;
+  });
 }
 
 // How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
@@ -41,20 +77,19 @@ double off_rotation(const Mat3& r) noexcept {
   return 0.5 * (r.transpose() * r - Mat3::Identity()).norm() + 0x1p-50;
 }
 
-// Depth::lower from the least h that the search has found anywhere. Corners are anchors: of an
-// unbounded body, too, no more than those counts here.
+// Depth::lower from the least h that the search has found anywhere.
 double depth_from_below(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
                         const Precision& p, double least) noexcept {
-  // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
-  const double apart = a_from_b.translation.norm();
-  const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(least));
-  const double rounding = kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
+  const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
   // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
   // If the bodies overlap there, they are no farther apart than B is from there.
+  RelativePose placed = a_from_b;
   const double off = off_rotation(a_from_b.rotation);
-  const Precision placed = precision(a.body(), b.body(), {off, 0.0, apart}, 0.0);
-  if (!(least > kOnArc * p.size + placed.slack + off * scaled)) return -kInfinity;
+  placed.rotation_error = off;
+  placed.translation_error = 0.0;
+  const Precision there = precision_of_corners(a.body(), b.body(), placed);
+  if (!(least > rounding_of_height(placed, there, least))) return -kInfinity;
   return least - rounding - 2.0 * off * p.reach_b;
 }
 
@@ -81,7 +116,7 @@ Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& 
 
 Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
             const Separator* guess) noexcept {
-  const Precision start = precision(a.body(), b.body(), a_from_b, 0.0);
+  const Precision start = precision_of_corners(a.body(), b.body(), a_from_b);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
   const DifferenceBody body(a.body(), b.body(), a_from_b);
   DepthSearch search(body, kTight * start.size, a_from_b.rotation_error + 0x1p-50);
@@ -103,12 +138,13 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   if (best.source == Source::kNothing) {
     const double rounding = kOnArc * start.size + start.slack;
     if (search.lower() > rounding) out.lower = search.lower() - rounding;
+    try_across_near_parallels(a, b, start, out);
     return out;
   }
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
   const Separator s = separator(body, best, a, b);
   out.normal = s.normal;
-  out.upper = certified(body, best, s, a, b, p);
+  out.upper = certified(body, best, s, a, b, p, rounding_of_height(a_from_b, start, best.height));
   if (!(out.upper < kInfinity)) {
     out.value = kInfinity;
   } else {
@@ -117,6 +153,7 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   if (!search.ended_early()) {
     out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
+  if (!body.x().bounded()) try_across_near_parallels(a, b, p, out);
   return out;
 }
 

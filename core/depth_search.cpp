@@ -12,6 +12,12 @@ constexpr std::size_t kWaiting = 48;
 // Samples of one arc; more than the vertices on the outline of any body of some thousand facets.
 constexpr int kSamples = 1024;
 
+// Of a product of two unit vectors, both rounded.
+constexpr double kArcError = 0x1p-50;
+
+// An edge's direction and a ray's, both rounded.
+constexpr double kSameRay = 0x1p-50;
+
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
@@ -102,17 +108,37 @@ DepthSearch::Sample DepthSearch::sample(const Arc& arc, const Vec2& at) noexcept
   return found;
 }
 
+// A ray that all but runs along the arc's edge is level at directions of the arc that its last
+// digits decide. An edge without end is one of X's rays, and two rays are known precisely enough:
+// off by less than what is allowed for directions beside their arc.
+DepthSearch::Rise DepthSearch::rise(const Arc& arc, const Ray& ray) const noexcept {
+  const WideVec g = wide_ * (wide(ray.direction) + wide(ray.rest));
+  for (const Ray& own : body_.x().rays) {
+    if (arc.edge.end < kInfinity) break;
+    if (!((own.direction.normalized() - arc.edge.direction).norm() < kSameRay)) continue;
+    const WideVec e = wide(own.direction) + wide(own.rest);
+    return {-arc.project(narrow(g - (dot(g, e) / dot(e, e)) * e)), 0.0};
+  }
+  const Vec3 unit = narrow(g).normalized();
+  return {-arc.project(unit), kArcError + wide_.error};
+}
+
+DepthSearch::Vec2 DepthSearch::Rise::level(const Vec2& side) const noexcept {
+  const Vec2 up = rate.stableNormalized(), across(-up.y(), up.x());
+  const double off = error > 0.0 ? error / rate.norm() : 0.0;
+  return ((across.dot(side) < 0.0 ? -across : across) + off * up).normalized();
+}
+
 bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
   for (const Ray& ray : body_.y().rays) {
-    const Vec2 along = -arc.project(body_.direction_from_y(ray.direction.normalized()));
-    const bool l_rises = along.dot(l) > level_, r_rises = along.dot(r) > level_;
+    const Rise over = rise(arc, ray);
+    const double certain = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
+    const bool l_rises = over.rate.dot(l) > certain, r_rises = over.rate.dot(r) > certain;
     if (l_rises && r_rises) return false;
     if (!l_rises && !r_rises) continue;
     // Of the two directions across the ray, the one on the arc: less than a quarter turn from its
     // middle.
-    Vec2 level(-along.y(), along.x());
-    if (level.dot(middle_of(l, r)) < 0.0) level = -level;
-    (l_rises ? l : r) = level.normalized();
+    (l_rises ? l : r) = over.level(middle_of(l, r));
   }
   return true;
 }
@@ -173,7 +199,7 @@ void DepthSearch::settle(const Arc& arc, Vec2 l, Vec2 r) noexcept {
 // A segment's only edge: all directions across it.
 void DepthSearch::full_circle(const Edge& edge) noexcept {
   const Vec3 u = edge.direction.unitOrthogonal();
-  const Arc arc{u, edge.direction.cross(u), edge.point};
+  const Arc arc{u, edge.direction.cross(u), edge.point, edge};
   const std::array<Vec2, 5> quarters = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1),
                                         Vec2(1, 0)};
   for (std::size_t i = 0; i < 4; ++i) settle(arc, quarters[i], quarters[i + 1]);
@@ -186,7 +212,7 @@ void DepthSearch::arcs() noexcept {
       full_circle(edge);
       continue;
     }
-    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point};
+    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point, edge};
     settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
   }
 }

@@ -21,7 +21,9 @@ class DepthSearch {
   // tight: m, how near to the best h a bound from below must come. direction_error: of a direction
   // turned into the other body's frame.
   DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
-      : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {}
+      : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {
+    if (!body.y().bounded()) wide_ = body.wide_x_from_y();
+  }
 
   // Any unit n. Only a target to beat: what the facets and arcs have is found again there.
   void guess(const Vec3& n) noexcept;
@@ -48,6 +50,7 @@ class DepthSearch {
   // Directions x u + y w of the plane across an edge of X, and a point of that edge.
   struct Arc {
     Vec3 u, w, on_edge;
+    const Edge& edge;
     [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept { return at.x() * u + at.y() * w; }
     [[nodiscard]] Vec2 project(const Vec3& v) const noexcept { return {v.dot(u), v.dot(w)}; }
   };
@@ -70,6 +73,14 @@ class DepthSearch {
   void full_circle(const Edge& edge) noexcept;
 
   [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
+  // How a ray of Y rises over an arc: by rate.dot(at), off by at most `error`.
+  struct Rise {
+    Vec2 rate;
+    double error;
+    // The direction where it is level, on this side; pushed out by what that may be off.
+    [[nodiscard]] Vec2 level(const Vec2& side) const noexcept;
+  };
+  [[nodiscard]] Rise rise(const Arc& arc, const Ray& ray) const noexcept;
   // False: nothing is left of it, because Y is unbounded along all of it.
   [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
   void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
@@ -77,6 +88,7 @@ class DepthSearch {
 
   const DifferenceBody& body_;
   double tight_, level_;
+  WideRotation wide_;    // from Y's frame, where both are unbounded
   double steady_ = 0.0;  // m: how much lower another h must be than the one guessed
   Best best_;
   double lower_ = kInfinity;

@@ -8,6 +8,7 @@
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
 #include "core/support.hpp"
+#include "core/wide_rotation.hpp"
 
 namespace clearance {
 
@@ -42,6 +43,12 @@ class DifferenceBody {
   }
   [[nodiscard]] Vec3 from_common(const Vec3& n) const noexcept {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation.transpose() * n)) : n;
+  }
+
+  // The rotation from Y's frame, for two unbounded bodies.
+  [[nodiscard]] WideRotation wide_x_from_y() const noexcept {
+    const WideRotation rotation = wide_rotation(a_from_b_);
+    return x_is_b_ ? rotation.transposed() : rotation;
   }
 
   // A corner of the set that is farthest along n, of those that have `on_x` for their part of X.

@@ -25,10 +25,10 @@ DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedro
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  if (state.a.deep) return distance(a, b, pose_of(a_from_b), state);
+  if (state.a.deep) return distance(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
   Walk w(a, b, a_from_b, state);
   if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
-  return by_search(a, b, pose_of(a_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -44,6 +44,7 @@ HWY_AFTER_NAMESPACE();
 #include "core/dqp3.hpp"
 #include "core/feature_walk.hpp"
 #include "core/overlap.hpp"
+#include "core/polar_cone.hpp"
 #include "core/precision.hpp"
 #include "core/robust.hpp"
 
@@ -57,8 +58,10 @@ namespace {
 struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
+  double beyond = 0.0;  // what the points' places may cost beyond the slack
   Vec3 normal = Vec3::Constant(std::nan(""));
 
+  [[nodiscard]] double certain_upper() const noexcept { return upper + beyond; }
   void raise(double value, const Vec3& n) noexcept {
     if (value > lower) {
       lower = value;
@@ -71,27 +74,30 @@ void prove_from_below(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
                       const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
-    if (bounds.upper - bounds.lower <= p.tight) return;
+    if (bounds.certain_upper() - bounds.lower <= p.tight) return;
   }
+  if (a.body().bounded() || b.body().bounded()) return;
+  PolarCone(a, b).across_near_parallels(
+      [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); });
 }
 
-DistanceStatus judge(const Bounds& bounds, const Precision& p, double lower) noexcept {
-  if (bounds.upper - bounds.lower > 2.0 * p.tight && bounds.upper > p.slack) {
+DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {
+  if (!p.converged(r.upper - r.lower) && bounds.upper > p.slack) {
     return DistanceStatus::kIterationLimit;
   }
-  return lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
+  return r.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
 }
 
 DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& bounds,
                         const Precision& p) noexcept {
   DistanceResult r;
   r.lower = bounds.lower - p.slack;
-  r.upper = bounds.upper + p.slack;
+  r.upper = bounds.certain_upper() + p.slack;
   r.distance = bounds.upper;
   r.normal = bounds.normal;
   r.point_on_a = a.common();
   r.point_on_b = b.common();
-  r.status = judge(bounds, p, r.lower);
+  r.status = judge(bounds, p, r);
   return r;
 }
 
@@ -107,6 +113,16 @@ double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const A
   return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }
 
+// Lines that all but run along each other are closest far beyond where Precision looks for the
+// closest points of unbounded bodies: what rounding costs the points there.
+double beyond_reach(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+                    const Precision& p) noexcept {
+  if (a.body().bounded() || b.body().bounded()) return 0.0;
+  const double out_a = std::max(0.0, a.own().norm() - p.reach_a);
+  const double out_b = std::max(0.0, b.own().norm() - p.reach_b);
+  return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
+}
+
 DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
@@ -115,16 +131,18 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   Bounds bounds;
   bounds.upper = (b.common() - a.common()).norm();
   const Precision p = precision(a.body(), b.body(), a_from_b, std::min(first, bounds.upper));
+  bounds.beyond = beyond_reach(a, b, a_from_b, p);
   if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
     const double apart = outcome.towards.norm();
     const Vec3 n = outcome.towards / apart;
     bounds.raise(proved_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  if (!met && !(bounds.upper - bounds.lower <= p.tight)) prove_from_below(bounds, a, b, p);
+  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
+    prove_from_below(bounds, a, b, p);
   DistanceResult result = conclude(a, b, bounds, p);
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.upper - above > p.tight) refine(a, b, a_from_b, p, result);
+  if (bounds.certain_upper() - above > p.tight) refine(a, b, a_from_b, p, result);
   result.iterations = outcome.iterations;
   return result;
 }

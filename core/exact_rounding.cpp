@@ -61,7 +61,15 @@ Rounded nearest_over_root(const Integer& numerator, const Integer& square) {
   return round_significand(root, sgn(rest) != 0 || sgn(remainder) != 0, -shift, sgn(numerator) < 0);
 }
 
-Vec3 unit(const Integer3& direction) {
+namespace {
+
+// direction / |direction| as quotients.
+struct UnitQuotients {
+  Integer3 numerators;
+  Integer denominator;
+};
+
+UnitQuotients unit_quotients(const Integer3& direction) {
   // Beyond 160 bits below the largest component nothing can be seen in the result.
   constexpr long kKept = 160;
   constexpr long kRootBits = 64;
@@ -69,14 +77,37 @@ Vec3 unit(const Integer3& direction) {
   const long drop = std::min(kKept - longest, 0L);
   const Integer3 kept = {shifted(direction[0], drop), shifted(direction[1], drop),
                          shifted(direction[2], drop)};
-  const Integer length = sqrt(shifted(dot(kept, kept), 2 * kRootBits));
+  return {{shifted(kept[0], kRootBits), shifted(kept[1], kRootBits), shifted(kept[2], kRootBits)},
+          sqrt(shifted(dot(kept, kept), 2 * kRootBits))};
+}
+
+}  // namespace
+
+Vec3 unit(const Integer3& direction) {
+  const UnitQuotients quotients = unit_quotients(direction);
   Vec3 result;
   for (std::size_t i = 0; i < 3; ++i) {
     result[static_cast<Eigen::Index>(i)] =
-        nearest_quotient(shifted(kept[i], kRootBits), length).value;
+        nearest_quotient(quotients.numerators[i], quotients.denominator).value;
   }
   return result;
 }
+
+namespace {
+
+RoundedDirection rounded_unit(const Integer3& direction) {
+  const UnitQuotients quotients = unit_quotients(direction);
+  RoundedDirection result{unit(direction), false};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    mpq_class component(quotients.numerators[i], quotients.denominator);
+    component.canonicalize();
+    result.rest[axis] = mpq_class(component - mpq_class(result.vector[axis])).get_d();
+  }
+  return result;
+}
+
+}  // namespace
 
 RoundedDirection nearest_direction(const Integer3& direction) {
   Integer3 shortest = direction;
@@ -89,7 +120,7 @@ RoundedDirection nearest_direction(const Integer3& direction) {
     const long trailing = static_cast<long>(mpz_scan1(component.get_mpz_t(), 0));
     exact = exact && bits(component) - trailing <= kDoubleBits;
   }
-  if (!exact || longest > 900) return {unit(direction), false};
+  if (!exact || longest > 900) return rounded_unit(direction);
   Vec3 vector;
   for (std::size_t i = 0; i < 3; ++i) {
     const double component = shortest[i].get_d();

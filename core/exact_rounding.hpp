@@ -22,10 +22,12 @@ struct Rounded {
 [[nodiscard]] Vec3 unit(const Integer3& direction);
 
 // A positive multiple of `direction` that is exactly three doubles, if one is: `exact` says so, and
-// otherwise the vector is unit(direction). Largest component in [1, 2) when exact.
+// otherwise the vector is unit(direction), and `rest` what it leaves of direction / |direction|, to
+// 2^-104. Largest component in [1, 2) when exact.
 struct RoundedDirection {
   Vec3 vector;
   bool exact;
+  Vec3 rest = Vec3::Zero();
 };
 [[nodiscard]] RoundedDirection nearest_direction(const Integer3& direction);
 

@@ -51,6 +51,9 @@ struct RelativePose {
   Vec3 translation = Vec3::Zero();  // m, in frame A
   double rotation_error = 0.0;      // |R - R_exact| (2-norm) is at most this
   double translation_error = 0.0;   // |t - t_exact| is at most this, m
+  // What the rotation was made of, for who needs it more precisely; zero where that is not known.
+  using Orientation = Eigen::Quaternion<double, Eigen::DontAlign>;
+  Orientation world_from_a{0.0, 0.0, 0.0, 0.0}, world_from_b{0.0, 0.0, 0.0, 0.0};
 };
 
 // Error behaviour: none. Both quaternions must be finite and non-zero; both positions finite.

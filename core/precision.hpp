@@ -19,6 +19,11 @@ struct Precision {
   double
       tight;  // m: an upper bound this close to the lower one (before slack) is as good as it gets
   double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
+
+  // Are bounds, slack included, this near to each other what a converged answer promises?
+  [[nodiscard]] bool converged(double gap) const noexcept {
+    return gap <= std::max(2.0 * (tight + slack), kConverged * size);
+  }
 };
 
 // How well B's place as seen from A is known, and how far away it is (m).

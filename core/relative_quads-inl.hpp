@@ -116,8 +116,11 @@ HWY_INLINE RelativeQuads quads_of(const RelativePose& pose) {
   return r;
 }
 
-HWY_INLINE RelativePose pose_of(const RelativeQuads& r) {
+HWY_INLINE RelativePose pose_of(const RelativeQuads& r, const Pose& world_from_a,
+                                const Pose& world_from_b) {
   RelativePose pose;
+  pose.world_from_a = world_from_a.orientation;
+  pose.world_from_b = world_from_b.orientation;
   for (int i = 0; i < 3; ++i) {
     pose.rotation(i, i) = lane(r.rotation.main, i);
     pose.rotation(i, (i + 1) % 3) = lane(r.rotation.next, i);

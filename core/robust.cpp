@@ -131,7 +131,10 @@ void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Pr
             DistanceResult& r) noexcept {
   const WideDifference body(a, b, a_from_b, p);
   Simplex simplex;
-  simplex.add(body.make(a.own(), b.own()));
+  // Far out on an unbounded body, a point is off it by more than the bounds allow for.
+  const bool near = a.own().norm() <= 4.0 * p.reach_a && b.own().norm() <= 4.0 * p.reach_b;
+  simplex.add(near ? body.make(a.own(), b.own())
+                   : body.make(a.body().anchors[0], b.body().anchors[0]));
   for (int round = 0; round < kRounds; ++round) {
     const ClosestPoint closest = simplex.reduce();
     const double length = static_cast<double>(sqrt(closest.length2));
@@ -150,7 +153,7 @@ void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Pr
     }
     if (length - level <= p.tight || !simplex.add(next)) break;
   }
-  const bool tight = r.upper - r.lower <= 2.0 * (p.slack + p.tight);
+  const bool tight = p.converged(r.upper - r.lower);
   if (r.lower > 0.0) {
     r.status = tight ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
   } else {

@@ -47,7 +47,10 @@ inline constexpr double kUnderflow = 1e-150;
 
 // What rounding leaves between the bounds, by how many of the bodies are unbounded: errors of
 // direction grow along their rays. Measured on the hard cases of tests/: at most 5, 40 and 250.
-inline constexpr double kTightUlps[] = {8.0, 16.0, 48.0};
+inline constexpr double kTightUlps[] = {8.0, 16.0, 16.0};
+
+// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
+inline constexpr double kConverged = 90 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;

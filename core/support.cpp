@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/double_double.hpp"
-
 namespace clearance {
 namespace {
 
@@ -15,9 +13,6 @@ constexpr std::size_t kScan = 24;
 // Unit edge directions are off by 2^-52, their products with a unit vector by three roundings more:
 // an edge that falls by more than this (per unit length) falls in exact arithmetic.
 constexpr double kFalls = 0x1p-50;
-
-// Rays nearer to parallel than this (an angle) are a bundle.
-constexpr double kBundle = 0x1p-45;
 
 // The vertices reached from one another by edges that rounding cannot tell from level ones. On the
 // exact polytope every vertex that is not the highest has a rising edge, and rising edges lead to
@@ -100,91 +95,57 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 
 namespace {
 
-// How the rays span their cone: any of its vectors x is a sum of mu_j r_j with sum mu_j <=
-// condition * |x|. Opposite rays span lines (at most two); the others lie strictly to one side of
-// some plane.
-double ray_condition(const ConvexPolyhedron& body) noexcept {
-  const auto& rays = body.rays;
-  std::array<Vec3, 2> lines;
-  std::size_t line_count = 0;
-  Vec3 middle = Vec3::Zero();
-  const auto is_line = [&](const Vec3& r) {
-    return std::any_of(rays.begin(), rays.end(), [&](const Ray& o) { return o.direction == -r; });
-  };
-  for (const Ray& ray : rays) {
-    if (is_line(ray.direction) && line_count < 2 &&
-        (line_count == 0 || (lines[0] != -ray.direction.normalized()))) {
-      lines[line_count++] = ray.direction.normalized();
+// Rays that come with their opposite: at most two lines, or a whole plane by two of them. Unit.
+struct Lines {
+  std::array<Vec3, 2> along;  // at right angles
+  std::size_t count = 0;
+
+  explicit Lines(const ConvexPolyhedron& body) noexcept {
+    if (!body.vertices.empty()) return;
+    for (const Ray& ray : body.rays) {
+      if (count == along.size() || !is_line(body, ray)) continue;
+      const Vec3 rest = across(ray.direction.normalized());
+      if (rest.norm() > 0.5) along[count++] = rest.normalized();
     }
   }
-  // No ray leads out of a facet and only lines run along all of them: against the sum of the
-  // normals every other ray has a part, where against the sum of the rays one of many may have
-  // none.
-  for (const Facet& facet : body.facets) middle -= facet.normal;
-  const double skew = line_count == 2 ? lines[0].cross(lines[1]).norm() : 1.0;
-  for (std::size_t i = 0; i < line_count; ++i) middle -= middle.dot(lines[i]) * lines[i];
-  const double of_lines = line_count == 0 ? 0.0 : line_count == 1 ? 1.0 : 1.5 / skew;
-  double opening = kInfinity;  // least component of a pointed ray along `middle`
-  const double length = middle.norm();
-  for (const Ray& ray : rays) {
-    if (is_line(ray.direction)) continue;
-    opening = std::min(opening, middle.dot(ray.direction.normalized()) / length);
+  static bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
+    return std::any_of(body.rays.begin(), body.rays.end(),
+                       [&](const Ray& other) { return other.direction == -ray.direction; });
   }
-  if (!(opening > 0.0)) return kInfinity;
-  return 1.0 / opening + of_lines * (1.0 + 1.0 / opening);
-}
+  [[nodiscard]] Vec3 across(Vec3 v) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) v -= v.dot(along[i]) * along[i];
+    return v;
+  }
+};
 
-// The sign of m.r, exactly.
-int exact_sign(const Vec3& m, const Vec3& r) noexcept {
-  const DoubleDouble sum =
-      exact::product(m.x(), r.x()) + exact::product(m.y(), r.y()) + exact::product(m.z(), r.z());
-  const double error =
-      0x1p-100 * (std::abs(m.x() * r.x()) + std::abs(m.y() * r.y()) + std::abs(m.z() * r.z()));
-  if (sum.high > error) return 1;
-  if (sum.high < -error) return -1;
-  // Two products that cancel exactly, or none: those cases, and only those, are certain.
-  const bool certain =
-      (m.x() * r.x() == 0.0) + (m.y() * r.y() == 0.0) + (m.z() * r.z() == 0.0) >= 1;
-  return certain && sum.high == 0.0 && sum.low == 0.0 ? 0 : 1;
-}
+// Directions and products are off by at most this.
+constexpr double kSlopeError = 0x1p-50;
 
 }  // namespace
 
+// A point is an anchor plus a sum of rays, r. What lies along the lines is no longer than r. The
+// other rays, their parts across the lines, all have a part of at least `opening` against the sum
+// of the facets' normals (no ray leads out of a facet, and only lines run along all of them;
+// against the sum of the rays, one of many may have none), so that there are no more of them than
+// |r| over that: they count as often as the steepest rises.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  double steepest = 0.0;
+  const Lines lines(body);
+  Vec3 middle = Vec3::Zero();
+  for (const Facet& facet : body.facets) middle -= facet.normal;
+  middle = lines.across(middle).stableNormalized();
+  const Vec3 across = lines.across(m);
+  double steepest = 0.0, opening = kInfinity;
   for (const Ray& ray : body.rays) {
-    const double length = ray.exact ? ray.direction.norm() : 1.0;
-    steepest = std::max(steepest, m.dot(ray.direction) / length);
+    if (lines.count > 0 && Lines::is_line(body, ray)) continue;
+    const Vec3 direction = ray.exact ? ray.direction.normalized() : ray.direction;
+    opening = std::min(opening, middle.dot(direction));
+    steepest = std::max(steepest, across.dot(direction) + kSlopeError);
   }
-  // The rays' directions and the product are off by at most 2^-50.
-  return (steepest + 0x1p-50) * ray_condition(body) * (within + body.bounding_radius);
-}
-
-LevelRays level_rays(const ConvexPolyhedron& body, const Vec3& m, double margin) noexcept {
-  LevelRays level;
-  bool both_ways = false;
-  for (const Ray& ray : body.rays) {
-    const double slope = m.dot(ray.direction) / ray.direction.norm();
-    if (slope < -margin) continue;
-    const bool across = ray.exact && exact_sign(m, ray.direction) <= 0;
-    level.exactly_level = level.exactly_level && across;
-    const Vec3 direction = ray.direction.normalized();
-    if (level.directions == 0) {
-      level.directions = 1;
-      level.direction = direction;
-    }
-    const double apart = (direction - level.direction).norm();
-    if (apart <= kBundle) {
-      level.spread = std::max(level.spread, apart);
-    } else {
-      both_ways = true;
-      if (direction != -level.direction) level.directions = 2;
-    }
-    if (slope > margin) level.directions = 2;
-  }
-  if (both_ways && level.spread > 0.0) level.directions = 2;
-  return level;
+  if (!(opening > 0.0)) return kInfinity;
+  double rate = steepest / opening;
+  if (lines.count > 0) rate += (m - across).norm() + kSlopeError;
+  return rate * (within + body.bounding_radius);
 }
 
 }  // namespace clearance

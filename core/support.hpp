@@ -28,18 +28,4 @@ struct Support {
 [[nodiscard]] double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m,
                                       double within) noexcept;
 
-// The rays of a body that rounding cannot tell from level ones, seen along m.
-struct LevelRays {
-  // 0: all fall away; 1: the level ones are a line, or a bundle that is parallel as far as rounding
-  // can tell; 2: there are more, or one rises.
-  int directions = 0;
-  Vec3 direction = Vec3::Zero();  // of the first level one; unit
-  double spread = 0.0;            // how far others of the bundle point away from it, at most
-  bool exactly_level = true;      // they stand exactly across the doubles of m, or all fall away
-};
-
-// A ray falls away when it does so by more than `margin` per unit length.
-[[nodiscard]] LevelRays level_rays(const ConvexPolyhedron& body, const Vec3& m,
-                                   double margin) noexcept;
-
 }  // namespace clearance

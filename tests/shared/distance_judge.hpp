@@ -32,7 +32,8 @@ class DistanceJudge {
   //  - numbers: finite where they must be, lower <= distance <= upper
   //  - the bounds, compared exactly; the upper one only where the depth is known
   //  - the status: converged within 1e-14 of size(), overlapping, touching and two unbounded bodies
-  //    within 1.5e-14; overlapping and touching only where it is so; never at the iteration limit
+  //    within 1.5e-14; overlapping and touching only where it is so; at the iteration limit only
+  //    where two unbounded bodies are closest beyond what doubles can say
   //  - the witness points: on their bodies, and `distance` apart along the normal; the normal: unit
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,

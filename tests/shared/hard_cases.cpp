@@ -4,6 +4,7 @@
 
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/exact_placement.hpp"
+#include "tests/shared/extreme_cases.hpp"
 #include "tests/shared/tied_cases.hpp"
 
 namespace clearance::hard {
@@ -306,7 +307,12 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"nested", nested},
                                         {"twin_facets", twin_facets},
                                         {"tiny_gaps", tiny_gaps},
-                                        {"mirrored", mirrored}};
+                                        {"mirrored", mirrored},
+                                        {"columns", columns},
+                                        {"scales", scales},
+                                        {"pierced", pierced},
+                                        {"crossed_bars", crossed_bars},
+                                        {"bare_cores", bare_cores}};
 
 }  // namespace
 

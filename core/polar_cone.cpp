@@ -1,0 +1,190 @@
+#include "core/polar_cone.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+// Rays that fall by more than this go on falling after a move of at most kFarthest.
+constexpr double kLevel = 0x1p-24, kFarthest = 0x1p-25;
+
+// A product of a ray's digits (2^-104) with a direction, in wide numbers.
+constexpr double kConstraintError = 0x1p-95;
+
+// A facet's normal is rounded to 2^-53 in each component, and once more where it is turned.
+constexpr double kFacetError = 0x1p-51;
+
+// Unit vectors made of doubles.
+constexpr double kUnitError = 0x1p-51;
+
+// The three products' exact sum is 0, or not for certain.
+bool exactly_level(const Vec3& n, const Vec3& g) noexcept {
+  std::array<double, 6> parts;
+  for (int i = 0; i < 3; ++i) {
+    const DoubleDouble p = exact::product(n[i], g[i]);
+    if (n[i] * g[i] != 0.0 ? std::abs(n[i] * g[i]) < 1e-250 : n[i] != 0.0 && g[i] != 0.0) {
+      return false;  // digits are lost below
+    }
+    parts[static_cast<std::size_t>(2 * i)] = p.low;
+    parts[static_cast<std::size_t>(2 * i + 1)] = p.high;
+  }
+  for (std::size_t pass = 0; pass < parts.size(); ++pass) {
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      const DoubleDouble s = exact::sum(parts[i - 1], parts[i]);
+      parts[i] = s.high;
+      parts[i - 1] = s.low;
+    }
+  }
+  return std::all_of(parts.begin(), parts.end(), [](double x) { return x == 0.0; });
+}
+
+bool along_axis(const Vec3& v, int axis) noexcept {
+  return axis >= 0 && v[axis] != 0.0 && v[(axis + 1) % 3] == 0.0 && v[(axis + 2) % 3] == 0.0;
+}
+
+double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }
+
+}  // namespace
+
+PolarCone::PolarCone(const ActiveSide& a, const ActiveSide& b) noexcept
+    : a_(a),
+      b_(b),
+      rotation_(wide_rotation(*b.pose())),
+      error_(4.0 * rotation_.error + kConstraintError) {}
+
+WideVec PolarCone::of_ray(const Ray& ray, bool of_b) const noexcept {
+  const WideVec own = wide(ray.direction) + wide(ray.rest);
+  return of_b ? rotation_ * own : own;
+}
+
+// False: one rises, or there are too many.
+bool PolarCone::collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
+                        Level& level) const noexcept {
+  const Vec3 m = of_b ? Vec3(-b_.direction_to_own(n)) : n;
+  for (const Ray& ray : body.rays) {
+    const double slope = m.dot(ray.direction);
+    if (slope < -kLevel) continue;
+    if (slope > kLevel || level.size == level.items.size()) return false;
+    Constraint& c = level.items[level.size++];
+    c.g = of_ray(ray, of_b);
+    if (of_b) c.g = WideVec{} - c.g;
+    c.own = ray.direction;
+    c.rest = ray.rest;
+    c.of_b = of_b;
+    c.known = ray.exact && (!of_b || rotation_.exact() || along_axis(c.own, rotation_.axis));
+    c.two_way = false;
+  }
+  return true;
+}
+
+// For certain. A body without vertices has its lines as two rays each.
+bool PolarCone::opposite(const Constraint& c, const Constraint& d) const noexcept {
+  if (c.known && d.known) return narrow(c.g) == -narrow(d.g);
+  const ConvexPolyhedron& body = c.of_b ? b_.body() : a_.body();
+  return c.of_b == d.of_b && body.vertices.empty() && c.own == -d.own && c.rest == -d.rest;
+}
+bool PolarCone::same_line(const Constraint& c, const Constraint& d) const noexcept {
+  return opposite(c, d) || (c.known && d.known && narrow(c.g) == narrow(d.g));
+}
+
+void PolarCone::prepare(const Vec3& n, Level& level) const noexcept {
+  level.t = n.unitOrthogonal();
+  level.u = n.cross(level.t);
+  for (std::size_t i = 0; i < level.size; ++i) {
+    Constraint& c = level.items[i];
+    c.at_n = dot(c.g, wide(n));
+    c.slope = value(c.at_n);
+    c.along_t = dot(c.g, wide(level.t));
+    c.along_u = dot(c.g, wide(level.u));
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!opposite(c, level.items[k])) continue;
+      c.two_way = level.items[k].two_way = true;
+    }
+  }
+}
+
+// Is n itself, or the facet's exact normal that it was rounded from, in the cone?
+bool PolarCone::holds_as_it_is(const Separator& s, const Vec3& n,
+                               const Level& level) const noexcept {
+  const bool facet = s.facet_of_a != kNone || s.facet_of_b != kNone;
+  Vec3 exact_n = n;
+  if (s.facet_of_a != kNone) exact_n = a_.body().exact_normals[s.facet_of_a];
+  if (s.facet_of_b != kNone) {
+    const Vec3& own = b_.body().exact_normals[s.facet_of_b];
+    const bool stays = rotation_.exact() || along_axis(own, rotation_.axis);
+    exact_n = stays ? narrow(WideVec{} - rotation_ * wide(own)) : Vec3::Zero();
+  }
+  const double margin = 4.0 * error_ + (facet ? 4.0 * kFacetError : 0.0);
+  return std::all_of(level.items.begin(), level.items.begin() + level.size, [&](const auto& c) {
+    const bool of_facets_body = facet && c.of_b == (s.facet_of_b != kNone);
+    if (of_facets_body || c.slope < -margin) return true;
+    if (exact_n.isZero(0.0)) return false;
+    if (c.of_b && along_axis(exact_n, rotation_.axis)) {
+      return c.own[rotation_.axis] == 0.0 && c.rest[rotation_.axis] == 0.0;
+    }
+    return c.known && exactly_level(exact_n, narrow(c.g));
+  });
+}
+
+// A move after which the rays i and j are exactly as level as they should be, and which is off by
+// at most `error`: do all others fall, or are they those two once more?
+void PolarCone::try_move(const Level& level, std::size_t i, std::size_t j, const DoubleDouble& x,
+                         const DoubleDouble& y, double error, Move& best) const noexcept {
+  const double length2 = value(x * x + y * y);
+  if (!(length2 < std::min(best.length2, kFarthest * kFarthest)) || !(error < kFarthest)) return;
+  for (std::size_t k = 0; k < level.size; ++k) {
+    const Constraint& c = level.items[k];
+    if (k == i || k == j) continue;
+    if (c.two_way && (same_line(c, level.items[i]) || same_line(c, level.items[j]))) continue;
+    const double rise = value(c.at_n + x * c.along_t + y * c.along_u);
+    if (!(rise < -4.0 * (error + error_))) return;
+  }
+  best = {value(x), value(y), error, length2};
+}
+
+PolarCone::Move PolarCone::shortest_move(const Level& level) const noexcept {
+  Move best;
+  // Rays that need not be level shall fall by this, so that others of the same direction do.
+  const auto rise_wanted = [&](const Constraint& c) {
+    return c.at_n + DoubleDouble(c.two_way ? 0.0 : 16.0 * error_);
+  };
+  for (std::size_t i = 0; i < level.size; ++i) {
+    const Constraint& c = level.items[i];
+    const DoubleDouble square = c.along_t * c.along_t + c.along_u * c.along_u;
+    if (!(square.high > 0.5)) continue;  // rays are of unit length or longer
+    const DoubleDouble by = -rise_wanted(c) / square;
+    try_move(level, i, i, by * c.along_t, by * c.along_u, 2.0 * error_, best);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Constraint& d = level.items[j];
+      const DoubleDouble area = c.along_t * d.along_u - c.along_u * d.along_t;
+      const double size = std::abs(value(area));
+      if (!(size > 64.0 * error_)) continue;
+      const DoubleDouble rise_c = rise_wanted(c), rise_d = rise_wanted(d);
+      const DoubleDouble x = (c.along_u * rise_d - d.along_u * rise_c) / area;
+      const DoubleDouble y = (d.along_t * rise_c - c.along_t * rise_d) / area;
+      try_move(level, i, j, x, y, 16.0 * error_ / size, best);
+    }
+  }
+  return best;
+}
+
+PolarCone::Direction PolarCone::nearest(const Separator& s) const noexcept {
+  Vec3 n = s.normal;
+  if (s.facet_of_b != kNone) {
+    n = -narrow(rotation_ * wide(b_.body().facets[s.facet_of_b].normal));
+  }
+  const Direction none{n, kInfinity};
+  Level level;
+  if (!collect(a_.body(), false, n, level) || !collect(b_.body(), true, n, level)) return none;
+  prepare(n, level);
+  if (holds_as_it_is(s, n, level)) {
+    const bool facet = s.facet_of_a != kNone || s.facet_of_b != kNone;
+    return {n, facet ? kFacetError + (s.facet_of_b != kNone ? rotation_.error : 0.0) : 0.0};
+  }
+  const Move move = shortest_move(level);
+  if (!(move.length2 < kInfinity)) return none;
+  return {(n + move.x * level.t + move.y * level.u).normalized(), move.error + kUnitError};
+}
+
+}  // namespace clearance

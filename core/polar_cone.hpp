@@ -1,0 +1,99 @@
+// The directions along which neither of two unbounded bodies goes on for ever, seen from the other:
+// the polar cone of all rays of A and all reversed rays of B. Only they bound a distance or a
+// depth.
+//
+// Where a ray stands across such a direction n, the cone has its rim there, and the last digits of
+// n decide whether it is inside: n must be moved onto it. In the plane across n each ray that is
+// level to rounding leaves a half-plane for the end of the move, and the nearest point that all of
+// them have in common is where one or two of them are exactly level. All in twice double precision,
+// as are the rays and the rotation between the bodies: it costs a direction no more than the
+// rounding of its own doubles, at whatever angle the rays cross.
+#pragma once
+
+#include <array>
+
+#include "core/certificate.hpp"
+#include "core/wide_rotation.hpp"
+
+namespace clearance {
+
+class PolarCone {
+ public:
+  PolarCone(const ActiveSide& a, const ActiveSide& b) noexcept;
+
+  // A unit vector, common frame, and how far from it (an angle) there certainly is a direction of
+  // the cone; infinity: none is known nearby.
+  struct Direction {
+    Vec3 n;
+    double off;
+  };
+  [[nodiscard]] Direction nearest(const Separator& s) const noexcept;
+
+  // Calls take(Separator) with the directions across a ray of each body where these are so nearly
+  // parallel that the bodies' features do not say them. Which directions of all those across such a
+  // ray the cone has does not change with the angle, but with where it opens: half of them or, of
+  // two lines, two.
+  template <class Take>
+  void across_near_parallels(const Take& take) const noexcept {
+    if (a_.body().rays.size() * b_.body().rays.size() > kMostPairs) return;
+    for (const Ray& of_b : b_.body().rays) {
+      const WideVec g = of_ray(of_b, true);
+      for (const Ray& of_a : a_.body().rays) {
+        if (!(of_a.direction.cross(narrow(g)).norm() < kNearlyParallel)) continue;
+        const WideVec n = cross(of_ray(of_a, false), g);
+        const double sine = narrow(n).stableNorm();
+        if (!(sine > kParallel)) continue;
+        const Vec3 unit = narrow(DoubleDouble(1.0 / sine) * n).normalized();
+        take(Separator{unit});
+        take(Separator{Vec3(-unit)});
+      }
+    }
+  }
+
+ private:
+  static constexpr double kParallel = 0x1p-90, kNearlyParallel = 0x1p-18;
+  static constexpr std::size_t kMostPairs = 0x1p16;
+
+  // n.g <= 0 for all directions n of the cone, g being a ray. Along n + x t + y u it rises by
+  // at_n + x along_t + y along_u.
+  struct Constraint {
+    WideVec g;
+    Vec3 own;   // the ray in its body's frame, and
+    Vec3 rest;  // what that leaves of it
+    bool of_b;
+    bool known;  // g is exactly three doubles
+    bool two_way = false;
+    double slope;  // at_n, in a double
+    DoubleDouble at_n, along_t, along_u;
+  };
+  // Of the rays that are level to rounding. Of more, nothing is known.
+  struct Level {
+    std::array<Constraint, 64> items;
+    std::size_t size = 0;
+    Vec3 t, u;
+  };
+  struct Move {
+    double x = 0.0, y = 0.0;
+    double error = 0.0;
+    double length2 = kInfinity;
+  };
+
+  [[nodiscard]] WideVec of_ray(const Ray& ray, bool of_b) const noexcept;
+  [[nodiscard]] bool collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
+                             Level& level) const noexcept;
+  [[nodiscard]] bool opposite(const Constraint& c, const Constraint& d) const noexcept;
+  [[nodiscard]] bool same_line(const Constraint& c, const Constraint& d) const noexcept;
+  void prepare(const Vec3& n, Level& level) const noexcept;
+  [[nodiscard]] bool holds_as_it_is(const Separator& s, const Vec3& n,
+                                    const Level& level) const noexcept;
+  void try_move(const Level& level, std::size_t i, std::size_t j, const DoubleDouble& x,
+                const DoubleDouble& y, double error, Move& best) const noexcept;
+  [[nodiscard]] Move shortest_move(const Level& level) const noexcept;
+
+  const ActiveSide& a_;
+  const ActiveSide& b_;
+  WideRotation rotation_;
+  double error_;  // of a constraint's numbers
+};
+
+}  // namespace clearance

@@ -1,0 +1,126 @@
+#include "core/wide_rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+using Components = std::array<double, 4>;  // x, y, z, w
+
+// A sum or product of wide numbers is off by at most 2^-102 of its terms. Of four products, a
+// component of conj(a) b is off by 2^-101; an entry of the matrix has four of those, once more as
+// many roundings, and the quotient: 2^-98, and the nine together less than four times that.
+constexpr double kWideError = 0x1p-96;
+
+// Products of smaller components leave digits where doubles have none.
+constexpr double kSmallest = 1e-140;
+
+// By a power of two: the largest component is in [1, 2).
+Components scaled(const RelativePose::Orientation& q) noexcept {
+  const int exponent = std::ilogb(q.coeffs().cwiseAbs().maxCoeff());
+  Components out;
+  for (int i = 0; i < 4; ++i) {
+    out[static_cast<std::size_t>(i)] = std::ldexp(q.coeffs()[i], -exponent);
+  }
+  return out;
+}
+
+bool digits_kept(const Components& q) noexcept {
+  return std::all_of(q.begin(), q.end(),
+                     [](double x) { return x == 0.0 || std::abs(x) > kSmallest; });
+}
+
+// One component of a product of quaternions: four products of doubles.
+struct FourProducts {
+  std::array<DoubleDouble, 4> terms;
+
+  [[nodiscard]] DoubleDouble sum() const noexcept {
+    return (terms[0] + terms[1]) + (terms[2] + terms[3]);
+  }
+  // Is it 0 for certain? Errors of sums are summed up again until nothing is left.
+  [[nodiscard]] bool exactly_zero() const noexcept {
+    std::array<double, 8> parts;
+    for (std::size_t i = 0; i < 4; ++i) {
+      parts[2 * i] = terms[i].low;
+      parts[2 * i + 1] = terms[i].high;
+    }
+    for (std::size_t pass = 0; pass < parts.size(); ++pass) {
+      for (std::size_t i = 1; i < parts.size(); ++i) {
+        const DoubleDouble s = exact::sum(parts[i - 1], parts[i]);
+        parts[i] = s.high;
+        parts[i - 1] = s.low;
+      }
+    }
+    return std::all_of(parts.begin(), parts.end(), [](double x) { return x == 0.0; });
+  }
+};
+
+// conj(a) b.
+std::array<FourProducts, 4> relative(const Components& a, const Components& b) noexcept {
+  const auto times = [&](std::size_t i, std::size_t k) { return exact::product(a[i], b[k]); };
+  constexpr std::size_t x = 0, y = 1, z = 2, w = 3;
+  return {{{{times(w, x), -times(x, w), times(z, y), -times(y, z)}},
+           {{times(w, y), -times(y, w), times(x, z), -times(z, x)}},
+           {{times(w, z), -times(z, w), times(y, x), -times(x, y)}},
+           {{times(w, w), times(x, x), times(y, y), times(z, z)}}}};
+}
+
+// N(q) / |q|^2.
+std::array<WideVec, 3> matrix(const std::array<FourProducts, 4>& of) noexcept {
+  const DoubleDouble x = of[0].sum(), y = of[1].sum(), z = of[2].sum(), w = of[3].sum();
+  const DoubleDouble xx = x * x, yy = y * y, zz = z * z, ww = w * w;
+  const DoubleDouble square = (ww + xx) + (yy + zz);
+  const auto twice = [&](const DoubleDouble& v) { return (v + v) / square; };
+  return {{{((ww + xx) - (yy + zz)) / square, twice(x * y - w * z), twice(x * z + w * y)},
+           {twice(x * y + w * z), ((ww + yy) - (xx + zz)) / square, twice(y * z - w * x)},
+           {twice(x * z - w * y), twice(y * z + w * x), ((ww + zz) - (xx + yy)) / square}}};
+}
+
+// What is certain of the exact rotation: whether it is none at all, or about which axis it turns.
+void set_axis(const std::array<FourProducts, 4>& of, WideRotation& r) noexcept {
+  const std::array<bool, 3> zero = {of[0].exactly_zero(), of[1].exactly_zero(),
+                                    of[2].exactly_zero()};
+  if (zero[0] && zero[1] && zero[2]) {
+    r.rows = {wide(Vec3::UnitX()), wide(Vec3::UnitY()), wide(Vec3::UnitZ())};
+    r.error = 0.0;
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const auto next = static_cast<std::size_t>((i + 1) % 3);
+    if (zero[next] && zero[static_cast<std::size_t>((i + 2) % 3)]) r.axis = i;
+  }
+}
+
+// Somebody may have given the pose another rotation than its orientations have.
+bool agrees(const WideRotation& wide, const RelativePose& pose) noexcept {
+  double off2 = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 row = pose.rotation.row(i);
+    off2 += (narrow(wide.rows[static_cast<std::size_t>(i)]) - row).squaredNorm();
+  }
+  return std::sqrt(off2) <= 2.0 * pose.rotation_error;
+}
+
+}  // namespace
+
+WideRotation wide_rotation(const RelativePose& pose) noexcept {
+  WideRotation as_given;
+  for (int i = 0; i < 3; ++i) {
+    as_given.rows[static_cast<std::size_t>(i)] = wide(Vec3(pose.rotation.row(i)));
+  }
+  as_given.error = pose.rotation_error;
+  const double known = std::min(pose.world_from_a.coeffs().cwiseAbs().maxCoeff(),
+                                pose.world_from_b.coeffs().cwiseAbs().maxCoeff());
+  if (as_given.exact() || !(known > 0.0)) return as_given;
+
+  const Components a = scaled(pose.world_from_a), b = scaled(pose.world_from_b);
+  const std::array<FourProducts, 4> of = relative(a, b);
+  WideRotation out;
+  out.rows = matrix(of);
+  out.error = kWideError;
+  if (digits_kept(a) && digits_kept(b)) set_axis(of, out);
+  return agrees(out, pose) ? out : as_given;
+}
+
+}  // namespace clearance
