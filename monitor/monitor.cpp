@@ -68,7 +68,7 @@ struct Monitor::State {
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
   void write_report(std::uint32_t pair, const PairSummary& state,
                     PairReport& written) const noexcept;
-  [[nodiscard]] PairSummary summary(std::uint32_t pair) const noexcept;
+  [[nodiscard]] PairSummary summary(std::uint32_t pair, bool published) const noexcept;
   [[nodiscard]] Clearance rest() const noexcept;
   [[nodiscard]] Clearance pending() const noexcept;
 };
@@ -99,7 +99,7 @@ PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->rep
 
 PassageBounds Monitor::passage(std::uint32_t pair, double level) const noexcept {
   State& s = *state_;
-  const PairSummary known = s.summary(pair);
+  const PairSummary known = s.summary(pair, s.scene.pairs[pair].publish);
   PassageBounds bounds{known.lower_since, known.upper_since};
   if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
   Evaluation evaluation{s.objects, s.parts, s.report.cycle, s.table, kNoLimit};
@@ -231,12 +231,12 @@ void Monitor::State::report_pairs() noexcept {
   report.evaluated = 0;
   for (PairReport& published : report.pairs) {
     const std::uint32_t pair = published.pair;
-    const PairSummary state = summary(pair);
+    const PairSummary state = summary(pair, true);
     write_report(pair, state, published);
     if (table.entries[pair].carried_cycle == report.cycle) count_in(pair, state);
   }
   for (const std::uint32_t pair : triage.current()) {
-    if (!scene.pairs[pair].publish) count_in(pair, summary(pair));
+    if (!scene.pairs[pair].publish) count_in(pair, summary(pair, false));
   }
 }
 
@@ -285,9 +285,9 @@ Clearance Monitor::State::pending() const noexcept {
   return {.now = rounded_down(lower - most_unseen), .since = rounded_down(lower - most_strayed)};
 }
 
-PairSummary Monitor::State::summary(std::uint32_t pair) const noexcept {
+PairSummary Monitor::State::summary(std::uint32_t pair, bool published) const noexcept {
   // Of other pairs nobody asks how near they came, but for the least of all.
-  const bool closely = scene.pairs[pair].publish || zones.has(pair);
+  const bool closely = published || zones.has(pair);
   PairSummary summary = summary_of(pair, objects, parts, report.cycle, table,
                                    closely ? Since::kByRelative : Since::kByTravel);
   if (!triage.any_passage()) return summary;
@@ -305,7 +305,7 @@ void Monitor::State::write_report(std::uint32_t pair, const PairSummary& state,
 
 PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {
   PairReport written;
-  write_report(pair, summary(pair), written);
+  write_report(pair, summary(pair, scene.pairs[pair].publish), written);
   return written;
 }
 

@@ -108,9 +108,15 @@ bool Triage::has_room(const PairTable& table) const noexcept {
 void Triage::look_at_asked(Evaluation& evaluation) noexcept {
   if (asked_done_) {
     asked_.evaluate(pool_, evaluation);
+    // Nobody is in the list yet, and there is room for all.
+    current_.resize(asked_.pairs().size());
+    auto end = current_.begin();
     for (const std::uint32_t pair : asked_.pairs()) {
-      if (is_evaluated(pair, evaluation)) list(pair);
+      if (!is_evaluated(pair, evaluation)) continue;
+      is_current_[pair] = 1;
+      *end++ = pair;
     }
+    current_.erase(end, current_.end());
     return;
   }
   for (const std::uint32_t pair : asked_.pairs()) {

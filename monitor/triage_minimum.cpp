@@ -62,14 +62,14 @@ void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
                              table.upper.begin() + table.entries[pair].end_row);
   };
   double smallest_upper = kInfinity;
-  for (const std::uint32_t pair : current_) {
-    smallest_upper = std::min(smallest_upper, upper_of(pair));
-  }
   scratch_.clear();
   for (const std::uint32_t pair : current_) {
-    const bool done = is_evaluated(pair, evaluation);
-    if (!done && table.entries[pair].least_lower < smallest_upper) scratch_.push_back(pair);
+    smallest_upper = std::min(smallest_upper, upper_of(pair));
+    if (!is_evaluated(pair, evaluation)) scratch_.push_back(pair);
   }
+  std::erase_if(scratch_, [&](std::uint32_t pair) {
+    return !(table.entries[pair].least_lower < smallest_upper);
+  });
   const auto later = [&table](std::uint32_t left, std::uint32_t right) {
     return std::tie(table.entries[left].least_lower, left) >
            std::tie(table.entries[right].least_lower, right);
