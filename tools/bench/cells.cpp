@@ -12,8 +12,6 @@
 #include "config/cell_file.hpp"
 #include "core/batch.hpp"
 #include "core/distance.hpp"
-#include "monitor/monitor.hpp"
-#include "tools/bench/cpu_clock.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -32,7 +30,6 @@ struct PartPair {
 struct Workload {
   Scene scene;
   std::vector<std::vector<Pose>> world_from_object;  // [step][object]
-  std::vector<std::vector<PoseSample>> samples;      // [step]
   std::vector<PartPair> pairs;
 };
 
@@ -57,14 +54,9 @@ std::shared_ptr<Workload> make_workload(Scene scene) {
     std::vector<Pose> world(load->scene.objects.size());
     for (std::size_t i = 0; i < world.size(); ++i)
       world[i] = load->scene.objects[i].world_from_object;
-    std::vector<PoseSample> samples;
     poses_at(load->scene, 1e-3 * step, poses);
-    for (const PoseAt& p : poses) {
-      world[p.object] = p.world_from_object;
-      samples.push_back({p.object, 0, p.world_from_object, p.twist, true});
-    }
+    for (const PoseAt& p : poses) world[p.object] = p.world_from_object;
     load->world_from_object.push_back(std::move(world));
-    load->samples.push_back(std::move(samples));
   }
   load->pairs = part_pairs(load->scene);
   return load;
@@ -138,47 +130,6 @@ void time_batch(benchmark::State& state, const Workload& load) {
       benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-double quantile(std::vector<double>& sorted, double q) {
-  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
-}
-
-// The motion there and back again: a jump from its end to its beginning would be a thousandth of
-// all ticks, and the only slow ones.
-std::vector<PoseSample> samples_to_and_fro(const Workload& load, std::size_t tick) {
-  const std::size_t step = tick % (2 * kSteps);
-  if (step < kSteps) return load.samples[step];
-  std::vector<PoseSample> samples = load.samples[2 * kSteps - 1 - step];
-  for (PoseSample& sample : samples) {
-    sample.twist = {.linear = -sample.twist.linear, .angular = -sample.twist.angular};
-  }
-  return samples;
-}
-
-void time_ticks(benchmark::State& state, const Workload& load) {
-  Monitor monitor(load.scene);
-  const double clock_cost = cpu_clock_cost();
-  std::vector<double> times;
-  std::int64_t now_ns = 1'000'000'000;
-  std::size_t step = 0;
-  std::uint64_t queries = 0;
-  for (auto _ : state) {
-    state.PauseTiming();
-    std::vector<PoseSample> samples = samples_to_and_fro(load, step++);
-    now_ns += 1'000'000;
-    for (PoseSample& s : samples) s.stamp_ns = now_ns;
-    state.ResumeTiming();
-    const double start = cpu_ns();
-    queries += monitor.tick(samples, now_ns).queries;
-    times.push_back(std::max(0.0, cpu_ns() - start - clock_cost));
-  }
-  std::sort(times.begin(), times.end());
-  state.counters["p50"] = quantile(times, 0.5);
-  state.counters["p99.9"] = quantile(times, 0.999);
-  state.counters["max"] = times.back();
-  state.counters["queries"] = static_cast<double>(queries) / static_cast<double>(times.size());
-  state.counters["pairs"] = static_cast<double>(load.scene.pairs.size());
-}
-
 void register_cell(const std::string& name, Scene scene) {
   const auto load = make_workload(std::move(scene));
   benchmark::RegisterBenchmark(("cell/tracked/" + name).c_str(),
@@ -187,8 +138,6 @@ void register_cell(const std::string& name, Scene scene) {
                                [load](benchmark::State& s) { time_queries(s, *load, false); });
   benchmark::RegisterBenchmark(("cell/batch/" + name).c_str(),
                                [load](benchmark::State& s) { time_batch(s, *load); });
-  benchmark::RegisterBenchmark(("cell/tick/" + name).c_str(),
-                               [load](benchmark::State& s) { time_ticks(s, *load); });
 }
 
 }  // namespace

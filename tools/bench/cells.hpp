@@ -1,4 +1,4 @@
-// The shipped cells along their simulated motion: distance queries and whole ticks.
+// The distance queries of the shipped cells along their simulated motion.
 #pragma once
 
 #include <filesystem>

@@ -173,4 +173,11 @@ Crowd warehouse_crowd(std::uint32_t objects) {
   return crowd;
 }
 
+Crowd shipped_crowd(const std::string& name) {
+  Crowd crowd;
+  crowd.scene = std::get<Scene>(read_cell(CLEARANCE_CELLS "/" + name + ".yaml"));
+  crowd.name = name;
+  return crowd;
+}
+
 }  // namespace clearance::bench

@@ -1,4 +1,5 @@
-// Generated cells: how does a tick's cost grow with the number of objects and pairs?
+// Cells in motion, generated ones above all: how does a tick's cost grow with the number of objects
+// and pairs?
 #pragma once
 
 #include <cstdint>
@@ -48,5 +49,8 @@ struct OrbitingOptions {
 // The generated warehouse of config/warehouse_cell.hpp: objects of up to eight parts, of which one
 // in twenty moves.
 [[nodiscard]] Crowd warehouse_crowd(std::uint32_t objects);
+
+// A shipped cell, config/cells/NAME.yaml, along its simulated motion.
+[[nodiscard]] Crowd shipped_crowd(const std::string& name);
 
 }  // namespace clearance::bench

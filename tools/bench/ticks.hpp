@@ -1,4 +1,4 @@
-// Whole ticks of generated cells, up to millions of pairs.
+// Whole ticks of the shipped cells and of generated ones, up to millions of pairs.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -22,8 +22,9 @@ void register_ticks();
 [[nodiscard]] std::int64_t stamp_ns(int tick);
 // Our minimum of each of the first `ticks` ticks after the start-up, m; NaN where it is not proved.
 [[nodiscard]] std::vector<double> proved_minima(const Crowd& crowd, int ticks);
-// Sorts the times (ns) and sets the counters p50_us, p99.9_us and max_us.
-void count_times(std::vector<double>& times, benchmark::State& state);
+// Sorts the times (ns) and sets the counters p50_us, p99.9_us and max_us, each behind `prefix`.
+void count_times(std::vector<double>& times, benchmark::State& state,
+                 const std::string& prefix = "");
 
 using MakeCrowd = std::function<Crowd()>;
 void register_tick_row(const std::string& name, int ticks,

@@ -1,0 +1,38 @@
+// The machine's own noise: a fixed number of multiplications in registers, which take the same time
+// again and again where nothing else (the host, interrupts) takes part.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "tools/bench/cpu_clock.hpp"
+
+namespace clearance::bench {
+
+class PlainArithmetic {
+ public:
+  // Takes as long as something that takes `ns`, when nothing disturbs it.
+  explicit PlainArithmetic(double ns) {
+    double least = 1e9;
+    for (int i = 0; i < 50; ++i) least = std::min(least, time());
+    rounds_ = static_cast<int>(ns / least * kSample);
+  }
+
+  // Once more; ns.
+  double time() {
+    const double start = cpu_ns();
+    for (int i = 0; i < rounds_; ++i) value_ = value_ * 0.999 + 1.0;
+    benchmark::DoNotOptimize(value_);
+    return std::max(0.0, cpu_ns() - start - clock_cost_);
+  }
+
+ private:
+  static constexpr int kSample = 2'000;
+
+  const double clock_cost_ = cpu_clock_cost();
+  double value_ = 0.0;
+  int rounds_ = kSample;
+};
+
+}  // namespace clearance::bench
