@@ -122,6 +122,7 @@ struct ConvexPolyhedron {
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex
   VectorRows facet_sides{4};  // a row a facet: of facet_edges[i]
+  VectorRows planes{4};       // one row: normals and offsets of all facets
   StartTable start;
 
   // A point well inside (in the relative interior of a point or segment).

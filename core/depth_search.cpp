@@ -205,19 +205,96 @@ void DepthSearch::full_circle(const Edge& edge) noexcept {
   for (std::size_t i = 0; i < 4; ++i) settle(arc, quarters[i], quarters[i + 1]);
 }
 
+void DepthSearch::arc_of(const Edge& edge) noexcept {
+  const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point, edge};
+  settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
+}
+
 void DepthSearch::arcs() noexcept {
   for (const Edge& edge : body_.x().edges) {
     if (ended_early()) return;
     if (edge.facet[0] == kNone) {
       full_circle(edge);
-      continue;
+    } else {
+      arc_of(edge);
     }
-    const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point, edge};
-    settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
   }
 }
 
+// Y's lowest point along the best direction so far is mostly deeper below all other facets of X
+// than below that one: then it settles them all, and all arcs. Where not, the facet that it is
+// least deep below has its say, and its lowest point of Y is one more to look at.
+void DepthSearch::facets_of_x(DeepestPoints& of_y) noexcept {
+  of_y.add(body_.lowest_of_y(best_.source == Source::kNothing ? Vec3::UnitX() : best_.n));
+  while (of_y.least() < settled() && !of_y.full() && !ended_early()) {
+    const std::int32_t facet = of_y.where_least();
+    const Vec3& n = body_.x().facets[facet].normal;
+    of_y.add(body_.lowest_of_y(n));
+    improve(of_y.depth(facet), n, Source::kFacetOfX, facet);
+  }
+  if (of_y.least() >= settled()) return lower_to(of_y.least());
+  const auto count = static_cast<std::int32_t>(body_.x().facets.size());
+  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
+    if (of_y.depth(i) >= settled()) {
+      lower_to(of_y.depth(i));
+    } else {
+      look_at_facet_of_x(i);
+    }
+  }
+}
+
+// The same, in Y's frame. X's middle settles those of Y that lie on its far side.
+void DepthSearch::facets_of_y(DeepestPoints& of_x) noexcept {
+  of_x.add(body_.point_to_y(body_.x().interior));
+  while (of_x.least() < settled() && !of_x.full() && !ended_early()) {
+    const std::int32_t facet = of_x.where_least();
+    const Vec3 n = -body_.direction_from_y(body_.y().facets[facet].normal);
+    of_x.add(body_.point_to_y(body_.x().anchors[support(body_.x(), n).anchor]));
+    improve(of_x.depth(facet), n, Source::kFacetOfY, facet);
+  }
+  if (of_x.least() >= settled()) return lower_to(of_x.least());
+  const auto count = static_cast<std::int32_t>(body_.y().facets.size());
+  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
+    if (of_x.depth(i) >= settled()) {
+      lower_to(of_x.depth(i));
+    } else {
+      look_at_facet_of_y(i);
+    }
+  }
+}
+
+// Along the arc between two facets' normals h is no less than what one point of Y has at both.
+void DepthSearch::arcs(const DeepestPoints& of_y) noexcept {
+  if (of_y.count() == 1 && of_y.least() >= settled()) return;
+  for (const Edge& edge : body_.x().edges) {
+    if (ended_early()) return;
+    const auto settled_by = [&](std::int32_t at, std::int32_t other) {
+      const Facet& facet = body_.x().facets[other];
+      const double there = facet.offset - facet.normal.dot(of_y.point(at));
+      const double bound = std::min(of_y.depth(at), there);
+      if (!(bound >= settled())) return false;
+      lower_to(bound);
+      return true;
+    };
+    if (settled_by(edge.facet[0], edge.facet[1]) || settled_by(edge.facet[1], edge.facet[0])) {
+      continue;
+    }
+    arc_of(edge);
+  }
+}
+
+void DepthSearch::run_bounded() noexcept {
+  DeepestPoints of_y(body_.x()), of_x(body_.y());
+  facets_of_x(of_y);
+  facets_of_y(of_x);
+  arcs(of_y);
+}
+
 void DepthSearch::run() noexcept {
+  const auto fits = [](const ConvexPolyhedron& body) {
+    return body.bounded() && !body.facets.empty() && DeepestPoints::fits(body);
+  };
+  if (fits(body_.x()) && fits(body_.y())) return run_bounded();
   facets_of_x();
   facets_of_y();
   arcs();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/deepest_points.hpp"
 #include "core/difference_body.hpp"
 
 namespace clearance {
@@ -65,11 +66,19 @@ class DepthSearch {
   void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
   void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
 
+  // No facet or arc whose h is certain to be at least this can be better.
+  [[nodiscard]] double settled() const noexcept { return best_.height - steady_; }
+
   void look_at_facet_of_x(std::int32_t facet) noexcept;
   void look_at_facet_of_y(std::int32_t facet) noexcept;
   void facets_of_x() noexcept;
   void facets_of_y() noexcept;
   void arcs() noexcept;
+  void arc_of(const Edge& edge) noexcept;
+  void run_bounded() noexcept;
+  void facets_of_x(DeepestPoints& of_y) noexcept;
+  void facets_of_y(DeepestPoints& of_x) noexcept;
+  void arcs(const DeepestPoints& of_y) noexcept;
   void full_circle(const Edge& edge) noexcept;
 
   [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;

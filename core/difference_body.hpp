@@ -37,6 +37,9 @@ class DifferenceBody {
   [[nodiscard]] Vec3 point_from_y(const Vec3& p) const noexcept {
     return x_from_y_ * p + origin_of_y_;
   }
+  [[nodiscard]] Vec3 point_to_y(const Vec3& p) const noexcept {
+    return x_from_y_.transpose() * (p - origin_of_y_);
+  }
   // Between directions from X towards Y in X's frame and from A towards B in A's.
   [[nodiscard]] Vec3 to_common(const Vec3& n) const noexcept {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation * n)) : n;
@@ -51,10 +54,13 @@ class DifferenceBody {
     return x_is_b_ ? rotation.transposed() : rotation;
   }
 
+  // Of Y, farthest against n.
+  [[nodiscard]] Vec3 lowest_of_y(const Vec3& n) const noexcept {
+    return point_from_y(y_.anchors[support(y_, -direction_to_y(n)).anchor]);
+  }
   // A corner of the set that is farthest along n, of those that have `on_x` for their part of X.
   [[nodiscard]] Vec3 corner(const Vec3& on_x, const Vec3& n) const noexcept {
-    const Support of_y = support(y_, -(x_from_y_.transpose() * n));
-    return on_x - point_from_y(y_.anchors[of_y.anchor]);
+    return on_x - lowest_of_y(n);
   }
   // The same with a point of Y.
   [[nodiscard]] Vec3 corner_on_x(const Vec3& on_y, const Vec3& n) const noexcept {

@@ -47,6 +47,17 @@ void add_facet_sides(ConvexPolyhedron& body) {
   }
 }
 
+void add_planes(ConvexPolyhedron& body) {
+  const auto count = static_cast<std::int32_t>(body.facets.size());
+  body.planes.resize(body.facets.size());
+  for (std::int32_t i = 0; i < count; ++i) {
+    for (std::int32_t k = 0; k < 3; ++k) {
+      body.planes.set(0, count, i, k, body.facets[i].normal[k]);
+    }
+    body.planes.set(0, count, i, 3, body.facets[i].offset);
+  }
+}
+
 }  // namespace
 
 void add_walking_tables(ConvexPolyhedron& body) {
@@ -55,6 +66,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
   body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   add_outgoing(body);
   add_facet_sides(body);
+  add_planes(body);
   if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
     return;
   }
