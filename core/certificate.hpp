@@ -16,6 +16,8 @@ struct Separator {
   // Where it is exactly a facet's normal (A's, or minus B's), that facet: its offset is the
   // support.
   std::int32_t facet_of_a = kNone, facet_of_b = kNone;
+  // Where it is across an edge of each, those.
+  std::int32_t edge_of_a = kNone, edge_of_b = kNone;
 };
 
 class Separators {

@@ -38,7 +38,7 @@ struct Facet {
 // A straight edge x = point + s * direction, s in [0, length]; open-ended ones run to infinity.
 struct Edge {
   Vec3 point;  // where the edge starts (s = 0): its first vertex; on a full line, any point of it
-  Vec3 direction;          // unit
+  Vec3 direction;  // unit
   // Row k: unit, in the plane of facet[k], across the edge into that facet; zero for a segment. By
   // columns: as vector registers read both at once.
   Eigen::Matrix<double, 2, 3> inward;

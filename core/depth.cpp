@@ -128,7 +128,8 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
     } else if (of_y != kNone) {
       search.guess_facet_of_y(of_y);
     } else {
-      search.guess(body.from_common(guess->normal));
+      const std::int32_t edge_of_x = body.x_is_b() ? guess->edge_of_b : guess->edge_of_a;
+      search.guess(body.from_common(guess->normal), edge_of_x);
     }
   }
   if (!search.ended_early()) search.run();

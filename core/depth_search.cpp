@@ -44,12 +44,13 @@ std::size_t DepthSearch::cell(const Vec3& n) noexcept {
 
 void DepthSearch::improve(double height, const Vec3& n, Source source,
                           std::int32_t facet) noexcept {
-  if (!(height < best_.height - steady_)) return;
+  const bool held = steady_ > 0.0 && is_held(n);
+  if (!(height < best_.height - (held ? 0.0 : steady_))) return;
   best_ = {height, n, source, facet};
-  steady_ = 0.0;
+  if (!held) steady_ = 0.0;
 }
 
-void DepthSearch::guess(const Vec3& n) noexcept {
+void DepthSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
   if (may_rise(body_.x(), n, level_) || may_rise(body_.y(), -body_.direction_to_y(n), level_)) {
     return;
   }
@@ -59,6 +60,18 @@ void DepthSearch::guess(const Vec3& n) noexcept {
   corners_[slot] = corner;
   has_corner_[slot] = true;
   improve(corner.dot(n) + 2.0 * tight_, n, Source::kGuess, kNone);
+  if (edge_of_x == kNone || !body_.y().bounded()) return;
+  const Arc arc = across(body_.x().edges[edge_of_x]);
+  const Vec2 at = arc.project(n).stableNormalized();
+  if (!within(arc, at)) return;
+  hold(n);
+  (void)sample(arc, at);
+}
+
+bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
+  if (arc.edge.facet[0] == kNone) return true;
+  const Vec2 end = arc.project(body_.x().facets[arc.edge.facet[1]].normal);
+  return at.y() > 0.0 && at.x() * end.y() > at.y() * end.x();
 }
 
 void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
@@ -196,17 +209,23 @@ void DepthSearch::settle(const Arc& arc, Vec2 l, Vec2 r) noexcept {
   if (!ended_early()) split(arc, m, from_r);
 }
 
+DepthSearch::Arc DepthSearch::across(const Edge& edge) const noexcept {
+  if (edge.facet[0] == kNone) {
+    const Vec3 u = edge.direction.unitOrthogonal();
+    return {u, edge.direction.cross(u), edge.point, edge};
+  }
+  return {body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point, edge};
+}
+
 // A segment's only edge: all directions across it.
 void DepthSearch::full_circle(const Edge& edge) noexcept {
-  const Vec3 u = edge.direction.unitOrthogonal();
-  const Arc arc{u, edge.direction.cross(u), edge.point, edge};
   const std::array<Vec2, 5> quarters = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1),
                                         Vec2(1, 0)};
-  for (std::size_t i = 0; i < 4; ++i) settle(arc, quarters[i], quarters[i + 1]);
+  for (std::size_t i = 0; i < 4; ++i) settle(across(edge), quarters[i], quarters[i + 1]);
 }
 
 void DepthSearch::arc_of(const Edge& edge) noexcept {
-  const Arc arc{body_.x().facets[edge.facet[0]].normal, -edge.inward.row(0), edge.point, edge};
+  const Arc arc = across(edge);
   settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
 }
 

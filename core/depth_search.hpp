@@ -26,16 +26,17 @@ class DepthSearch {
     if (!body.y().bounded()) wide_ = body.wide_x_from_y();
   }
 
-  // Any unit n. Only a target to beat: what the facets and arcs have is found again there.
-  void guess(const Vec3& n) noexcept;
-  // Stays the best where others are no better than to rounding.
+  // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
+  // all on the arc of `edge_of_x`, unless that is kNone.
+  void guess(const Vec3& n, std::int32_t edge_of_x) noexcept;
+  // All of them stay the best where others are no better than to rounding.
   void guess_facet_of_x(std::int32_t facet) noexcept {
     look_at_facet_of_x(facet);
-    steady_ = 0.5 * tight_;
+    hold(best_.n);
   }
   void guess_facet_of_y(std::int32_t facet) noexcept {
     look_at_facet_of_y(facet);
-    steady_ = 0.5 * tight_;
+    hold(best_.n);
   }
   // Everything there is; stops early when the bodies turn out to be apart.
   void run() noexcept;
@@ -62,6 +63,16 @@ class DepthSearch {
     [[nodiscard]] double height() const noexcept { return corner.dot(at); }
   };
 
+  void hold(const Vec3& n) noexcept {
+    held_ = n;
+    steady_ = 0.5 * tight_;
+  }
+  // The direction guessed, as facets and arcs have it.
+  [[nodiscard]] bool is_held(const Vec3& n) const noexcept {
+    return (n - held_).squaredNorm() < kSame * kSame;
+  }
+  static constexpr double kSame = 0x1p-26;
+
   [[nodiscard]] double goal() const noexcept { return best_.height - tight_; }
   void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
   void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
@@ -80,6 +91,9 @@ class DepthSearch {
   void facets_of_y(DeepestPoints& of_x) noexcept;
   void arcs(const DeepestPoints& of_y) noexcept;
   void full_circle(const Edge& edge) noexcept;
+  [[nodiscard]] Arc across(const Edge& edge) const noexcept;
+  // Does a direction of the arc's plane lie between the normals of the edge's facets?
+  [[nodiscard]] bool within(const Arc& arc, const Vec2& at) const noexcept;
 
   [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
   // How a ray of Y rises over an arc: by rate.dot(at), off by at most `error`.
@@ -97,8 +111,9 @@ class DepthSearch {
 
   const DifferenceBody& body_;
   double tight_, level_;
-  WideRotation wide_;    // from Y's frame, where both are unbounded
-  double steady_ = 0.0;  // m: how much lower another h must be than the one guessed
+  WideRotation wide_;         // from Y's frame, where both are unbounded
+  Vec3 held_ = Vec3::Zero();  // the direction guessed
+  double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
 

@@ -51,7 +51,7 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
   const double sine = n.norm();
   if (!(sine > kCrossing)) return false;
   const double inwards = (e.inward * n).sum();
-  out = {n / (inwards > 0.0 ? -sine : sine)};
+  out = {n / (inwards > 0.0 ? -sine : sine), kNone, kNone, state.a.feature, state.b.feature};
   return true;
 }
 

@@ -15,10 +15,10 @@ inline constexpr double kNearlyUnit = 0x1p-28;
 
 // Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
 // s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. (Near 1, |q|^2 is off
-// by one ulp for its products, one for their two sums and one for the sum of those, and 2 - |q|^2 is
-// exact; or below 1, half an ulp for the last sum and one for 2 - |q|^2; 2^-55 is a quarter.) What
-// multiplies it is off by 3 in each entry, and the nine |entries| have a Frobenius norm of at most
-// 3: 9. The subtraction from 1 on the diagonal: 2.
+// by one ulp for its products, one for their two sums and one for the sum of those, and 2 - |q|^2
+// is exact; or below 1, half an ulp for the last sum and one for 2 - |q|^2; 2^-55 is a quarter.)
+// What multiplies it is off by 3 in each entry, and the nine |entries| have a Frobenius norm of at
+// most 3: 9. The subtraction from 1 on the diagonal: 2.
 inline constexpr double kMatrixError = 20 * kUlp;
 
 // Error of a Hamilton product: a component is four products in three roundings each, at most two

@@ -153,5 +153,46 @@ TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) {
                });
 }
 
+// Bars that lie on an edge and cross in the middle: as deep upwards as downwards, across two pairs
+// of edges each, and rounding says which is less.
+TEST(Witnesses, OfBarsThatCrossInTheMiddleMoveNoFasterThanTheBars) {
+  const Body bar =
+      hard::rotated(hard::box({1.0, 0.1, 0.1}), turn(Vec3::UnitX(), std::numbers::pi / 4));
+  const DistanceJudge judge(bar, bar);
+  const double reach = judge.b().bounding_radius;
+  const std::function<Pose(double)> crossings[] = {
+      [](double t) {
+        return Pose{Vec3::Zero(), turn(Vec3::UnitZ(), 1.5 + 0.5 * t)};
+      },
+      [](double t) {
+        return Pose{{0.3 * t, 0.2 * t, 0.0}, turn(Vec3::UnitZ(), 1.2)};
+      },
+      [](double t) {
+        return Pose{{0.2 * t, 0.1, 1e-16 * std::sin(kSwings * t)}, turn(Vec3::UnitZ(), 2.0)};
+      }};
+  for (const Quat& world : {Quat(1, 0, 0, 0), Quat(0.5, 0.5, 0.5, 0.5) * turn(kAslant, 0.7)}) {
+    for (const auto& crossing : crossings) {
+      TrackingState state;
+      DistanceResult last;
+      Pose before;
+      for (int k = 0; k < kSteps; ++k) {
+        const Pose at = crossing(2.0 * k / kSteps - 1.0);
+        const Pose now{world * at.position, world * at.orientation};
+        const DistanceResult r = judge.ask({Vec3::Zero(), world}, now, state);
+        EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+        if (k > 0) {
+          // The points of crossing edges run along both, by as much over the sine of their angle.
+          const double moved = (now.position - before.position).norm() +
+                               reach * now.orientation.angularDistance(before.orientation);
+          EXPECT_LE((r.point_on_a - last.point_on_a).norm(), 3.0 * moved + 1e-12) << "step " << k;
+          EXPECT_LE((r.normal - last.normal).norm(), 3.0 * moved + 1e-12) << "step " << k;
+        }
+        before = now;
+        last = r;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clearance
