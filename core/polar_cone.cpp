@@ -39,10 +39,6 @@ bool exactly_level(const Vec3& n, const Vec3& g) noexcept {
   return std::all_of(parts.begin(), parts.end(), [](double x) { return x == 0.0; });
 }
 
-bool along_axis(const Vec3& v, int axis) noexcept {
-  return axis >= 0 && v[axis] != 0.0 && v[(axis + 1) % 3] == 0.0 && v[(axis + 2) % 3] == 0.0;
-}
-
 double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }
 
 }  // namespace
@@ -72,7 +68,7 @@ bool PolarCone::collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
     c.own = ray.direction;
     c.rest = ray.rest;
     c.of_b = of_b;
-    c.known = ray.exact && (!of_b || rotation_.exact() || along_axis(c.own, rotation_.axis));
+    c.known = ray.exact && (!of_b || rotation_.keeps_bits_of(c.own));
     c.two_way = false;
   }
   return true;
@@ -112,17 +108,16 @@ bool PolarCone::holds_as_it_is(const Separator& s, const Vec3& n,
   if (s.facet_of_a != kNone) exact_n = a_.body().exact_normals[s.facet_of_a];
   if (s.facet_of_b != kNone) {
     const Vec3& own = b_.body().exact_normals[s.facet_of_b];
-    const bool stays = rotation_.exact() || along_axis(own, rotation_.axis);
+    const bool stays = rotation_.keeps_bits_of(own);
     exact_n = stays ? narrow(WideVec{} - rotation_ * wide(own)) : Vec3::Zero();
   }
+  const int axis_of_b = rotation_.axis_along(exact_n);
   const double margin = 4.0 * error_ + (facet ? 4.0 * kFacetError : 0.0);
   return std::all_of(level.items.begin(), level.items.begin() + level.size, [&](const auto& c) {
     const bool of_facets_body = facet && c.of_b == (s.facet_of_b != kNone);
     if (of_facets_body || c.slope < -margin) return true;
     if (exact_n.isZero(0.0)) return false;
-    if (c.of_b && along_axis(exact_n, rotation_.axis)) {
-      return c.own[rotation_.axis] == 0.0 && c.rest[rotation_.axis] == 0.0;
-    }
+    if (c.of_b && axis_of_b >= 0) return c.own[axis_of_b] == 0.0 && c.rest[axis_of_b] == 0.0;
     return c.known && exactly_level(exact_n, narrow(c.g));
   });
 }

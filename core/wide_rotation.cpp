@@ -38,13 +38,14 @@ struct FourProducts {
   [[nodiscard]] DoubleDouble sum() const noexcept {
     return (terms[0] + terms[1]) + (terms[2] + terms[3]);
   }
-  // Is it 0 for certain? Errors of sums are summed up again until nothing is left.
-  [[nodiscard]] bool exactly_zero() const noexcept {
-    std::array<double, 8> parts;
+  // Is it x for certain? Errors of sums are summed up again until nothing is left.
+  [[nodiscard]] bool is_exactly(double x) const noexcept {
+    std::array<double, 9> parts;
     for (std::size_t i = 0; i < 4; ++i) {
       parts[2 * i] = terms[i].low;
       parts[2 * i + 1] = terms[i].high;
     }
+    parts[8] = -x;
     for (std::size_t pass = 0; pass < parts.size(); ++pass) {
       for (std::size_t i = 1; i < parts.size(); ++i) {
         const DoubleDouble s = exact::sum(parts[i - 1], parts[i]);
@@ -52,7 +53,7 @@ struct FourProducts {
         parts[i - 1] = s.low;
       }
     }
-    return std::all_of(parts.begin(), parts.end(), [](double x) { return x == 0.0; });
+    return std::all_of(parts.begin(), parts.end(), [](double part) { return part == 0.0; });
   }
 };
 
@@ -77,19 +78,70 @@ std::array<WideVec, 3> matrix(const std::array<FourProducts, 4>& of) noexcept {
            {twice(x * z - w * y), twice(y * z + w * x), ((ww + zz) - (xx + yy)) / square}}};
 }
 
-// What is certain of the exact rotation: whether it is none at all, or about which axis it turns.
-void set_axis(const std::array<FourProducts, 4>& of, WideRotation& r) noexcept {
-  const std::array<bool, 3> zero = {of[0].exactly_zero(), of[1].exactly_zero(),
-                                    of[2].exactly_zero()};
-  if (zero[0] && zero[1] && zero[2]) {
-    r.rows = {wide(Vec3::UnitX()), wide(Vec3::UnitY()), wide(Vec3::UnitZ())};
-    r.error = 0.0;
-    return;
+// A component of the relative quaternion, and what is certain of it.
+struct Component {
+  double rounded;
+  bool zero, exact;
+
+  explicit Component(const FourProducts& of) noexcept
+      : rounded(static_cast<double>(of.sum())),
+        zero(of.is_exactly(0.0)),
+        exact(zero || (std::abs(rounded) > kSmallest && of.is_exactly(rounded))) {
+    if (zero) rounded = 0.0;
   }
-  for (int i = 0; i < 3; ++i) {
-    const auto next = static_cast<std::size_t>((i + 1) % 3);
-    if (zero[next] && zero[static_cast<std::size_t>((i + 2) % 3)]) r.axis = i;
+};
+using Components4 = std::array<Component, 4>;
+
+// Is i k + sign * j l = 0, for certain?
+bool cancel(const Component& i, const Component& k, double sign, const Component& j,
+            const Component& l) noexcept {
+  if ((i.zero || k.zero) && (j.zero || l.zero)) return true;
+  if (!i.exact || !k.exact || !j.exact || !l.exact) return false;
+  const DoubleDouble p = exact::product(i.rounded, k.rounded);
+  const DoubleDouble q = exact::product(j.rounded, l.rounded);
+  return p.high == -sign * q.high && p.low == -sign * q.low;
+}
+
+// Is an entry of the matrix 0, for certain?
+bool is_zero(const Components4& q, std::size_t row, std::size_t column) noexcept {
+  if (row != column) {
+    const double sign = column == (row + 1) % 3 ? -1.0 : 1.0;
+    return cancel(q[row], q[column], sign, q[3], q[3 - row - column]);
   }
+  FourProducts squares;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!q[k].exact) return false;
+    const DoubleDouble square = exact::product(q[k].rounded, q[k].rounded);
+    squares.terms[k] = k == row || k == 3 ? square : -square;
+  }
+  return squares.is_exactly(0.0);
+}
+
+DoubleDouble& entry(WideRotation& r, std::size_t row, std::size_t column) noexcept {
+  WideVec& of = r.rows[row];
+  return column == 0 ? of.x : column == 1 ? of.y : of.z;
+}
+
+// The axes that the exact rotation only exchanges: their entries are 0 and 1, whatever rounding has
+// made of them. If it does so with all three, there is no error left.
+void set_axes(const std::array<FourProducts, 4>& of, WideRotation& r) noexcept {
+  const Components4 q = {Component(of[0]), Component(of[1]), Component(of[2]), Component(of[3])};
+  int known = 0;
+  for (std::size_t column = 0; column < 3; ++column) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      const std::size_t next = (row + 1) % 3, last = (row + 2) % 3;
+      if (!is_zero(q, next, column) || !is_zero(q, last, column)) continue;
+      const double way = std::copysign(1.0, entry(r, row, column).high);
+      for (std::size_t k = 0; k < 3; ++k) {
+        entry(r, row, k) = 0.0;
+        entry(r, k, column) = 0.0;
+      }
+      entry(r, row, column) = way;
+      r.lands_on[column] = static_cast<int>(row);
+      ++known;
+    }
+  }
+  if (known == 3) r.error = 0.0;
 }
 
 // Somebody may have given the pose another rotation than its orientations have.
@@ -119,7 +171,7 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   WideRotation out;
   out.rows = matrix(of);
   out.error = kWideError;
-  if (digits_kept(a) && digits_kept(b)) set_axis(of, out);
+  if (digits_kept(a) && digits_kept(b)) set_axes(of, out);
   return agrees(out, pose) ? out : as_given;
 }
 

@@ -12,13 +12,27 @@ namespace clearance {
 struct WideRotation {
   std::array<WideVec, 3> rows;
   double error = 0.0;  // in the 2-norm
-  // The axis that the exact rotation turns about, if it is one of x, y, z (0, 1, 2); what lies
-  // along it stays, to the bit, and what stands across it stays across. -1: none, or not known.
-  int axis = -1;
+  // The axis of A (0, 1, 2) that B's x, y and z lie along for certain, either way: what lies along
+  // such an axis is turned to the bit, and what stands across it stays across. -1: none.
+  std::array<int, 3> lands_on{-1, -1, -1};
 
   [[nodiscard]] bool exact() const noexcept { return error == 0.0; }
+  // Is v, of frame B, turned to the bit?
+  [[nodiscard]] bool keeps_bits_of(const Vec3& v) const noexcept {
+    const int along = axis_of(v);
+    return exact() || (along >= 0 && lands_on[static_cast<std::size_t>(along)] >= 0);
+  }
+  // The axis of B that lies along n, of frame A; -1: none for certain.
+  [[nodiscard]] int axis_along(const Vec3& n) const noexcept {
+    const int along = axis_of(n);
+    for (int i = 0; i < 3; ++i) {
+      if (along >= 0 && lands_on[static_cast<std::size_t>(i)] == along) return i;
+    }
+    return -1;
+  }
   [[nodiscard]] WideRotation transposed() const noexcept {
-    WideRotation out = *this;
+    WideRotation out;
+    out.error = error;
     out.rows = {{{rows[0].x, rows[1].x, rows[2].x},
                  {rows[0].y, rows[1].y, rows[2].y},
                  {rows[0].z, rows[1].z, rows[2].z}}};
@@ -26,6 +40,15 @@ struct WideRotation {
   }
   [[nodiscard]] WideVec operator*(const WideVec& v) const noexcept {
     return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
+  }
+
+ private:
+  // The axis that v lies along, -1: none.
+  static int axis_of(const Vec3& v) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      if (v[i] != 0.0 && v[(i + 1) % 3] == 0.0 && v[(i + 2) % 3] == 0.0) return i;
+    }
+    return -1;
   }
 };
 

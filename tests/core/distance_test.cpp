@@ -148,6 +148,27 @@ TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
   EXPECT_LE(tilted.lower, 0.0);
 }
 
+TEST(Distance, OfColumnsWithoutEndIsThatOfTheirSections) {
+  std::vector<HalfSpace> rows;
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+    rows.push_back({n, 0.5});
+  }
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  const double quarter = std::numbers::pi / 4;
+  for (const double angle : {quarter, 3 * quarter, -quarter}) {
+    Pose pose = turned({3, 0, 17}, angle, Vec3::UnitZ());
+    pose.orientation.coeffs() *= 3.0;
+    expect_distance(ask(column, column, pose), 2.5 - std::sqrt(0.5), 20.0);
+  }
+  // Along a wall that stands on its side, the column still turned about itself.
+  const ConvexPolyhedron wall = half_space(Vec3(0, 0, 1), 0.5);
+  TrackingState state;
+  const Pose on_its_side{Vec3::Zero(), Eigen::Quaterniond(1, 1, 0, 0)};  // z becomes -y
+  const Pose beside = turned({1, -3, 5}, quarter, Vec3::UnitZ());
+  expect_distance(distance(wall, column, relative_pose(on_its_side, beside), state),
+                  2.5 - std::sqrt(0.5), 20.0);
+}
+
 TEST(Distance, OfPointsIsEuclid) {
   const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
   const DistanceResult r = ask(p, q, at(2, 3, 6));
