@@ -136,6 +136,7 @@ UrdfRobot read_robot(const std::filesystem::path& file) {
   UrdfRobot robot;
   robot.name = xml.attribute(root, "name");
   std::set<std::string> names, children;
+  bool any_shape = false;
   for (const XMLElement* at = root.FirstChildElement("link"); at;
        at = at->NextSiblingElement("link")) {
     UrdfLink link{xml.attribute(*at, "name"), {}};
@@ -145,7 +146,11 @@ UrdfRobot read_robot(const std::filesystem::path& file) {
          part = part->NextSiblingElement("collision")) {
       link.collisions.push_back(read_collision(xml, *part));
     }
+    any_shape = any_shape || !link.collisions.empty();
     robot.links.push_back(std::move(link));
+  }
+  if (!any_shape) {
+    xml.refuse(root, "found no link with a collision shape; expected a robot to keep apart");
   }
   for (const XMLElement* at = root.FirstChildElement("joint"); at;
        at = at->NextSiblingElement("joint")) {

@@ -44,7 +44,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--catalogue", arguments.topics.catalogue, "Topic name")->capture_default_str();
   app.add_option("--health", arguments.topics.health, "Topic name")->capture_default_str();
   app.add_option("--zones", arguments.topics.zones, "Topic name")->capture_default_str();
-  arguments.dds.add_to(app);
+  arguments.dds.add_to(app, false);
   app.footer(kFooter);
 }
 

@@ -1,5 +1,8 @@
 #include "monitor/daemon/dds.hpp"
 
+#include <netdb.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <mutex>
@@ -89,7 +92,21 @@ std::string describe(const DdsOptions& options) {
          ", interface " + options.interface;
 }
 
+// "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
+std::string host_of(const std::string& peer) {
+  if (peer.starts_with('[')) return peer.substr(1, peer.find(']') - 1);
+  const bool has_port = std::count(peer.begin(), peer.end(), ':') == 1;
+  return has_port ? peer.substr(0, peer.find(':')) : peer;
+}
+
 }  // namespace
+
+bool can_be_looked_up(const std::string& peer) {
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host_of(peer).c_str(), nullptr, nullptr, &found) != 0) return false;
+  freeaddrinfo(found);
+  return true;
+}
 
 DdsError::DdsError(const std::string& attempted, dds_return_t code)
     : std::runtime_error("DDS: " + attempted + " failed: " + dds_strretcode(code)) {}

@@ -21,6 +21,9 @@ class DdsError : public std::runtime_error {
 // Passes a handle or count through. Throws DdsError when it is negative.
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 
+// Whether a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
+[[nodiscard]] bool can_be_looked_up(const std::string& peer);
+
 struct DdsOptions {
   std::uint32_t domain = 0;             // 0 to 232
   std::string partition = "";           // empty: the default one

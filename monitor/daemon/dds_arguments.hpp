@@ -16,11 +16,14 @@ struct DdsArguments {
   std::optional<std::string> partition;  // not given: the cell's
   DdsOptions options;
 
-  void add_to(CLI::App& app) {
-    app.add_option("--domain", domain, "DDS domain; otherwise the cell's, or 0")
+  // `has_cell`: the program takes a cell, which says what is not given.
+  void add_to(CLI::App& app, bool has_cell = true) {
+    app.add_option("--domain", domain,
+                   has_cell ? "DDS domain; otherwise the cell's, or 0" : "DDS domain; otherwise 0")
         ->check(CLI::Range(0, 232));
     app.add_option("--partition", partition,
-                   "DDS partition; otherwise the cell's, or the default one")
+                   has_cell ? "DDS partition; otherwise the cell's, or the default one"
+                            : "DDS partition; otherwise the default one")
         ->check([](const std::string& name) {
           return is_partition(name) ? std::string()
                                     : "found '" + name +
@@ -30,7 +33,12 @@ struct DdsArguments {
     app.add_option("--interface", options.interface,
                    "Network interface; lo keeps everything on this machine")
         ->capture_default_str();
-    app.add_option("--peer", options.peers, "Address of another machine to look for; repeatable");
+    app.add_option("--peer", options.peers, "Address of another machine to look for; repeatable")
+        ->check([](const std::string& peer) {
+          return can_be_looked_up(peer)
+                     ? std::string()
+                     : "found '" + peer + "'; expected the address or the name of a machine";
+        });
   }
 
   [[nodiscard]] DdsOptions resolve(std::uint32_t cell_domain,

@@ -44,8 +44,15 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body) {
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
+  app.set_version_flag("--version", "clearance " CLEARANCE_VERSION);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // A mistyped option is often why something else is missing.
+    const std::vector<std::string> unknown = app.remaining(true);
+    if (!unknown.empty()) std::fprintf(stderr, "%s\n", CLI::ExtrasError("", unknown).what());
+    app.exit(error);
+    return kUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsage;
   }

@@ -28,7 +28,7 @@ enum ExitCode : int {
 // not look at them releases them.
 [[nodiscard]] int run_program(const char* name, const std::function<int(StopSignal&)>& body);
 
-// The exit code when there is nothing more to do: --help, or wrong usage.
+// Adds --version. The exit code when there is nothing more to do: --help, --version or wrong usage.
 [[nodiscard]] std::optional<int> parse(CLI::App& app, int argc, char** argv);
 
 // The scene, or nothing after every error in the cell has gone to stderr, a line each.

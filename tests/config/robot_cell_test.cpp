@@ -157,6 +157,8 @@ TEST_F(RobotCellFile, FaultsNameFileAndLine) {
   EXPECT_THAT(with("little_description/", "unknown/"),
               HasSubstr("expected --package unknown=DIRECTORY"));
   EXPECT_THAT(with("</robot>", ""), HasSubstr("not readable as XML"));
+  write("little_description/urdf/little.urdf", "<robot name=\"little\"><link name=\"l\"/></robot>");
+  EXPECT_THAT(fault(), HasSubstr("little.urdf:1: found no link with a collision shape"));
 }
 
 TEST_F(RobotCellFile, NewerSrdfIsRefusedRatherThanMisread) {

@@ -219,6 +219,16 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   EXPECT_EQ(nothing.wait(), 2);
   ChildProcess unknown(test::kDaemon, {"cell.yaml", "--nosuchoption"});
   EXPECT_EQ(unknown.wait(), 2);
+  ChildProcess both(test::kDaemon, {"--nosuchoption"});
+  EXPECT_EQ(both.wait(), 2);
+  EXPECT_TRUE(both.wrote("--nosuchoption")) << both.output();
+  EXPECT_TRUE(both.wrote("CELL is required")) << both.output();
+  ChildProcess peer(test::kDaemon, {"cell.yaml", "--peer", "not an address"});
+  EXPECT_EQ(peer.wait(), 2);
+  EXPECT_TRUE(peer.wrote("'not an address'")) << peer.output();
+  ChildProcess version(test::kDaemon, {"--version"});
+  EXPECT_EQ(version.wait(), 0);
+  EXPECT_TRUE(version.wrote("clearance ")) << version.output();
   const test::CellFile cell(test::small_cell("small"));
   ChildProcess interface(test::kDaemon, {cell.path(), "--interface", "nosuch0"});
   EXPECT_EQ(interface.wait(), 4);

@@ -181,6 +181,9 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   ASSERT_EQ(0, record_log());
   EXPECT_EQ(1, record_log());
   EXPECT_THAT(output, HasSubstr("run.mcap is there already; --force writes over it"));
+  EXPECT_EQ(1, replay({"--csv", path("nowhere/table.csv"), "-o", path("again.mcap")}));
+  EXPECT_THAT(output, HasSubstr("cannot create " + path("nowhere/table.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "again.mcap")) << "replayed in vain";
   write_text(folder / "cell.yaml", "nmae: x\n");
   EXPECT_EQ(3, replay({}));
   EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));

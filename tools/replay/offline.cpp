@@ -81,6 +81,10 @@ int replay_in(Scene& scene, const ReplayArguments& arguments) {
   std::optional<ReportCsv> csv;
   if (!arguments.out.empty()) out.emplace(arguments.out, scene);
   if (!arguments.csv.empty()) csv.emplace(arguments.csv, scene, !arguments.published);
+  if (csv && !csv->error().empty()) {
+    say(csv->error());
+    return kFailed;
+  }
 
   ProgressBar bar(arguments.progress);
   OfflineReplayOptions options = options_of(arguments);
