@@ -217,13 +217,14 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const LaneMask on_first = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
   const LaneMask on_second =
       hn::And(hn::Gt(t, at.lanes(kSecond + 6)), hn::Lt(t, at.lanes(kSecond + 7)));
-  const Lanes sine = hn::Sqrt(sine2);
-  const Lanes apart = hn::Div(dot(between, n), sine);
-  c.normal = over(n, hn::CopySignToAbs(sine, apart));
-  const Points m = rotate_back(pose.rotation, c.normal);
-  const Lanes on_a = Beside<false>{at, kInwardRow}.greatest_of_two(c.normal);
-  const Lanes on_b = Beside<true>{at, kSecond + kInwardRow}.least_of_two(m);
-  const LaneMask falls = hn::And(hn::Lt(on_a, all(-kCertainRate)), hn::Gt(on_b, all(kCertainRate)));
+  const Lanes sine = hn::Sqrt(sine2), certain = hn::Mul(all(kCertainRate), sine);
+  const Lanes apart = dot(between, n);
+  const Points g = times(hn::CopySign(all(1.0), apart), n);
+  const Lanes on_a = Beside<false>{at, kInwardRow}.greatest_of_two(g);
+  const Lanes on_b =
+      Beside<true>{at, kSecond + kInwardRow}.least_of_two(rotate_back(pose.rotation, g));
+  const LaneMask falls = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
+  c.normal = over(g, sine);
   c.holds =
       hn::And(hn::And(hn::Gt(sine2, all(kCrossingSine2)), falls), hn::And(on_first, on_second));
   c.point_a = first + times(s, e);
@@ -232,7 +233,7 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   c.apart = norm(c.point_b - c.point_a);
   const Lanes tilt = hn::Add(hn::Mul(at.common(kReachA), hn::Abs(dot(c.normal, e))),
                              hn::Mul(at.common(kReachB), hn::Abs(dot(c.normal, f))));
-  c.proved = hn::Sub(hn::Abs(apart), hn::Mul(all(2.0), tilt));
+  c.proved = hn::Sub(hn::Div(hn::Abs(apart), sine), hn::Mul(all(2.0), tilt));
   return c;
 }
 

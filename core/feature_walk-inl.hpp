@@ -74,11 +74,11 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
   const Quad across = cross(from_start, e), g = cross(e, across);
   const double apart = norm(across), limit = -kCertainRate * apart;
   const double length = HWY_UNLIKELY(apart < kSlender * std::abs(s)) ? norm(g) : apart;
-  const double side = steepest_side(edge, g);
   const Quad back = -o.direction_out(g);
-  if (!(side < limit)) {
+  if (!sides_fall(edge, g, limit)) {
     rises_beside(edge, g, limit, o.on_owner());
-    if (side > -limit) return Step::kMoved;
+    const Pair rates = side_rates(edge, g);
+    if (std::max(rates[0], rates[1]) > -limit) return Step::kMoved;
     to_level(o.other(), o.on_other(), vec3(back), limit);
     return o.w.levelled();
   }
@@ -146,22 +146,22 @@ HWY_INLINE Step edge_edge(Walk& w) {
   const double t = (cosine * along_e - dot(between, f)) / sine2;
   const double s = along_e + cosine * t;
   if (beyond_end(first, s, w.on_a) || beyond_end(second, t, w.on_b)) return Step::kMoved;
-  const double sine = std::sqrt(sine2), apart = dot(between, n) / sine;
-  w.normal = n / spread(std::copysign(sine, apart));
-  const Quad m = direction_to_b(w.a_from_b, w.normal);
-  const double on_a = steepest_side(first, w.normal), on_b = steepest_side(second, -m);
-  if (HWY_UNLIKELY(!(on_a < -kCertainRate) || !(on_b < -kCertainRate))) {
-    rises_beside(first, w.normal, -kCertainRate, w.on_a);
-    rises_beside(second, -m, -kCertainRate, w.on_b);
+  const double sine = std::sqrt(sine2), limit = -kCertainRate * sine, apart = dot(between, n);
+  const Quad g = with_signs(n, spread(std::copysign(0.0, apart)));
+  const Quad back = -direction_to_b(w.a_from_b, g);
+  if (HWY_UNLIKELY(!sides_fall(first, g, limit) || !sides_fall(second, back, limit))) {
+    rises_beside(first, g, limit, w.on_a);
+    rises_beside(second, back, limit, w.on_b);
     return w.levelled();
   }
+  w.normal = g / spread(sine);
   w.point_a = start_a + s * e;
   w.own_b = own_start_b + t * own_f;
   w.point_b = start_b + t * f;
   w.apart = norm(w.point_b - w.point_a);
   // Along an edge the body may reach farther by what rounding tilts the normal.
-  w.proved = std::abs(apart) - 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
-                                      w.b.bounding_radius * std::abs(dot(w.normal, f)));
+  w.proved = std::abs(apart) / sine - 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
+                                             w.b.bounding_radius * std::abs(dot(w.normal, f)));
   return Step::kHolds;
 }
 
@@ -211,8 +211,8 @@ HWY_INLINE WalkEnd conclude(Walk& w) {
   w.slack = p.slack;
   w.on_a.point = vec3(w.point_a);
   w.on_b.point = vec3(w.own_b);
-  const bool tight = w.proved == w.apart || w.apart - w.proved <= p.tight;
-  return tight && w.proved > p.slack ? WalkEnd::kProved : WalkEnd::kSettled;
+  const bool proved = w.proved > p.slack && w.apart - w.proved <= p.tight;
+  return proved ? WalkEnd::kProved : WalkEnd::kSettled;
 }
 
 HWY_INLINE WalkEnd walk(Walk& w) {

@@ -32,9 +32,9 @@ HWY_INLINE double lost_by_tilt(const Walk& w, double tilt) {
 // From an edge to the facet beside it that rises along g, or is level; false: both fall.
 HWY_INLINE bool rises_beside(const Edge& edge, Quad g, double limit, Side& side) {
   if (edge.facet[0] == kNone) return false;
-  const SideRates rates = side_rates(edge, g);
-  if (rates.steeper() < limit) return false;
-  to_facet(side, edge.facet[rates.left == rates.steeper() ? 0 : 1]);
+  const Pair rates = side_rates(edge, g);
+  if (rates[0] < limit && rates[1] < limit) return false;
+  to_facet(side, edge.facet[rates[0] >= rates[1] ? 0 : 1]);
   return true;
 }
 

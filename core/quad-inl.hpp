@@ -118,6 +118,14 @@ HWY_INLINE Pair load2(const double* p) {
   return a;
 }
 
+HWY_INLINE bool both_less(Pair a, Pair b) {
+#if HWY_ARCH_X86
+  return __builtin_ia32_movmskpd(Pair(a < b)) == 3;
+#else
+  return a[0] < b[0] && a[1] < b[1];
+#endif
+}
+
 HWY_INLINE Quad yzx(Quad a) { return pick<1, 2, 0, 3>(a); }
 HWY_INLINE Quad zxy(Quad a) { return pick<2, 0, 1, 3>(a); }
 HWY_INLINE Quad cross(Quad a, Quad b) { return yzx(a) * zxy(b) - zxy(a) * yzx(b); }

@@ -110,21 +110,16 @@ HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
   return steepest(body, vertex, vec3(g));
 }
 
-// How fast the facets beside an edge, left and right, rise along g.
-struct SideRates {
-  double left, right;
-  [[nodiscard]] HWY_INLINE double steeper() const { return std::max(left, right); }
-};
-HWY_INLINE SideRates side_rates(const Edge& edge, Quad g) {
+// How fast the facets beside an edge, left and right, rise along g; a segment's only edge has none.
+HWY_INLINE Pair side_rates(const Edge& edge, Quad g) {
   const double* inward = edge.inward.data();
-  const Pair rates = (load2(inward) * pair(lane(g, 0)) + load2(inward + 2) * pair(lane(g, 1))) +
-                     load2(inward + 4) * pair(lane(g, 2));
-  return {rates[0], rates[1]};
+  return (load2(inward) * pair(lane(g, 0)) + load2(inward + 2) * pair(lane(g, 1))) +
+         load2(inward + 4) * pair(lane(g, 2));
 }
 
-// The faster of the two; a segment's only edge has no facets.
-HWY_INLINE double steepest_side(const Edge& edge, Quad g) {
-  return edge.facet[0] == kNone ? -kInfinity : side_rates(edge, g).steeper();
+// Do both fall away along g, by more than -limit per unit length?
+HWY_INLINE bool sides_fall(const Edge& edge, Quad g, double limit) {
+  return edge.facet[0] == kNone || both_less(side_rates(edge, g), pair(limit));
 }
 
 // One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
