@@ -91,8 +91,8 @@ std::string tick_tables(const Figures& figures) {
   add_rows(figures, "tick/", cells);
   add_rows(figures, "sweep/", sweeps);
   return "Thread CPU time of one tick; multiples are of our median in the same run. Arithmetic: "
-         "multiplications in registers that take as long as the median tick, timed after each "
-         "tick; what is slow there is the machine. Plain: every "
+         "multiplications in registers that take as long as the median tick, timed as often "
+         "right after the ticks; what is slow there is the machine. Plain: every "
          "pair evaluated in every tick; not run where that takes seconds. FCL: "
          "DynamicAABBTreeCollisionManager::distance, which gives the minimum over all pairs and "
          "nothing else; its error is against our proved minimum.\n\n" +
