@@ -76,7 +76,11 @@ HWY_INLINE Lanes two_over_square(const Quaternions& q) {
   const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
   const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
   if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
-  return hn::IfThenElse(unit, of_unit, hn::Div(two, square));
+  // Out of range: no number, so that the lane fails.
+  const LaneMask fits =
+      hn::And(hn::Ge(square, all(kLeastSquare)), hn::Le(square, all(kMostSquare)));
+  const Lanes other = hn::IfThenElse(fits, hn::Div(two, square), hn::NaN(Tag()));
+  return hn::IfThenElse(unit, of_unit, other);
 }
 
 HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {

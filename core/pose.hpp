@@ -34,6 +34,9 @@ struct Twist {
 // Pose of an object whose frame is `inner` as placed in `outer`: outer_from_inner.
 [[nodiscard]] Pose compose(const Pose& outer, const Pose& inner) noexcept;
 
+// The same pose by a quaternion of a length between 1 and 4.
+[[nodiscard]] Pose rescaled(const Pose& pose) noexcept;
+
 // A point of the object's frame, in the world.
 [[nodiscard]] Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
 

@@ -54,11 +54,20 @@ HWY_INLINE Quad relative(Quad a, Quad b) {
 
 // 2 / |q|^2, of any non-zero quaternion: what makes rotations of it without a square root. Of unit
 // quaternions to a dozen digits without a division: kMatrixError says why.
-HWY_INLINE double two_over_square(Quad q) {
+HWY_INLINE double square_of(Quad q) {
   const Quad s = q * q;
-  const double square = (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
+  return (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
+}
+HWY_INLINE double two_over_square(Quad q) {
+  const double square = square_of(q);
   if (HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit)) return 2.0 * (2.0 - square);
   return 2.0 / square;
+}
+
+HWY_INLINE bool is_out_of_range(Quad q) {
+  const double square = square_of(q);
+  return HWY_UNLIKELY(!(std::abs(square - 1.0) <= kNearlyUnit)) &&
+         !(square >= kLeastSquare && square <= kMostSquare);
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.
@@ -87,9 +96,21 @@ HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativeQuads& r) {
   if (exact.translation) r.translation_error = kPermutedTranslationError * r.apart;
 }
 
+template <bool kRescaled = false>
+HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b);
+
+inline HWY_NOINLINE RelativeQuads rescaled_quads(const Pose& world_from_a,
+                                                 const Pose& world_from_b) {
+  return relative_quads<true>(rescaled(world_from_a), rescaled(world_from_b));
+}
+
+template <bool kRescaled>
 HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b) {
   const Quad a = load4(world_from_a.orientation.coeffs().data());
   const Quad q = relative(a, load4(world_from_b.orientation.coeffs().data()));
+  if (!kRescaled && (is_out_of_range(a) || is_out_of_range(q))) {
+    return rescaled_quads(world_from_a, world_from_b);
+  }
   const Quad between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
   RelativeQuads r;
   set_rotation(q, r);

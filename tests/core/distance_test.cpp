@@ -169,6 +169,25 @@ TEST(Distance, OfColumnsWithoutEndIsThatOfTheirSections) {
                   2.5 - std::sqrt(0.5), 20.0);
 }
 
+TEST(Distance, IsTheSameForQuaternionsOfAnyLength) {
+  const Pose pose_a = turned({1, 2, 3}, 0.3, {1, 2, 2}), pose_b = turned({4, 2, 2}, 1.2, {0, 1, 3});
+  TrackingState state;
+  const double expected = distance(cube(), cube(), pose_a, pose_b, state).distance;
+  for (const double length : {1e-307, 1e-200, 1e-100, 1e-77, 1e77, 1e100, 1e200, 1e307}) {
+    for (const double other : {length, 1.0, 1.0 / length}) {
+      Pose long_a = pose_a, long_b = pose_b;
+      long_a.orientation.coeffs() *= length;
+      long_b.orientation.coeffs() *= other;
+      TrackingState fresh;
+      const DistanceResult r = distance(cube(), cube(), long_a, long_b, fresh);
+      EXPECT_NEAR(r.distance, expected, 10 * kRounding);
+      EXPECT_LE(r.upper - r.lower, 20 * kRounding);
+      EXPECT_LT((transform(long_b, Vec3(1, 2, 3)) - transform(pose_b, Vec3(1, 2, 3))).norm(),
+                1e-14);
+    }
+  }
+}
+
 TEST(Distance, OfPointsIsEuclid) {
   const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
   const DistanceResult r = ask(p, q, at(2, 3, 6));
