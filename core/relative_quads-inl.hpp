@@ -52,22 +52,25 @@ HWY_INLINE Quad relative(Quad a, Quad b) {
          (spread(lane(b, 2)) * by_z + spread(lane(b, 3)) * by_w);
 }
 
-// 2 / |q|^2, of any non-zero quaternion: what makes rotations of it without a square root. Of unit
-// quaternions to a dozen digits without a division: kMatrixError says why.
 HWY_INLINE double square_of(Quad q) {
   const Quad s = q * q;
   return (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
 }
-HWY_INLINE double two_over_square(Quad q) {
-  const double square = square_of(q);
-  if (HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit)) return 2.0 * (2.0 - square);
-  return 2.0 / square;
+HWY_INLINE bool nearly_unit(double square) {
+  return HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit);
 }
 
+// 2 / |q|^2, of any quaternion in range: what makes rotations of it without a square root. Of unit
+// quaternions to a dozen digits without a division: kMatrixError says why.
+HWY_INLINE double two_over_square(Quad q) {
+  const double square = square_of(q);
+  return nearly_unit(square) ? 2.0 * (2.0 - square) : 2.0 / square;
+}
+
+// Do its square or the products made of it overflow or lose digits?
 HWY_INLINE bool is_out_of_range(Quad q) {
   const double square = square_of(q);
-  return HWY_UNLIKELY(!(std::abs(square - 1.0) <= kNearlyUnit)) &&
-         !(square >= kLeastSquare && square <= kMostSquare);
+  return !nearly_unit(square) && !(square >= kLeastSquare && square <= kMostSquare);
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.

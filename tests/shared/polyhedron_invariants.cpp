@@ -99,10 +99,10 @@ class Inspection {
       expect(edge.facet[0] != edge.facet[1], "an edge separates two facets", e);
       check_edge_in_facet(edge, left, left.normal.cross(edge.direction), edge.inward.row(0), e);
       check_edge_in_facet(edge, right, edge.direction.cross(right.normal), edge.inward.row(1), e);
-      expect(edge.inward.row(0).dot(right.normal) <= 0x1p-51, "the left facet is below the right plane",
-             e);
-      expect(edge.inward.row(1).dot(left.normal) <= 0x1p-51, "the right facet is below the left plane",
-             e);
+      expect(edge.inward.row(0).dot(right.normal) <= 0x1p-51,
+             "the left facet is below the right plane", e);
+      expect(edge.inward.row(1).dot(left.normal) <= 0x1p-51,
+             "the right facet is below the left plane", e);
     }
   }
 
