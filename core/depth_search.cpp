@@ -240,6 +240,20 @@ void DepthSearch::arcs() noexcept {
   }
 }
 
+// Those of a body's facets that the points leave unsettled are looked at one by one.
+void DepthSearch::look_at_unsettled(const DeepestPoints& points, std::size_t facets,
+                                    void (DepthSearch::*look_at)(std::int32_t) noexcept) noexcept {
+  if (points.least() >= settled()) return lower_to(points.least());
+  const auto count = static_cast<std::int32_t>(facets);
+  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
+    if (points.depth(i) >= settled()) {
+      lower_to(points.depth(i));
+    } else {
+      (this->*look_at)(i);
+    }
+  }
+}
+
 // Y's lowest point along the best direction so far is mostly deeper below all other facets of X
 // than below that one: then it settles them all, and all arcs. Where not, the facet that it is
 // least deep below has its say, and its lowest point of Y is one more to look at.
@@ -251,15 +265,7 @@ void DepthSearch::facets_of_x(DeepestPoints& of_y) noexcept {
     of_y.add(body_.lowest_of_y(n));
     improve(of_y.depth(facet), n, Source::kFacetOfX, facet);
   }
-  if (of_y.least() >= settled()) return lower_to(of_y.least());
-  const auto count = static_cast<std::int32_t>(body_.x().facets.size());
-  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
-    if (of_y.depth(i) >= settled()) {
-      lower_to(of_y.depth(i));
-    } else {
-      look_at_facet_of_x(i);
-    }
-  }
+  look_at_unsettled(of_y, body_.x().facets.size(), &DepthSearch::look_at_facet_of_x);
 }
 
 // The same, in Y's frame. X's middle settles those of Y that lie on its far side.
@@ -271,15 +277,7 @@ void DepthSearch::facets_of_y(DeepestPoints& of_x) noexcept {
     of_x.add(body_.point_to_y(body_.x().anchors[support(body_.x(), n).anchor]));
     improve(of_x.depth(facet), n, Source::kFacetOfY, facet);
   }
-  if (of_x.least() >= settled()) return lower_to(of_x.least());
-  const auto count = static_cast<std::int32_t>(body_.y().facets.size());
-  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
-    if (of_x.depth(i) >= settled()) {
-      lower_to(of_x.depth(i));
-    } else {
-      look_at_facet_of_y(i);
-    }
-  }
+  look_at_unsettled(of_x, body_.y().facets.size(), &DepthSearch::look_at_facet_of_y);
 }
 
 // Along the arc between two facets' normals h is no less than what one point of Y has at both.

@@ -87,6 +87,8 @@ class DepthSearch {
   void arcs() noexcept;
   void arc_of(const Edge& edge) noexcept;
   void run_bounded() noexcept;
+  void look_at_unsettled(const DeepestPoints& points, std::size_t facets,
+                         void (DepthSearch::*look_at)(std::int32_t) noexcept) noexcept;
   void facets_of_x(DeepestPoints& of_y) noexcept;
   void facets_of_y(DeepestPoints& of_x) noexcept;
   void arcs(const DeepestPoints& of_y) noexcept;

@@ -6,7 +6,9 @@
 // 1e140.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace clearance {
 
@@ -47,6 +49,26 @@ constexpr DoubleDouble product(double a, double b) noexcept {
 }  // namespace exact
 
 constexpr DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
+
+namespace exact {
+
+// Do these add up to zero for certain? Errors of sums are summed up again until nothing is left.
+template <std::size_t kCount>
+constexpr bool sum_is_zero(std::array<double, kCount> parts) noexcept {
+  for (std::size_t pass = 0; pass < kCount; ++pass) {
+    for (std::size_t i = 1; i < kCount; ++i) {
+      const DoubleDouble s = sum(parts[i - 1], parts[i]);
+      parts[i] = s.high;
+      parts[i - 1] = s.low;
+    }
+  }
+  for (const double part : parts) {
+    if (part != 0.0) return false;
+  }
+  return true;
+}
+
+}  // namespace exact
 
 constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) noexcept {
   const DoubleDouble s = exact::sum(a.high, b.high), t = exact::sum(a.low, b.low);

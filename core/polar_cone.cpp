@@ -29,14 +29,7 @@ bool exactly_level(const Vec3& n, const Vec3& g) noexcept {
     parts[static_cast<std::size_t>(2 * i)] = p.low;
     parts[static_cast<std::size_t>(2 * i + 1)] = p.high;
   }
-  for (std::size_t pass = 0; pass < parts.size(); ++pass) {
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-      const DoubleDouble s = exact::sum(parts[i - 1], parts[i]);
-      parts[i] = s.high;
-      parts[i - 1] = s.low;
-    }
-  }
-  return std::all_of(parts.begin(), parts.end(), [](double x) { return x == 0.0; });
+  return exact::sum_is_zero(parts);
 }
 
 double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }

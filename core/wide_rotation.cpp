@@ -38,7 +38,7 @@ struct FourProducts {
   [[nodiscard]] DoubleDouble sum() const noexcept {
     return (terms[0] + terms[1]) + (terms[2] + terms[3]);
   }
-  // Is it x for certain? Errors of sums are summed up again until nothing is left.
+  // Is it x for certain?
   [[nodiscard]] bool is_exactly(double x) const noexcept {
     std::array<double, 9> parts;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -46,14 +46,7 @@ struct FourProducts {
       parts[2 * i + 1] = terms[i].high;
     }
     parts[8] = -x;
-    for (std::size_t pass = 0; pass < parts.size(); ++pass) {
-      for (std::size_t i = 1; i < parts.size(); ++i) {
-        const DoubleDouble s = exact::sum(parts[i - 1], parts[i]);
-        parts[i] = s.high;
-        parts[i - 1] = s.low;
-      }
-    }
-    return std::all_of(parts.begin(), parts.end(), [](double part) { return part == 0.0; });
+    return exact::sum_is_zero(parts);
   }
 };
 

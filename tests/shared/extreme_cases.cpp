@@ -8,8 +8,6 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-constexpr double kPi = std::numbers::pi;
-
 Quat about(const Vec3& axis, double angle) {
   return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
 }
@@ -34,7 +32,7 @@ Body column(Random& random, bool plain) {
     default: {  // prism
       const int sides = random.integer(3, 9);
       for (int k = 0; k < sides; ++k) {
-        const double azimuth = 2 * kPi * k / sides;
+        const double azimuth = 2 * std::numbers::pi * k / sides;
         out.rows.push_back({Vec3(std::cos(azimuth), std::sin(azimuth), 0), 0.5});
       }
       if (random.chance(0.3)) out.rows.push_back({Vec3(0, 0, 1), 1.0});
@@ -103,11 +101,11 @@ HardCase crossed_bars(Random& random) {
   const auto bar = [&] {
     const double width = random.chance(0.5) ? 0.1 : random.log_uniform(1e-3, 0.3);
     return rotated(box({1.0, width, width}),
-                   about(Vec3::UnitX(), random.chance(0.7) ? kPi / 4 : 0.0));
+                   about(Vec3::UnitX(), random.chance(0.7) ? std::numbers::pi / 4 : 0.0));
   };
   Body a = bar(), b = random.chance(0.5) ? a : bar();
   HardCase c{"", std::move(a), std::move(b), {}, {}};
-  const double turn = random.chance(0.5) ? kPi / 2 : random.uniform(0.01, 3.0);
+  const double turn = random.chance(0.5) ? std::numbers::pi / 2 : random.uniform(0.01, 3.0);
   c.pose_b.orientation = about(Vec3::UnitZ(), turn);
   c.pose_b.position.z() = random.chance(0.3) ? 0.0 : random.log_uniform(1e-16, 0.3);
   if (random.chance(0.4)) {
