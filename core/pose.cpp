@@ -9,10 +9,7 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-bool squares_fit(const Quat& q) noexcept {
-  const double square = q.squaredNorm();
-  return square >= kLeastSquare && square <= kMostSquare;
-}
+bool squares_fit(const Quat& q) noexcept { return is_in_range(q.squaredNorm()); }
 
 }  // namespace
 

@@ -70,7 +70,7 @@ HWY_INLINE double two_over_square(Quad q) {
 // Do its square or the products made of it overflow or lose digits?
 HWY_INLINE bool is_out_of_range(Quad q) {
   const double square = square_of(q);
-  return !nearly_unit(square) && !(square >= kLeastSquare && square <= kMostSquare);
+  return !nearly_unit(square) && !is_in_range(square);
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.

@@ -13,9 +13,12 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 // For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
 inline constexpr double kNearlyUnit = 0x1p-28;
 
-// Of a quaternion's length, or of two: beyond these, squares or their reciprocals over- or
-// underflow, and the quaternions are brought to about unit length first.
+// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its reciprocal
+// over- or underflow, and the quaternions are brought to about unit length first.
 inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
+[[nodiscard]] constexpr bool is_in_range(double square) noexcept {
+  return square >= kLeastSquare && square <= kMostSquare;
+}
 
 // Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
 // s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. (Near 1, |q|^2 is off
