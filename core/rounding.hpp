@@ -13,8 +13,8 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 // For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
 inline constexpr double kNearlyUnit = 0x1p-28;
 
-// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its reciprocal
-// over- or underflow, and the quaternions are brought to about unit length first.
+// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its
+// reciprocal over- or underflow, and the quaternions are brought to about unit length first.
 inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
 [[nodiscard]] constexpr bool is_in_range(double square) noexcept {
   return square >= kLeastSquare && square <= kMostSquare;
