@@ -13,6 +13,7 @@
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
@@ -130,8 +131,8 @@ Motion motions_of(const hard::MotionFamily& family) {
     Random random(seed);
     const hard::HardMotion m = family.make(random, 40);
     const auto index = static_cast<std::uint32_t>(motion.bodies.size());
-    motion.bodies.push_back(std::get<ConvexPolyhedron>(model(m.a)));
-    motion.bodies.push_back(std::get<ConvexPolyhedron>(model(m.b)));
+    motion.bodies.push_back(test::made(m.a));
+    motion.bodies.push_back(test::made(m.b));
     motion.pairs.push_back({index, index + 1});
     motion.pairs.push_back({index + 1, index});
     motion.poses.resize(m.poses.size());
@@ -161,8 +162,8 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOnHardCases) {
       Random random(seed);
       const hard::HardCase c = family.make(random);
       const auto index = static_cast<std::uint32_t>(motion.bodies.size());
-      motion.bodies.push_back(std::get<ConvexPolyhedron>(model(c.a)));
-      motion.bodies.push_back(std::get<ConvexPolyhedron>(model(c.b)));
+      motion.bodies.push_back(test::made(c.a));
+      motion.bodies.push_back(test::made(c.b));
       motion.pairs.push_back({index, index + 1});
       poses.push_back(c.pose_a);
       poses.push_back(c.pose_b);
@@ -189,8 +190,8 @@ Pose turned_to(int feature, double x) {
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesWhenAllFeaturesChangeAtOnce) {
   Motion motion;
   for (std::uint32_t i = 0; i < 150; ++i) {
-    motion.bodies.push_back(std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5})));
-    motion.bodies.push_back(std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5})));
+    motion.bodies.push_back(test::cube());
+    motion.bodies.push_back(test::cube());
     motion.pairs.push_back({2 * i, 2 * i + 1});
   }
   for (const auto& [a, b] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 1}, {0, 0}}) {
@@ -208,7 +209,7 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesWhenAllFeaturesChangeAtOnce) {
 }
 
 TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
-  const auto cube = std::get<ConvexPolyhedron>(box({0.5, 0.5, 0.5}));
+  const ConvexPolyhedron cube = test::cube();
   const ConvexPolyhedron* const bodies[] = {&cube, &cube};
   const BodyPair pairs[] = {{0, 1}};
   for (const auto& [a, b] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 1}}) {

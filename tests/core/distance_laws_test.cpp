@@ -7,11 +7,15 @@
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/made.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint64_t kSeeds = 8;
+using test::cold;
+using test::made;
+
+constexpr std::uint64_t kLawSeeds = 8;
 
 struct Example {
   std::string name;
@@ -28,21 +32,15 @@ struct Example {
 
 void for_each_example(const std::function<void(const Example&, Random&)>& visit) {
   for (const hard::CaseFamily& family : hard::case_families()) {
-    for (std::uint64_t seed = 100; seed < 100 + kSeeds; ++seed) {
+    for (std::uint64_t seed = 100; seed < 100 + kLawSeeds; ++seed) {
       Random random(seed);
       Example example{
           family.name + std::string(" seed ") + std::to_string(seed), family.make(random), {}, {}};
-      example.a = std::get<ConvexPolyhedron>(model(example.c.a));
-      example.b = std::get<ConvexPolyhedron>(model(example.c.b));
+      example.a = made(example.c.a);
+      example.b = made(example.c.b);
       visit(example, random);
     }
   }
-}
-
-DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                    const RelativePose& pose) {
-  TrackingState state;
-  return distance(a, b, pose, state);
 }
 
 // Both enclose the same number.
@@ -109,7 +107,7 @@ TEST(Distance, LeavesTheWitnessPointsInTheStateEachInItsBodysOwnFrame) {
 
 TEST(Distance, OfABodyFarAwayStillHasAWitnessPointOnTheOtherOneToItsOwnRounding) {
   // A unit cube at the world's origin, the other one 1 km away.
-  const ConvexPolyhedron cube = std::get<ConvexPolyhedron>(model(hard::box(Vec3::Constant(0.5))));
+  const ConvexPolyhedron cube = test::cube();
   Random random(1);
   for (int k = 0; k < 100; ++k) {
     const Pose far{1000.0 * random.direction(), random.rotation()};
@@ -155,14 +153,13 @@ TEST(Distance, ScalesExactlyWithPowersOfTwo) {
     // Where a query starts on an unbounded body is a fixed length from its boundary.
     if (!e.a.bounded() || !e.b.bounded()) return;
     const double factor = std::ldexp(1.0, random.integer(-30, 30));
-    const ShapeResult a = model(hard::scaled(e.c.a, factor)),
-                      b = model(hard::scaled(e.c.b, factor));
+    const ConvexPolyhedron a = made(hard::scaled(e.c.a, factor)),
+                           b = made(hard::scaled(e.c.b, factor));
     Pose pose_a = e.c.pose_a, pose_b = e.c.pose_b;
     pose_a.position *= factor;
     pose_b.position *= factor;
     const DistanceResult r = cold(e.a, e.b, e.pose());
-    const DistanceResult s = cold(std::get<ConvexPolyhedron>(a), std::get<ConvexPolyhedron>(b),
-                                  relative_pose(pose_a, pose_b));
+    const DistanceResult s = cold(a, b, relative_pose(pose_a, pose_b));
     EXPECT_EQ(s.distance, factor * r.distance) << e.name;
     EXPECT_EQ(s.lower, factor * r.lower) << e.name;
     EXPECT_EQ(s.upper, factor * r.upper) << e.name;

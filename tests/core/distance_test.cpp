@@ -8,40 +8,26 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {
 
 using test::at;
+using test::cold;
+using test::cube;
+using test::half_space;
+using test::made;
+using test::turned;
 
 // Roundings of numbers of about one.
 constexpr double kRounding = 1e-14;
 
-ConvexPolyhedron made(ShapeResult shape) {
-  if (const auto* error = std::get_if<ShapeError>(&shape)) throw std::logic_error(error->reason);
-  return std::get<ConvexPolyhedron>(std::move(shape));
-}
-
-ConvexPolyhedron cube() { return made(box({0.5, 0.5, 0.5})); }
 ConvexPolyhedron ball(double radius) { return made(point(Vec3::Zero(), radius)); }
 ConvexPolyhedron capsule(double half_length, double radius) {
   return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
 }
-ConvexPolyhedron half_space(const Vec3& normal, double offset) {
-  const HalfSpace row{normal, offset};
-  return made(polyhedron_from_halfspaces({&row, 1}));
-}
-
-Pose turned(const Vec3& position, double angle, const Vec3& axis) {
-  return {position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))};
-}
-
-DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
-  TrackingState state;
-  return distance(a, b, relative_pose(Pose{}, pose_b), state);
-}
-
 // `size`: of the largest number involved, which rounding is relative to.
 void expect_distance(const DistanceResult& r, double truth, double size = 1.0) {
   EXPECT_NEAR(r.distance, truth, kRounding * size);
@@ -55,7 +41,7 @@ void expect_near(const Vec3& found, const Vec3& expected) {
 }
 
 TEST(Distance, OfCubesFaceToFaceIsTheGap) {
-  const DistanceResult r = ask(cube(), cube(), at(1.5, 0.25, 0));
+  const DistanceResult r = cold(cube(), cube(), at(1.5, 0.25, 0));
   expect_distance(r, 0.5);
   EXPECT_EQ(r.status, DistanceStatus::kConverged);
   expect_near(r.normal, Vec3::UnitX());
@@ -63,8 +49,8 @@ TEST(Distance, OfCubesFaceToFaceIsTheGap) {
 }
 
 TEST(Distance, OfCubesEdgeToEdgeAndCornerToCornerIsTheDiagonal) {
-  expect_distance(ask(cube(), cube(), at(4, 5, 0.5)), 5.0);
-  const DistanceResult r = ask(cube(), cube(), at(2, 3, 3));
+  expect_distance(cold(cube(), cube(), at(4, 5, 0.5)), 5.0);
+  const DistanceResult r = cold(cube(), cube(), at(2, 3, 3));
   expect_distance(r, 3.0);
   expect_near(r.point_on_a, {0.5, 0.5, 0.5});
   expect_near(r.point_on_b, {1.5, 2.5, 2.5});
@@ -75,8 +61,8 @@ TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
   // Both cubes turned by 45 degrees: edges along y and x face each other on the z axis.
   const double half_diagonal = std::numbers::sqrt2 / 2;
   TrackingState state;
-  const Pose pose_a = turned({0, 0, 0}, std::numbers::pi / 4, Vec3::UnitY());
-  const Pose pose_b = turned({0.1, 0.2, 3}, std::numbers::pi / 4, Vec3::UnitX());
+  const Pose pose_a = Pose{{0, 0, 0}, turned(Vec3::UnitY(), std::numbers::pi / 4)};
+  const Pose pose_b = Pose{{0.1, 0.2, 3}, turned(Vec3::UnitX(), std::numbers::pi / 4)};
   const DistanceResult r = distance(cube(), cube(), relative_pose(pose_a, pose_b), state);
   expect_distance(r, 3 - 2 * half_diagonal);
   EXPECT_EQ(state.a.dimension, 1);
@@ -85,7 +71,7 @@ TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
 
 TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
   for (const Pose& pose : {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0.3, 1)}) {
-    const DistanceResult r = ask(cube(), cube(), pose);
+    const DistanceResult r = cold(cube(), cube(), pose);
     expect_distance(r, 0.0);
     EXPECT_EQ(r.status, DistanceStatus::kTouching);
     EXPECT_LE(r.lower, 0.0);
@@ -93,57 +79,57 @@ TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
 }
 
 TEST(Distance, OfSpheresIsThatOfTheCentresLessTheRadii) {
-  const DistanceResult r = ask(ball(0.5), ball(0.25), at(3, 4, 0));
+  const DistanceResult r = cold(ball(0.5), ball(0.25), at(3, 4, 0));
   expect_distance(r, 4.25);
   expect_near(r.point_on_a, {0.3, 0.4, 0});
   expect_near(r.normal, {0.6, 0.8, 0});
 }
 
 TEST(Distance, OfOverlappingSpheresIsMinusTheDepth) {
-  const DistanceResult r = ask(ball(0.5), ball(0.5), at(0.75, 0, 0));
+  const DistanceResult r = cold(ball(0.5), ball(0.5), at(0.75, 0, 0));
   expect_distance(r, -0.25);
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
 }
 
 TEST(Distance, OfSpheresWithOneCentreIsMinusBothRadii) {
-  const DistanceResult r = ask(ball(0.5), ball(0.25), at(0, 0, 0));
+  const DistanceResult r = cold(ball(0.5), ball(0.25), at(0, 0, 0));
   expect_distance(r, -0.75);
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
 }
 
 TEST(Distance, OfCapsulesParallelCrossedAndEndToEnd) {
   const ConvexPolyhedron a = capsule(1.0, 0.25);
-  expect_distance(ask(a, a, at(1, 0, 0.5)), 0.5);
-  expect_distance(ask(a, a, turned({1, 0, 0}, std::numbers::pi / 2, Vec3::UnitX())), 0.5);
-  expect_distance(ask(a, a, at(0, 0, 3)), 0.5);
-  expect_distance(ask(a, a, at(3, 0, 6)), 4.5);
+  expect_distance(cold(a, a, at(1, 0, 0.5)), 0.5);
+  expect_distance(cold(a, a, Pose{{1, 0, 0}, turned(Vec3::UnitX(), std::numbers::pi / 2)}), 0.5);
+  expect_distance(cold(a, a, at(0, 0, 3)), 0.5);
+  expect_distance(cold(a, a, at(3, 0, 6)), 4.5);
 }
 
 TEST(Distance, OfASphereAndABoxIsMeasuredFromTheCore) {
-  expect_distance(ask(cube(), ball(0.25), at(2, 0, 0)), 1.25);
-  expect_distance(ask(cube(), ball(0.25), at(3.5, 4.5, 0)), 4.75);
-  expect_distance(ask(cube(), ball(0.25), at(0.6, 0, 0)), 0.1 - 0.25);
-  const DistanceResult inside = ask(cube(), ball(0.25), at(0.1, 0, 0));
+  expect_distance(cold(cube(), ball(0.25), at(2, 0, 0)), 1.25);
+  expect_distance(cold(cube(), ball(0.25), at(3.5, 4.5, 0)), 4.75);
+  expect_distance(cold(cube(), ball(0.25), at(0.6, 0, 0)), 0.1 - 0.25);
+  const DistanceResult inside = cold(cube(), ball(0.25), at(0.1, 0, 0));
   expect_distance(inside, -0.4 - 0.25);
   EXPECT_EQ(inside.status, DistanceStatus::kOverlapping);
 }
 
 TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
   const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
-  expect_distance(ask(floor, cube(), at(100, -100, 2)), 1.5, 200);
+  expect_distance(cold(floor, cube(), at(100, -100, 2)), 1.5, 200);
   const DistanceResult corner =
-      ask(floor, cube(), turned({0, 0, 2}, std::acos(1 / std::sqrt(3.0)), {1, -1, 0}));
+      cold(floor, cube(), Pose{{0, 0, 2}, turned({1, -1, 0}, std::acos(1 / std::sqrt(3.0)))});
   expect_distance(corner, 2 - std::sqrt(3.0) / 2);
   expect_near(corner.normal, Vec3::UnitZ());
-  EXPECT_EQ(ask(floor, cube(), at(0, 0, 0.4)).status, DistanceStatus::kOverlapping);
-  EXPECT_EQ(ask(floor, cube(), at(0, 0, -1e6)).status, DistanceStatus::kOverlapping);
+  EXPECT_EQ(cold(floor, cube(), at(0, 0, 0.4)).status, DistanceStatus::kOverlapping);
+  EXPECT_EQ(cold(floor, cube(), at(0, 0, -1e6)).status, DistanceStatus::kOverlapping);
 }
 
 TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
   const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
-  expect_distance(ask(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
+  expect_distance(cold(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
   // The last bit of tilt makes them meet, far away.
-  const DistanceResult tilted = ask(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
+  const DistanceResult tilted = cold(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
   EXPECT_LE(tilted.upper, 2.0 + kRounding);
   EXPECT_LE(tilted.lower, 0.0);
 }
@@ -156,21 +142,22 @@ TEST(Distance, OfColumnsWithoutEndIsThatOfTheirSections) {
   const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
   const double quarter = std::numbers::pi / 4;
   for (const double angle : {quarter, 3 * quarter, -quarter}) {
-    Pose pose = turned({3, 0, 17}, angle, Vec3::UnitZ());
+    Pose pose = Pose{{3, 0, 17}, turned(Vec3::UnitZ(), angle)};
     pose.orientation.coeffs() *= 3.0;
-    expect_distance(ask(column, column, pose), 2.5 - std::sqrt(0.5), 20.0);
+    expect_distance(cold(column, column, pose), 2.5 - std::sqrt(0.5), 20.0);
   }
   // Along a wall that stands on its side, the column still turned about itself.
   const ConvexPolyhedron wall = half_space(Vec3(0, 0, 1), 0.5);
   TrackingState state;
   const Pose on_its_side{Vec3::Zero(), Eigen::Quaterniond(1, 1, 0, 0)};  // z becomes -y
-  const Pose beside = turned({1, -3, 5}, quarter, Vec3::UnitZ());
+  const Pose beside = Pose{{1, -3, 5}, turned(Vec3::UnitZ(), quarter)};
   expect_distance(distance(wall, column, relative_pose(on_its_side, beside), state),
                   2.5 - std::sqrt(0.5), 20.0);
 }
 
 TEST(Distance, IsTheSameForQuaternionsOfAnyLength) {
-  const Pose pose_a = turned({1, 2, 3}, 0.3, {1, 2, 2}), pose_b = turned({4, 2, 2}, 1.2, {0, 1, 3});
+  const Pose pose_a = Pose{{1, 2, 3}, turned({1, 2, 2}, 0.3)},
+             pose_b = Pose{{4, 2, 2}, turned({0, 1, 3}, 1.2)};
   TrackingState state;
   const double expected = distance(cube(), cube(), pose_a, pose_b, state).distance;
   for (const double length : {1e-307, 1e-200, 1e-100, 1e-77, 1e77, 1e100, 1e200, 1e307}) {
@@ -190,10 +177,10 @@ TEST(Distance, IsTheSameForQuaternionsOfAnyLength) {
 
 TEST(Distance, OfPointsIsEuclid) {
   const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
-  const DistanceResult r = ask(p, q, at(2, 3, 6));
+  const DistanceResult r = cold(p, q, at(2, 3, 6));
   expect_distance(r, 7.0, 10);
   expect_near(r.point_on_a, {1, 2, 2});
-  expect_distance(ask(cube(), p, at(0, 0, 0)), std::sqrt(0.25 + 2 * 2.25));
+  expect_distance(cold(cube(), p, at(0, 0, 0)), std::sqrt(0.25 + 2 * 2.25));
 }
 
 // Squares of such lengths are zero in doubles.
@@ -201,12 +188,12 @@ TEST(Distance, HoldsWhereSquaresUnderflow) {
   const ConvexPolyhedron p = made(point(Vec3::Zero(), 0.0));
   for (const double apart : {1e-150, 1e-160, 1e-200, 1e-300}) {
     for (const DistanceResult& r :
-         {ask(p, p, at(apart, 0, 0)), ask(cube(), cube(), at(0, 1, apart)),
-          ask(half_space({0, 0, 1}, 0.0), p, at(0, 0, apart))}) {
+         {cold(p, p, at(apart, 0, 0)), cold(cube(), cube(), at(0, 1, apart)),
+          cold(half_space({0, 0, 1}, 0.0), p, at(0, 0, apart))}) {
       EXPECT_LE(r.lower, apart);
       EXPECT_GE(r.upper, r.lower);
     }
-    EXPECT_GE(ask(p, p, at(apart, 0, 0)).upper, apart);
+    EXPECT_GE(cold(p, p, at(apart, 0, 0)).upper, apart);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
 
 namespace clearance {
 namespace {
@@ -23,7 +24,7 @@ struct Group {
 
   void add(const Body& body, const Pose& pose) {
     bodies.push_back(body);
-    shapes.push_back(std::get<ConvexPolyhedron>(model(body)));
+    shapes.push_back(test::made(body));
     placed.push_back({nullptr, pose});
     for (std::size_t i = 0; i < shapes.size(); ++i) placed[i].shape = &shapes[i];
   }

@@ -7,6 +7,7 @@
 #include "core/feature_walk.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/vector_widths.hpp"
 
@@ -14,10 +15,9 @@ namespace clearance {
 namespace {
 
 using Quat = Eigen::Quaterniond;
+using test::turned;
 
-constexpr std::uint64_t kSeeds = 40;
-
-Quat turned(const Vec3& axis, double angle) { return Quat(Eigen::AngleAxisd(angle, axis)); }
+constexpr std::uint64_t kLevelSeeds = 40;
 
 // B above A, which is a box, and moving along it.
 struct LevelPair {
@@ -62,7 +62,7 @@ std::pair<Pose, Pose> anywhere(const LevelPair& pair, Random& random, double til
 TEST(LevelWalk, SettlesWhatItWasLastTimeInOneStep) {
   for (const LevelPair& pair : kPairs) {
     DistanceJudge judge = pair.judge();
-    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
       Random random(seed);
       const auto [a, b] = anywhere(pair, random, seed % 2 == 0 ? 0.0 : 1e-16);
       TrackingState state;
@@ -82,7 +82,7 @@ TEST(LevelWalk, BoundsHoldAtEveryTilt) {
   for (const LevelPair& pair : kPairs) {
     DistanceJudge judge = pair.judge();
     TrackingState state;  // of the tilt before, which is another's
-    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
       Random random(seed);
       const double tilt = seed % 4 == 0 ? 0.0 : random.log_uniform(1e-17, 1e-9);
       const auto [a, b] = anywhere(pair, random, tilt);
@@ -113,7 +113,7 @@ TEST(LevelWalk, HasTheSameBitsAtEveryVectorWidth) {
 TEST(LevelWalk, WitnessesMoveNoFasterThanTheBodies) {
   for (const LevelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
-    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
       Random random(seed);
       const Quat world = random.rotation();
       const double angle = random.uniform(0.0, 6.3), step = 0.01;

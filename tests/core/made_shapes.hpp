@@ -1,4 +1,4 @@
-// Shapes for tests: made or refused, and held against an exact enumeration of all triples of rows
+// Shapes that are refused, or made, and held against an exact enumeration of all triples of rows
 // or points.
 #pragma once
 
@@ -12,16 +12,11 @@
 #include <vector>
 
 #include "core/shapes.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/polyhedron_invariants.hpp"
 #include "tests/shared/vertex_enumeration.hpp"
 
 namespace clearance::test {
-
-inline ConvexPolyhedron made(const ShapeResult& result) {
-  const ShapeError* error = std::get_if<ShapeError>(&result);
-  EXPECT_EQ(error, nullptr) << error->reason;
-  return error == nullptr ? std::get<ConvexPolyhedron>(result) : ConvexPolyhedron{};
-}
 
 inline std::string refusal(const ShapeResult& result) {
   const ShapeError* error = std::get_if<ShapeError>(&result);

@@ -10,6 +10,7 @@
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/tied_cases.hpp"
 
@@ -17,20 +18,13 @@ namespace clearance {
 namespace {
 
 using test::at;
+using test::cold;
+using test::cube;
+using test::made;
 
 using oracle::Body;
 
-ConvexPolyhedron made(const Body& body) { return std::get<ConvexPolyhedron>(model(body)); }
-ConvexPolyhedron cube() { return made(hard::box(Vec3::Constant(0.5))); }
-Body half_space(const Vec3& normal, double offset) { return {{{normal, offset}}, {}, 0.0}; }
-
-DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const RelativePose& pose) {
-  TrackingState state;
-  return distance(a, b, pose, state);
-}
-DistanceResult ask(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
-  return ask(a, b, relative_pose(Pose{}, pose_b));
-}
+Body below_plane(const Vec3& normal, double offset) { return {{{normal, offset}}, {}, 0.0}; }
 
 void expect_depth(const DistanceResult& r, double depth, double size = 1.0) {
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
@@ -83,11 +77,11 @@ void for_each_overlap(std::uint64_t seeds, const std::function<void(Overlap&, Ra
 }
 
 TEST(Penetration, OfCubesIsTheShortestWayOutOfAFace) {
-  expect_depth(ask(cube(), cube(), at(0.9, 0, 0)), 0.1);
-  expect_depth(ask(cube(), cube(), at(0.5, 0.5, 0.5)), 0.5);
-  expect_depth(ask(cube(), cube(), at(0, 0, 0.999999)), 1 - 0.999999);
-  expect_depth(ask(cube(), cube(), at(0, 0, 0)), 1.0);
-  const DistanceResult r = ask(cube(), cube(), at(0.25, -0.75, 0.5));
+  expect_depth(cold(cube(), cube(), at(0.9, 0, 0)), 0.1);
+  expect_depth(cold(cube(), cube(), at(0.5, 0.5, 0.5)), 0.5);
+  expect_depth(cold(cube(), cube(), at(0, 0, 0.999999)), 1 - 0.999999);
+  expect_depth(cold(cube(), cube(), at(0, 0, 0)), 1.0);
+  const DistanceResult r = cold(cube(), cube(), at(0.25, -0.75, 0.5));
   expect_depth(r, 0.25);
   EXPECT_EQ(r.normal, Vec3(0, -1, 0));
   EXPECT_NEAR(r.point_on_a.y(), -0.5, 1e-15);
@@ -149,32 +143,32 @@ TEST(Penetration, HoldsWhereSquaresUnderflow) {
 
 TEST(Penetration, OfASmallBodyInsideALargeOneIsTheWayToTheNearestFace) {
   const ConvexPolyhedron room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
-  expect_depth(ask(room, cube(), at(1, 2, 0.5)), 2.0, 10);
-  expect_depth(ask(room, ball, at(4.5, 2, 0)), 0.75, 10);
-  expect_depth(ask(ball, room, at(-4.5, 2, 0)), 0.75, 10);
+  expect_depth(cold(room, cube(), at(1, 2, 0.5)), 2.0, 10);
+  expect_depth(cold(room, ball, at(4.5, 2, 0)), 0.75, 10);
+  expect_depth(cold(ball, room, at(-4.5, 2, 0)), 0.75, 10);
   const ConvexPolyhedron capsule = made({{}, {{0, 0, -1}, {0, 0, 1}}, 0.5});
-  expect_depth(ask(room, capsule, at(0, 0, 0.5)), 2.0 - 0.5 + 1.0 + 0.5, 10);
-  expect_depth(ask(capsule, room, at(4.8, 0, 0)), 0.2 + 0.5, 10);
+  expect_depth(cold(room, capsule, at(0, 0, 0.5)), 2.0 - 0.5 + 1.0 + 0.5, 10);
+  expect_depth(cold(capsule, room, at(4.8, 0, 0)), 0.2 + 0.5, 10);
 }
 
 TEST(Penetration, OfAFloorIsHowFarTheLowestPointIsBelowIt) {
-  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
-  const DistanceResult r = ask(floor, cube(), at(3, 4, -2));
+  const ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
+  const DistanceResult r = cold(floor, cube(), at(3, 4, -2));
   expect_depth(r, 2.5, 10);
   EXPECT_EQ(r.normal, Vec3::UnitZ());
-  EXPECT_EQ(ask(cube(), floor, at(0, 0, 0.25)).normal, -Vec3::UnitZ());
+  EXPECT_EQ(cold(cube(), floor, at(0, 0, 0.25)).normal, -Vec3::UnitZ());
 }
 
 TEST(Penetration, OfFacingHalfSpacesIsHowFarTheyReachIntoEachOther) {
-  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
-  const ConvexPolyhedron ceiling = made(half_space({0, 0, -1}, 2.0));
-  expect_depth(ask(floor, ceiling, at(5, 6, 0)), 2.0, 20);
+  const ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
+  const ConvexPolyhedron ceiling = test::half_space({0, 0, -1}, 2.0);
+  expect_depth(cold(floor, ceiling, at(5, 6, 0)), 2.0, 20);
 }
 
 TEST(Penetration, IsUnknownWhereNoTranslationParts) {
-  const ConvexPolyhedron floor = made(half_space({0, 0, 1}, 0.0));
-  const ConvexPolyhedron wall = made(half_space({1, 0, 0}, 0.0));
-  const DistanceResult r = ask(floor, wall, at(0, 0, 0));
+  const ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
+  const ConvexPolyhedron wall = test::half_space({1, 0, 0}, 0.0);
+  const DistanceResult r = cold(floor, wall, at(0, 0, 0));
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
   EXPECT_TRUE(std::isnan(r.distance));
   EXPECT_EQ(r.lower, -kInfinity);
@@ -186,7 +180,7 @@ TEST(Penetration, IsUnknownWhereNoTranslationParts) {
 TEST(Penetration, OfSegmentsThatCrossIsNothingButTheirRadii) {
   const ConvexPolyhedron a = made({{}, {{-1, 0, 0}, {1, 0, 0}}, 0.25});
   const ConvexPolyhedron b = made({{}, {{0, -1, 0}, {0, 1, 0}}, 0.5});
-  expect_depth(ask(a, b, at(0, 0, 0)), 0.75);
+  expect_depth(cold(a, b, at(0, 0, 0)), 0.75);
 }
 
 TEST(ExactDepth, GivesTheClosedFormsOfCubes) {
@@ -194,10 +188,10 @@ TEST(ExactDepth, GivesTheClosedFormsOfCubes) {
   EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(0.75, 0.25, 0)), 0.0625);
   EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(1, 0.25, 0)), 0);
   EXPECT_EQ(oracle::exact_squared_depth(box, at(0, 0, 0), box, at(2, 0, 0)), 0);
-  EXPECT_EQ(oracle::exact_squared_depth(half_space({0, 0, 3}, 0), at(0, 0, 0), box, at(9, 9, -1)),
+  EXPECT_EQ(oracle::exact_squared_depth(below_plane({0, 0, 3}, 0), at(0, 0, 0), box, at(9, 9, -1)),
             2.25);
-  EXPECT_FALSE(oracle::exact_squared_depth(half_space({0, 0, 1}, 0), at(0, 0, 0),
-                                           half_space({1, 0, 0}, 0), at(0, 0, 0)));
+  EXPECT_FALSE(oracle::exact_squared_depth(below_plane({0, 0, 1}, 0), at(0, 0, 0),
+                                           below_plane({1, 0, 0}, 0), at(0, 0, 0)));
 }
 
 TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
@@ -229,8 +223,8 @@ TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
 TEST(Penetration, SwappingTheBodiesTurnsTheNormal) {
   for_each_overlap(100, [](Overlap& o, Random&) {
     const ConvexPolyhedron a = made(o.a), b = made(o.b);
-    const DistanceResult r = ask(a, b, relative_pose(o.pose_a, o.pose_b));
-    const DistanceResult s = ask(b, a, relative_pose(o.pose_b, o.pose_a));
+    const DistanceResult r = cold(a, b, relative_pose(o.pose_a, o.pose_b));
+    const DistanceResult s = cold(b, a, relative_pose(o.pose_b, o.pose_a));
     EXPECT_LE(r.lower, s.upper);
     EXPECT_LE(s.lower, r.upper);
     EXPECT_EQ(r.status, s.status);
@@ -241,13 +235,13 @@ TEST(Penetration, MovingByItAlongTheNormalMakesTheBodiesTouch) {
   for_each_overlap(100, [](Overlap& o, Random&) {
     const ConvexPolyhedron a = made(o.a), b = made(o.b);
     RelativePose pose = relative_pose(o.pose_a, o.pose_b);
-    const DistanceResult r = ask(a, b, pose);
+    const DistanceResult r = cold(a, b, pose);
     if (r.status != DistanceStatus::kOverlapping) return;
     pose.translation -= r.distance * r.normal;
     const double size = a.bounding_radius + b.bounding_radius + pose.translation.norm();
-    EXPECT_NEAR(ask(a, b, pose).distance, 0.0, 1e-14 * size);
+    EXPECT_NEAR(cold(a, b, pose).distance, 0.0, 1e-14 * size);
     pose.translation += r.normal;
-    EXPECT_NEAR(ask(a, b, pose).distance, 1.0, 1e-14 * size);
+    EXPECT_NEAR(cold(a, b, pose).distance, 1.0, 1e-14 * size);
   });
 }
 
@@ -264,11 +258,11 @@ TEST(Penetration, ChangesByNoMoreThanTheBodiesMoveThroughContactToo) {
     for (int k = 0; k < steps; ++k) {
       pose_b.position += step;
       const RelativePose pose = relative_pose(o.pose_a, pose_b);
-      const DistanceResult now = distance(a, b, pose, state), cold = ask(a, b, pose);
+      const DistanceResult now = distance(a, b, pose, state), fresh = cold(a, b, pose);
       EXPECT_LE(std::abs(now.distance - before.distance), step.norm() + 1e-13 * reach);
-      EXPECT_LE(now.lower, cold.upper);
-      EXPECT_LE(cold.lower, now.upper);
-      EXPECT_NEAR(now.distance, cold.distance, 2e-14 * 8 * reach);
+      EXPECT_LE(now.lower, fresh.upper);
+      EXPECT_LE(fresh.lower, now.upper);
+      EXPECT_NEAR(now.distance, fresh.distance, 2e-14 * 8 * reach);
       EXPECT_EQ(now.status == DistanceStatus::kOverlapping, now.upper < 0.0);
       before = now;
     }
@@ -280,7 +274,7 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
   Random random(3);
   for (int k = 0; k < 20; ++k) {
     const Pose pose_b{random.direction() * random.uniform(0.0, 1.8), random.rotation()};
-    const DistanceResult r = ask(a, b, pose_b);
+    const DistanceResult r = cold(a, b, pose_b);
     EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
     EXPECT_LE(r.upper - r.lower, 5e-14);
   }
@@ -307,7 +301,7 @@ TEST(Penetration, WhereNobodyAsksForTheDepthTheBoundsHoldAndApartNothingChanges)
   for (int i = 0; i < 500; ++i) {
     const ConvexPolyhedron a = made(small_body(random)), b = made(small_body(random));
     const RelativePose pose = relative_pose(Pose{}, {random.in_box(1.0), random.rotation()});
-    const DistanceResult whole = ask(a, b, pose);
+    const DistanceResult whole = cold(a, b, pose);
     // Nor is what a query with the depth has left in the state taken for more than a hint.
     for (const bool tracked : {false, true}) {
       TrackingState state;

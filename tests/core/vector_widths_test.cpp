@@ -5,11 +5,12 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/made.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint64_t kFirstSeed = 300, kSeeds = 6;
+constexpr std::uint64_t kFirstSeed = 300, kWidthSeeds = 6;
 
 struct Walk {
   ConvexPolyhedron a, b;
@@ -20,19 +21,18 @@ struct Walk {
 // Hard motions, and hard cases as motions of one step.
 template <class Visit>
 void for_each_walk(const Visit& visit) {
-  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kSeeds; ++seed) {
+  for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kWidthSeeds; ++seed) {
     for (const hard::MotionFamily& family : hard::motion_families()) {
       Random random(seed);
       const hard::HardMotion motion = family.make(random, 60);
-      visit(Walk{std::get<ConvexPolyhedron>(model(motion.a)),
-                 std::get<ConvexPolyhedron>(model(motion.b)), motion.poses,
+      visit(Walk{test::made(motion.a), test::made(motion.b), motion.poses,
                  family.name + std::string(" seed ") + std::to_string(seed)});
     }
     for (const hard::CaseFamily& family : hard::case_families()) {
       Random random(seed);
       const hard::HardCase c = family.make(random);
-      visit(Walk{std::get<ConvexPolyhedron>(model(c.a)),
-                 std::get<ConvexPolyhedron>(model(c.b)),
+      visit(Walk{test::made(c.a),
+                 test::made(c.b),
                  {{c.pose_a, c.pose_b}, {c.pose_a, c.pose_b}},
                  family.name + std::string(" seed ") + std::to_string(seed)});
     }

@@ -12,12 +12,15 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {
 
 using oracle::Body;
 using Quat = Eigen::Quaterniond;
+using test::turned;
 
 constexpr int kSteps = 600;
 constexpr double kSwings = 40.0;  // radians of tilting back and forth, either side of the middle
@@ -48,46 +51,43 @@ std::vector<FacingPair> facing_pairs() {
           {"links", hard::link(6, 1.0, 0.1), hard::link(6, 0.7, 0.1), 0.1}};
 }
 
-Quat turn(const Vec3& axis, double angle) {
-  const Vec3 v = axis * std::sin(angle / 2);
-  return {std::cos(angle / 2), v.x(), v.y(), v.z()};
-}
-
 // Where the upper body is at t in [-1, 1], tilted by at most `tilt`; the lower one lies at the
 // origin.
-struct Motion {
+struct Swing {
   const char* name;
   std::function<Pose(double t, double height, double tilt)> pose;
 };
 
 const Vec3 kAslant(0.6, 0.8, 0.0);
 
-std::vector<Motion> motions() {
-  return {
-      {"slides, tilted",
-       [](double t, double height, double tilt) {
-         return Pose{{0.2 * t, 0.1 * t, height}, turn(Vec3::UnitY(), tilt)};
-       }},
-      {"slides and swings",
-       [](double t, double height, double tilt) {
-         return Pose{{0.2 * t, 0.1 * t, height}, turn(Vec3::UnitY(), tilt * std::sin(kSwings * t))};
-       }},
-      {"sinks and swings",
-       [](double t, double height, double tilt) {
-         return Pose{{0.3, 0.1, height + 0.05 * t},
-                     turn(Vec3::UnitZ(), 0.3) * turn(kAslant, tilt * std::sin(kSwings * t))};
-       }},
-      {"spins and swings", [](double t, double height, double tilt) {
-         return Pose{{0.2 * t, 0.1 * t, height},
-                     turn(Vec3::UnitZ(), 0.5 * t) * turn(kAslant, tilt * std::sin(kSwings * t))};
-       }}};
+std::vector<Swing> motions() {
+  return {{"slides, tilted",
+           [](double t, double height, double tilt) {
+             return Pose{{0.2 * t, 0.1 * t, height}, turned(Vec3::UnitY(), tilt)};
+           }},
+          {"slides and swings",
+           [](double t, double height, double tilt) {
+             return Pose{{0.2 * t, 0.1 * t, height},
+                         turned(Vec3::UnitY(), tilt * std::sin(kSwings * t))};
+           }},
+          {"sinks and swings",
+           [](double t, double height, double tilt) {
+             return Pose{
+                 {0.3, 0.1, height + 0.05 * t},
+                 turned(Vec3::UnitZ(), 0.3) * turned(kAslant, tilt * std::sin(kSwings * t))};
+           }},
+          {"spins and swings", [](double t, double height, double tilt) {
+             return Pose{
+                 {0.2 * t, 0.1 * t, height},
+                 turned(Vec3::UnitZ(), 0.5 * t) * turned(kAslant, tilt * std::sin(kSwings * t))};
+           }}};
 }
 
 struct Moved {
   double witness = 0.0, bodies = 0.0;  // m, in the world, in one step
 };
 
-std::vector<Moved> run(const FacingPair& pair, const Motion& motion, double tilt,
+std::vector<Moved> run(const FacingPair& pair, const Swing& motion, double tilt,
                        const Quat& world) {
   const DistanceJudge judge(pair.a, pair.b);
   const double reach = judge.b().bounding_radius;
@@ -114,10 +114,10 @@ std::vector<Moved> run(const FacingPair& pair, const Motion& motion, double tilt
 
 void for_each_run(
     const std::vector<double>& tilts,
-    const std::function<void(const FacingPair&, const Motion&, double, const Quat&)>& visit) {
-  const Quat worlds[] = {{1, 0, 0, 0}, Quat(0.5, 0.5, 0.5, 0.5) * turn(kAslant, 0.7)};
+    const std::function<void(const FacingPair&, const Swing&, double, const Quat&)>& visit) {
+  const Quat worlds[] = {{1, 0, 0, 0}, Quat(0.5, 0.5, 0.5, 0.5) * turned(kAslant, 0.7)};
   for (const FacingPair& pair : facing_pairs()) {
-    for (const Motion& motion : motions()) {
+    for (const Swing& motion : motions()) {
       for (const double tilt : tilts) {
         for (const Quat& world : worlds) {
           SCOPED_TRACE(std::string(pair.name) + ", " + motion.name + ", tilt " +
@@ -131,7 +131,7 @@ void for_each_run(
 
 TEST(Witnesses, OfLevelFacesMoveNoFasterThanTheBodies) {
   for_each_run({0.0, 1e-16, 2e-16},
-               [](const FacingPair& pair, const Motion& motion, double tilt, const Quat& world) {
+               [](const FacingPair& pair, const Swing& motion, double tilt, const Quat& world) {
                  double fastest = 0.0;
                  for (const Moved& moved : run(pair, motion, tilt, world)) {
                    fastest = std::max(fastest, moved.witness / (moved.bodies + 1e-15));
@@ -144,7 +144,7 @@ TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) {
   // sin(40 t) is zero 25 times; while a body spins, another corner may become the lowest.
   constexpr int kTurns = 25, kOfSpinning = 2;
   for_each_run({1e-11, 1e-9, 1e-7},
-               [](const FacingPair& pair, const Motion& motion, double tilt, const Quat& world) {
+               [](const FacingPair& pair, const Swing& motion, double tilt, const Quat& world) {
                  int jumps = 0;
                  for (const Moved& moved : run(pair, motion, tilt, world)) {
                    jumps += moved.witness > 10.0 * moved.bodies + 1e-9;
@@ -157,20 +157,20 @@ TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) {
 // of edges each, and rounding says which is less.
 TEST(Witnesses, OfBarsThatCrossInTheMiddleMoveNoFasterThanTheBars) {
   const Body bar =
-      hard::rotated(hard::box({1.0, 0.1, 0.1}), turn(Vec3::UnitX(), std::numbers::pi / 4));
+      hard::rotated(hard::box({1.0, 0.1, 0.1}), turned(Vec3::UnitX(), std::numbers::pi / 4));
   const DistanceJudge judge(bar, bar);
   const double reach = judge.b().bounding_radius;
   const std::function<Pose(double)> crossings[] = {
       [](double t) {
-        return Pose{Vec3::Zero(), turn(Vec3::UnitZ(), 1.5 + 0.5 * t)};
+        return Pose{Vec3::Zero(), turned(Vec3::UnitZ(), 1.5 + 0.5 * t)};
       },
       [](double t) {
-        return Pose{{0.3 * t, 0.2 * t, 0.0}, turn(Vec3::UnitZ(), 1.2)};
+        return Pose{{0.3 * t, 0.2 * t, 0.0}, turned(Vec3::UnitZ(), 1.2)};
       },
       [](double t) {
-        return Pose{{0.2 * t, 0.1, 1e-16 * std::sin(kSwings * t)}, turn(Vec3::UnitZ(), 2.0)};
+        return Pose{{0.2 * t, 0.1, 1e-16 * std::sin(kSwings * t)}, turned(Vec3::UnitZ(), 2.0)};
       }};
-  for (const Quat& world : {Quat(1, 0, 0, 0), Quat(0.5, 0.5, 0.5, 0.5) * turn(kAslant, 0.7)}) {
+  for (const Quat& world : {Quat(1, 0, 0, 0), Quat(0.5, 0.5, 0.5, 0.5) * turned(kAslant, 0.7)}) {
     for (const auto& crossing : crossings) {
       TrackingState state;
       DistanceResult last;

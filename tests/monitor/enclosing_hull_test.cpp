@@ -6,12 +6,13 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "tests/shared/made.hpp"
 
 namespace clearance {
 namespace {
 
 Part box_at(double half, const Vec3& position) {
-  return {"box", std::get<ConvexPolyhedron>(box(Vec3::Constant(half))), {.position = position}};
+  return {"box", test::made(box(Vec3::Constant(half))), {.position = position}};
 }
 
 Object object_of(std::vector<Part> parts) {
@@ -22,9 +23,7 @@ Object object_of(std::vector<Part> parts) {
 
 TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOnly) {
   Scene scene;
-  const HalfSpace ground{Vec3::UnitZ(), 0.0};
-  const Part floor{
-      "floor", std::get<ConvexPolyhedron>(polyhedron_from_halfspaces(std::span(&ground, 1))), {}};
+  const Part floor{"floor", test::half_space(Vec3::UnitZ(), 0.0), {}};
   scene.objects = {object_of({box_at(1.0, Vec3::Zero()), box_at(1.0, Vec3::UnitX())}),
                    object_of({box_at(1.0, Vec3::Zero())}), object_of({}),
                    object_of({box_at(1.0, Vec3::Zero()), floor})};

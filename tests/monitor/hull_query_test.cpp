@@ -13,6 +13,7 @@
 #include "monitor/monitor.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/simulated_samples.hpp"
 
 namespace clearance {
@@ -38,7 +39,7 @@ struct TwoObjects {
     bodies[object].push_back(body);
     const Pose place{random.in_box(1.0),
                      random.chance(0.3) ? Eigen::Quaterniond::Identity() : random.rotation()};
-    scene.objects[object].parts.push_back({"part", std::get<ConvexPolyhedron>(model(body)), place});
+    scene.objects[object].parts.push_back({"part", test::made(body), place});
   }
   // Over all parts, for poses whose products are exact: without turns of the objects.
   [[nodiscard]] double exact_distance(const Vec3& a, const Vec3& b) const {
@@ -85,9 +86,8 @@ TEST(HullQuery, IsNeverAboveTheDistanceOfTheParts) {
 TEST(HullQuery, IsAskedOfPairsOfSeveralPartsWithoutUnboundedOnes) {
   Scene scene;
   scene.objects.resize(4);
-  const auto cube = std::get<ConvexPolyhedron>(box(Vec3::Ones()));
-  const HalfSpace ground{Vec3::UnitZ(), -9.0};
-  const auto floor = std::get<ConvexPolyhedron>(polyhedron_from_halfspaces(std::span(&ground, 1)));
+  const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));
+  const ConvexPolyhedron floor = test::half_space(Vec3::UnitZ(), -9.0);
   scene.objects[0].parts = {{"a", cube, {}}, {"b", cube, {.position = Vec3(3, 0, 0)}}};
   scene.objects[1].parts = {{"a", cube, {}}};
   scene.objects[2].parts = {{"floor", floor, {}}};

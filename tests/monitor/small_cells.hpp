@@ -18,16 +18,13 @@
 #include "config/scene.hpp"
 #include "core/shapes.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
 
 namespace clearance::test {
 
 inline constexpr std::int64_t kTick = 1'000'000;                   // ns
 inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
-
-[[nodiscard]] inline ConvexPolyhedron made(ShapeResult result) {
-  return std::get<ConvexPolyhedron>(std::move(result));
-}
 
 [[nodiscard]] inline Part ball(double radius, const Pose& object_from_part = {}) {
   return {"ball", made(point(Vec3::Zero(), radius)), object_from_part};
@@ -45,8 +42,7 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
 
 // Everything below z = 0 of the part.
 [[nodiscard]] inline Part floor(const Pose& object_from_part = {}) {
-  const HalfSpace row{Vec3::UnitZ(), 0.0};
-  return {"floor", made(polyhedron_from_halfspaces(std::span(&row, 1))), object_from_part};
+  return {"floor", half_space(Vec3::UnitZ(), 0.0), object_from_part};
 }
 
 [[nodiscard]] inline Object moving(std::string name, std::vector<Part> parts) {

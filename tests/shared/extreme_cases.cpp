@@ -3,14 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/shared/poses.hpp"
+
 namespace clearance::hard {
 namespace {
 
 using Quat = Eigen::Quaterniond;
-
-Quat about(const Vec3& axis, double angle) {
-  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-}
 
 // Without end along z; given by small integers where `plain`.
 Body column(Random& random, bool plain) {
@@ -48,8 +46,9 @@ HardCase columns(Random& random) {
   Body a = column(random, turned), b = column(random, turned);
   HardCase c{"", std::move(a), std::move(b), {}, {}};
   if (turned) {
-    c.pose_b.orientation = about(Vec3::UnitZ(), random.uniform(-3.0, 3.0));
-    if (random.chance(0.3)) c.pose_a.orientation = about(Vec3::UnitZ(), random.uniform(-3.0, 3.0));
+    c.pose_b.orientation = test::turned(Vec3::UnitZ(), random.uniform(-3.0, 3.0));
+    if (random.chance(0.3))
+      c.pose_a.orientation = test::turned(Vec3::UnitZ(), random.uniform(-3.0, 3.0));
   } else {
     c.pose_a.orientation = c.pose_b.orientation = random.rotation();
   }
@@ -101,12 +100,12 @@ HardCase crossed_bars(Random& random) {
   const auto bar = [&] {
     const double width = random.chance(0.5) ? 0.1 : random.log_uniform(1e-3, 0.3);
     return rotated(box({1.0, width, width}),
-                   about(Vec3::UnitX(), random.chance(0.7) ? std::numbers::pi / 4 : 0.0));
+                   test::turned(Vec3::UnitX(), random.chance(0.7) ? std::numbers::pi / 4 : 0.0));
   };
   Body a = bar(), b = random.chance(0.5) ? a : bar();
   HardCase c{"", std::move(a), std::move(b), {}, {}};
   const double turn = random.chance(0.5) ? std::numbers::pi / 2 : random.uniform(0.01, 3.0);
-  c.pose_b.orientation = about(Vec3::UnitZ(), turn);
+  c.pose_b.orientation = test::turned(Vec3::UnitZ(), turn);
   c.pose_b.position.z() = random.chance(0.3) ? 0.0 : random.log_uniform(1e-16, 0.3);
   if (random.chance(0.4)) {
     const double off = random.log_uniform(1e-17, 0.1);
