@@ -165,6 +165,32 @@ bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return true;
 }
 
+bool is_a_place(const RelativePose& pose) noexcept {
+  return pose.rotation.allFinite() && pose.translation.allFinite();
+}
+
+DistanceResult nothing_known(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+  return {.lower = -kInfinity,
+          .upper = kInfinity,
+          .normal = Vec3::Constant(std::nan("")),
+          .point_on_a = a.interior,
+          .point_on_b = b.interior};
+}
+
+// Lengths that overflow leave numbers that are none.
+bool says_something(const DistanceResult& r) noexcept {
+  if (r.status == DistanceStatus::kOverlapping) return r.lower <= r.upper;
+  return r.lower <= r.distance && r.distance <= r.upper && std::isfinite(r.distance);
+}
+
+void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& r) noexcept {
+  if (!says_something(r)) {
+    r = nothing_known(a, b);
+  } else {
+    add_radii(r, a, b);
+  }
+}
+
 }  // namespace
 
 const char* name(DistanceStatus status) noexcept {
@@ -185,6 +211,7 @@ const char* name(DistanceStatus status) noexcept {
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
+  if (!is_a_place(a_from_b)) return nothing_known(a, b);
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
   const double apart = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, apart);
@@ -198,20 +225,21 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
       result.status = DistanceStatus::kIterationLimit;
     }
   }
-  add_radii(result, a, b);
+  finish(a, b, result);
   return result;
 }
 
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
+  if (!is_a_place(a_from_b)) return nothing_known(a, b);
   DistanceResult result;
   if (!far_by_spheres(a, b, a_from_b, options.far_away, result) &&
       !(options.depth && still_overlapping(a, b, a_from_b, state, result)) &&
       walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
     return by_search(a, b, a_from_b, state, options.depth);
   }
-  add_radii(result, a, b);
+  finish(a, b, result);
   return result;
 }
 

@@ -36,6 +36,10 @@ enum class DistanceStatus : std::uint8_t {
 // Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
 // vouch for: lower is -infinity then, distance and normal are NaN, the points lie in both bodies,
 // and upper still bounds the depth (-infinity: certainly no translation).
+//
+// Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing is
+// known: the bounds are infinite, the distance is 0, as if they touched, the points lie in their
+// bodies as they stand in their own frames, the normal is NaN, and the status kIterationLimit.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;

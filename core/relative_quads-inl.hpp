@@ -121,7 +121,8 @@ HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& wo
   r.apart = norm(r.translation);
   r.rotation_error = kRotationError;
   r.translation_error = kTranslationError * r.apart;
-  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
+  // Rescaling may have made nothing of what is subnormal: what seems exact then need not be.
+  if (!kRescaled && may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
     set_exactness(world_from_a, world_from_b, r);
   }
   return r;

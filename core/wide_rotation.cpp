@@ -13,7 +13,7 @@ using Components = std::array<double, 4>;  // x, y, z, w
 // many roundings, and the quotient: 2^-98, and the nine together less than four times that.
 constexpr double kWideError = 0x1p-96;
 
-// Products of smaller components leave digits where doubles have none.
+// Products of smaller components, the largest being about 1, leave digits where doubles have none.
 constexpr double kSmallest = 1e-140;
 
 // By a power of two: the largest component is in [1, 2).
@@ -26,9 +26,11 @@ Components scaled(const RelativePose::Orientation& q) noexcept {
   return out;
 }
 
-bool digits_kept(const Components& q) noexcept {
-  return std::all_of(q.begin(), q.end(),
-                     [](double x) { return x == 0.0 || std::abs(x) > kSmallest; });
+// As given: scaling may have made nothing of what is subnormal.
+bool digits_kept(const RelativePose::Orientation& q) noexcept {
+  const double least = kSmallest * q.coeffs().cwiseAbs().maxCoeff();
+  return std::all_of(q.coeffs().begin(), q.coeffs().end(),
+                     [least](double x) { return x == 0.0 || std::abs(x) > least; });
 }
 
 // One component of a product of quaternions: four products of doubles.
@@ -164,7 +166,7 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   WideRotation out;
   out.rows = matrix(of);
   out.error = kWideError;
-  if (digits_kept(a) && digits_kept(b)) set_axes(of, out);
+  if (digits_kept(pose.world_from_a) && digits_kept(pose.world_from_b)) set_axes(of, out);
   return agrees(out, pose) ? out : as_given;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <variant>
 
@@ -194,6 +195,63 @@ TEST(Distance, HoldsWhereSquaresUnderflow) {
       EXPECT_GE(r.upper, r.lower);
     }
     EXPECT_GE(cold(p, p, at(apart, 0, 0)).upper, apart);
+  }
+}
+
+TEST(Distance, OfPosesThatAreNoneHasInfiniteBoundsAndNothingElseThatIsNoNumber) {
+  const ConvexPolyhedron bodies[] = {cube(), ball(0.5), capsule(1.0, 0.25),
+                                     half_space({0, 0, 1}, 0.0)};
+  const double none[] = {std::nan(""), kInfinity, -kInfinity};
+  for (const ConvexPolyhedron& a : bodies) {
+    for (const ConvexPolyhedron& b : bodies) {
+      for (int k = 0; k < 7; ++k) {
+        for (const double x : none) {
+          Pose pose = at(3, 0.2, 0.1);
+          (k < 3 ? pose.position[k] : pose.orientation.coeffs()[k - 3]) = x;
+          for (const bool deep : {false, true}) {
+            TrackingState state{{0, deep, 0}, {2, false, 0}}, other = state;
+            for (const DistanceResult& r : {distance(a, b, Pose{}, pose, state),
+                                            distance(a, b, relative_pose(pose, {}), other)}) {
+              EXPECT_EQ(r.lower, -kInfinity);
+              EXPECT_EQ(r.upper, kInfinity);
+              EXPECT_EQ(r.distance, 0.0);
+              EXPECT_EQ(r.status, DistanceStatus::kIterationLimit);
+              EXPECT_TRUE(r.point_on_a.allFinite() && r.point_on_b.allFinite());
+            }
+            // What it leaves behind does no harm.
+            expect_distance(distance(cube(), cube(), Pose{}, at(1.5, 0.25, 0), state), 0.5);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Distance, OfLengthsThatOverflowHoldsAtLeast) {
+  for (const double far : {1e140, 1e155, 1e200, 1e308}) {
+    const DistanceResult r = cold(cube(), cube(), at(0, far, far));
+    EXPECT_LE(r.lower, far * std::numbers::sqrt2);
+    EXPECT_GE(r.upper, far);
+    EXPECT_LE(r.lower, r.distance);
+    EXPECT_LE(r.distance, r.upper);
+  }
+}
+
+// A column along z in a wall that stands beside z by 2e-325: no translation parts them. The
+// component that says so was lost where quaternions are brought to unit length.
+TEST(Distance, OfAColumnInAWallThatIsTiltedByASubnormalHasNoLowerBound) {
+  std::vector<HalfSpace> rows;
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 1, 0), Vec3(-1, -1, 0)}) rows.push_back({n, 0.5});
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  const ConvexPolyhedron wall = half_space({1, 0, 0}, 0.5);
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double length : {1.0, 24.0, 0x1p600}) {
+    Pose tilted = at(-2.7, 1.1, -1.8);
+    tilted.orientation = Eigen::Quaterniond(length, -least, 0.0, 0.8 * length);
+    TrackingState state;
+    EXPECT_EQ(distance(column, wall, Pose{}, tilted, state).lower, -kInfinity);
+    tilted.orientation.x() = 0.0;
+    EXPECT_GT(distance(column, wall, Pose{}, tilted, state).lower, -10.0);
   }
 }
 

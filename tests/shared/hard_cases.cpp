@@ -5,6 +5,7 @@
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/exact_placement.hpp"
 #include "tests/shared/extreme_cases.hpp"
+#include "tests/shared/hostile_cases.hpp"
 #include "tests/shared/tied_cases.hpp"
 
 namespace clearance::hard {
@@ -312,7 +313,13 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"scales", scales},
                                         {"pierced", pierced},
                                         {"crossed_bars", crossed_bars},
-                                        {"bare_cores", bare_cores}};
+                                        {"bare_cores", bare_cores},
+                                        {"crumpled", crumpled},
+                                        {"ulp_quads", ulp_quads},
+                                        {"dust", dust},
+                                        {"far_poses", far_poses},
+                                        {"selfsame", selfsame},
+                                        {"razors", razors}};
 
 }  // namespace
 
