@@ -3,31 +3,38 @@
 #define HWY_TARGET_INCLUDE "core/distance.cpp"
 #include "core/vector_widths.hpp"
 // That comes first.
-#include "core/feature_walk-inl.hpp"
+#include "core/overlap_walk-inl.hpp"
 #include "core/radii.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance {
 
-// What the walk leaves open; radii included.
+// What the walk leaves open; radii included. The latter of bodies that overlapped.
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept;
+DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const RelativePose& a_from_b, TrackingState& state) noexcept;
 
 namespace HWY_NAMESPACE {
 
-HWY_INLINE DistanceResult rounded_result_of(const Walk& w) {
-  DistanceResult result = result_of(w);
+HWY_INLINE DistanceResult rounded(DistanceResult result, const Walk& w) {
   add_radii(result, w.a, w.b);
   return result;
+}
+
+HWY_NOINLINE DistanceResult tracked_overlap(Walk& w, const Pose& world_from_a,
+                                            const Pose& world_from_b, TrackingState& state) {
+  if (walk_overlap(w)) return rounded(overlap_result_of(w), w);
+  return by_depth(w.a, w.b, pose_of(w.a_from_b, world_from_a, world_from_b), state);
 }
 
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  if (state.a.deep) return distance(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
   Walk w(a, b, a_from_b, state);
-  if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
+  if (state.a.deep) return tracked_overlap(w, world_from_a, world_from_b, state);
+  if (walk(w) == WalkEnd::kProved) return rounded(result_of(w), w);
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
@@ -229,15 +236,28 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return result;
 }
 
+DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const RelativePose& a_from_b, TrackingState& state) noexcept {
+  DistanceResult result;
+  if (!still_overlapping(a, b, a_from_b, state, result) &&
+      walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+    return by_search(a, b, a_from_b, state, true);
+  }
+  add_radii(result, a, b);
+  return result;
+}
+
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known(a, b);
   DistanceResult result;
-  if (!far_by_spheres(a, b, a_from_b, options.far_away, result) &&
-      !(options.depth && still_overlapping(a, b, a_from_b, state, result)) &&
-      walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-    return by_search(a, b, a_from_b, state, options.depth);
+  if (!far_by_spheres(a, b, a_from_b, options.far_away, result)) {
+    if (state.a.deep && options.depth) {
+      if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
+    } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+      return by_search(a, b, a_from_b, state, options.depth);
+    }
   }
   finish(a, b, result);
   return result;

@@ -102,7 +102,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   const Quad own_tip = load3_alone(vertex.position), n = load3_of_4(facet.normal);
   const Quad tip = o.point_in(own_tip);
   const double apart = dot(n, tip) - facet.offset;
-  if (!(apart > 0.0)) return Step::kLost;
+  if (HWY_UNLIKELY(!(apart > 0.0)) && !o.w.overlapping) return Step::kLost;
   const std::int32_t beyond = side_beyond(o.owner(), facet, tip);
   if (beyond != kNone) return to_edge(o.on_owner(), beyond), Step::kMoved;
   const Quad back = -o.direction_out(n);

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "core/feature_walk.cpp"
 #include "core/vector_widths.hpp"
 // That comes first.
-#include "core/feature_walk-inl.hpp"
+#include "core/overlap_walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
@@ -17,6 +17,15 @@ WalkEnd walk_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return end;
 }
 
+bool walk_relative_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                           const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) {
+  const RelativeQuads quads = quads_of(a_from_b);
+  Walk w(a, b, quads, state);
+  if (!walk_overlap(w)) return false;
+  r = overlap_result_of(w);
+  return true;
+}
+
 }  // namespace clearance::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -24,11 +33,18 @@ HWY_AFTER_NAMESPACE();
 namespace clearance {
 
 HWY_EXPORT(walk_relative);
+HWY_EXPORT(walk_relative_overlap);
 
 WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                       const RelativePose& a_from_b, TrackingState& state,
                       DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(walk_relative)(a, b, a_from_b, state, result);
+}
+
+bool walk_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                  const RelativePose& a_from_b, TrackingState& state,
+                  DistanceResult& result) noexcept {
+  return HWY_DYNAMIC_DISPATCH(walk_relative_overlap)(a, b, a_from_b, state, result);
 }
 
 }  // namespace clearance

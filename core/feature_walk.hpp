@@ -30,4 +30,10 @@ enum class WalkEnd : std::uint8_t {
                                     const RelativePose& a_from_b, TrackingState& state,
                                     DistanceResult& result) noexcept;
 
+// For bodies that overlapped in the last query. True: it is proved how deep they do, or that they
+// do not any more. False: nothing is, and `state` and `result` are as they were.
+[[nodiscard]] bool walk_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                const RelativePose& a_from_b, TrackingState& state,
+                                DistanceResult& result) noexcept;
+
 }  // namespace clearance

@@ -131,7 +131,7 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   const double s = std::clamp(halfway(o, start, e), span.from, span.to);
   const Quad own = start + s * e, tip = o.point_out(own);
   const double apart = dot(n, tip) - facet.offset;
-  if (!(apart > 0.0)) return Step::kLost;
+  if (!(apart > 0.0) && !o.w.overlapping) return Step::kLost;
   o.w.apart = apart;
   o.w.proved = apart - lost_by_tilt(o.w, std::abs(rise));
   o.opposite().express(tip - apart * n, own, o.opposite().normal(n));
@@ -216,7 +216,7 @@ inline HWY_NOINLINE Step facet_facet(Walk& w) {
     tip = point_to_a(w.a_from_b, own);
   }
   w.apart = dot(n, tip) - of_a.offset;
-  if (!(w.apart > 0.0)) return Step::kLost;
+  if (!(w.apart > 0.0) && !w.overlapping) return Step::kLost;
   w.own_b = own;
   w.point_b = tip;
   w.point_a = tip - w.apart * n;

@@ -42,6 +42,11 @@ struct Walk {
   int steps = 0;
   int levels = 0;  // of these, to features that are level
 
+  // Of bodies that overlap (core/overlap_walk-inl.hpp): `apart` is minus how deep.
+  bool overlapping = false;
+  double room;    // m: of the edges' crossing, to their ends
+  double beyond;  // m: the bodies may overlap by this less
+
   // Rounding may have them go in circles.
   [[nodiscard]] HWY_INLINE Step levelled() {
     return ++levels > kLevelSteps ? Step::kLost : Step::kMoved;
