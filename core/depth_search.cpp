@@ -54,18 +54,21 @@ void DepthSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
   if (may_rise(body_.x(), n, level_) || may_rise(body_.y(), -body_.direction_to_y(n), level_)) {
     return;
   }
+  if (edge_of_x != kNone && body_.y().bounded()) {
+    const Arc arc = across(body_.x().edges[edge_of_x]);
+    const Vec2 at = arc.project(n).stableNormalized();
+    if (within(arc, at)) {
+      hold(n);
+      (void)sample(arc, at);
+      return;
+    }
+  }
   const Vec3 on_x = body_.x().anchors[support(body_.x(), n).anchor];
   const Vec3 corner = body_.corner(on_x, n);
   const std::size_t slot = cell(n);
   corners_[slot] = corner;
   has_corner_[slot] = true;
   improve(corner.dot(n) + 2.0 * tight_, n, Source::kGuess, kNone);
-  if (edge_of_x == kNone || !body_.y().bounded()) return;
-  const Arc arc = across(body_.x().edges[edge_of_x]);
-  const Vec2 at = arc.project(n).stableNormalized();
-  if (!within(arc, at)) return;
-  hold(n);
-  (void)sample(arc, at);
 }
 
 bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
@@ -238,73 +241,6 @@ void DepthSearch::arcs() noexcept {
       arc_of(edge);
     }
   }
-}
-
-// Those of a body's facets that the points leave unsettled are looked at one by one.
-void DepthSearch::look_at_unsettled(const DeepestPoints& points, std::size_t facets,
-                                    void (DepthSearch::*look_at)(std::int32_t) noexcept) noexcept {
-  if (points.least() >= settled()) return lower_to(points.least());
-  const auto count = static_cast<std::int32_t>(facets);
-  for (std::int32_t i = 0; i < count && !ended_early(); ++i) {
-    if (points.depth(i) >= settled()) {
-      lower_to(points.depth(i));
-    } else {
-      (this->*look_at)(i);
-    }
-  }
-}
-
-// Y's lowest point along the best direction so far is mostly deeper below all other facets of X
-// than below that one: then it settles them all, and all arcs. Where not, the facet that it is
-// least deep below has its say, and its lowest point of Y is one more to look at.
-void DepthSearch::facets_of_x(DeepestPoints& of_y) noexcept {
-  of_y.add(body_.lowest_of_y(best_.source == Source::kNothing ? Vec3::UnitX() : best_.n));
-  while (of_y.least() < settled() && !of_y.full() && !ended_early()) {
-    const std::int32_t facet = of_y.where_least();
-    const Vec3& n = body_.x().facets[facet].normal;
-    of_y.add(body_.lowest_of_y(n));
-    improve(of_y.depth(facet), n, Source::kFacetOfX, facet);
-  }
-  look_at_unsettled(of_y, body_.x().facets.size(), &DepthSearch::look_at_facet_of_x);
-}
-
-// The same, in Y's frame. X's middle settles those of Y that lie on its far side.
-void DepthSearch::facets_of_y(DeepestPoints& of_x) noexcept {
-  of_x.add(body_.point_to_y(body_.x().interior));
-  while (of_x.least() < settled() && !of_x.full() && !ended_early()) {
-    const std::int32_t facet = of_x.where_least();
-    const Vec3 n = -body_.direction_from_y(body_.y().facets[facet].normal);
-    of_x.add(body_.point_to_y(body_.x().anchors[support(body_.x(), n).anchor]));
-    improve(of_x.depth(facet), n, Source::kFacetOfY, facet);
-  }
-  look_at_unsettled(of_x, body_.y().facets.size(), &DepthSearch::look_at_facet_of_y);
-}
-
-// Along the arc between two facets' normals h is no less than what one point of Y has at both.
-void DepthSearch::arcs(const DeepestPoints& of_y) noexcept {
-  if (of_y.count() == 1 && of_y.least() >= settled()) return;
-  for (const Edge& edge : body_.x().edges) {
-    if (ended_early()) return;
-    const auto settled_by = [&](std::int32_t at, std::int32_t other) {
-      const Facet& facet = body_.x().facets[other];
-      const double there = facet.offset - facet.normal.dot(of_y.point(at));
-      const double bound = std::min(of_y.depth(at), there);
-      if (!(bound >= settled())) return false;
-      lower_to(bound);
-      return true;
-    };
-    if (settled_by(edge.facet[0], edge.facet[1]) || settled_by(edge.facet[1], edge.facet[0])) {
-      continue;
-    }
-    arc_of(edge);
-  }
-}
-
-void DepthSearch::run_bounded() noexcept {
-  DeepestPoints of_y(body_.x()), of_x(body_.y());
-  facets_of_x(of_y);
-  facets_of_y(of_x);
-  arcs(of_y);
 }
 
 void DepthSearch::run() noexcept {

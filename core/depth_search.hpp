@@ -87,11 +87,14 @@ class DepthSearch {
   void arcs() noexcept;
   void arc_of(const Edge& edge) noexcept;
   void run_bounded() noexcept;
-  void look_at_unsettled(const DeepestPoints& points, std::size_t facets,
-                         void (DepthSearch::*look_at)(std::int32_t) noexcept) noexcept;
+  template <class Normal, class Farthest>
+  void look_at_facets(const ConvexPolyhedron& body, DeepestPoints& points, Source source,
+                      const Normal& normal, const Farthest& farthest) noexcept;
   void facets_of_x(DeepestPoints& of_y) noexcept;
   void facets_of_y(DeepestPoints& of_x) noexcept;
-  void arcs(const DeepestPoints& of_y) noexcept;
+  void take_least(const DeepestPoints& points, Source source, const Vec3& n) noexcept;
+  void arcs(DeepestPoints& of_y) noexcept;
+  void arc_between(const Edge& edge, const DeepestPoints& of_y) noexcept;
   void full_circle(const Edge& edge) noexcept;
   [[nodiscard]] Arc across(const Edge& edge) const noexcept;
   // Does a direction of the arc's plane lie between the normals of the edge's facets?
@@ -118,6 +121,7 @@ class DepthSearch {
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
+  std::size_t main_ = 0;  // which of the points of Y lies lowest along the best direction, mostly
 
   // Corners found on the way, by where the directions point that they were found for: six axes by
   // the signs of the other two components.

@@ -54,9 +54,12 @@ class DifferenceBody {
     return x_is_b_ ? rotation.transposed() : rotation;
   }
 
-  // Of Y, farthest against n.
+  // Of Y, farthest against n: an anchor, and where it is.
+  [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
+    return support(y_, -direction_to_y(n)).anchor;
+  }
   [[nodiscard]] Vec3 lowest_of_y(const Vec3& n) const noexcept {
-    return point_from_y(y_.anchors[support(y_, -direction_to_y(n)).anchor]);
+    return point_from_y(y_.anchors[lowest_anchor_of_y(n)]);
   }
   // A corner of the set that is farthest along n, of those that have `on_x` for their part of X.
   [[nodiscard]] Vec3 corner(const Vec3& on_x, const Vec3& n) const noexcept {

@@ -1,18 +1,42 @@
+// Compiled once a vector width.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/support.cpp"
+#include "core/vector_widths.hpp"
+// That comes first.
+#include "core/rounding.hpp"
 #include "core/support.hpp"
+#include "core/walked_pair-inl.hpp"
 
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+
+// Along the edges that rise for certain, so that it ends. certain: where every edge falls.
+std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at, bool& certain) {
+  for (;;) {
+    const Steepest way = steepest(body, body.vertices[at], m);
+    certain = way.rate < -kCertainRate;
+    if (!(way.rate > kCertainRate)) return at;
+    const EdgeUse& use = body.vertex_edges[way.at];
+    at = body.edges[use.edge].vertex[1 - use.side];
+  }
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace clearance {
+
+HWY_EXPORT(climb);
+
 namespace {
 
 // Below this many vertices a scan is cheaper than a climb.
 constexpr std::size_t kScan = 24;
-
-// Unit edge directions are off by 2^-52, their products with a unit vector by three roundings more:
-// an edge that falls by more than this (per unit length) falls in exact arithmetic.
-constexpr double kFalls = 0x1p-50;
 
 // The vertices reached from one another by edges that rounding cannot tell from level ones. On the
 // exact polytope every vertex that is not the highest has a rising edge, and rising edges lead to
@@ -47,24 +71,6 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
   return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
 }
 
-std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at) noexcept {
-  double height = m.dot(body.vertices[at].position);
-  while (true) {
-    std::int32_t next = at;
-    const Vertex& vertex = body.vertices[at];
-    for (std::int32_t i = 0; i < vertex.edges; ++i) {
-      const std::int32_t to = neighbour(body, body.vertex_edges[vertex.first_edge + i], m).vertex;
-      const double there = m.dot(body.vertices[to].position);
-      if (there > height) {
-        height = there;
-        next = to;
-      }
-    }
-    if (next == at) return at;
-    at = next;
-  }
-}
-
 }  // namespace
 
 Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
@@ -78,8 +84,11 @@ Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 
 Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   if (!body.bounded() || body.anchors.size() <= kScan) return support_by_scan(body, m);
+  bool certain;
+  const std::int32_t top = HWY_DYNAMIC_DISPATCH(climb)(body, m, body.start.at(m), certain);
+  if (certain) return {m.dot(body.vertices[top].position), top};
   LevelSet level;
-  level.add(climb(body, m, body.start.at(m)));
+  level.add(top);
   Support best{-kInfinity, 0};
   for (std::size_t k = 0; k < level.size(); ++k) {
     const Vertex& vertex = body.vertices[level[k]];
@@ -87,7 +96,7 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
     if (height > best.reach) best = {height, level[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const Neighbour n = neighbour(body, body.vertex_edges[vertex.first_edge + i], m);
-      if (n.slope > -kFalls && !level.add(n.vertex)) return support_by_scan(body, m);
+      if (n.slope > -kCertainRate && !level.add(n.vertex)) return support_by_scan(body, m);
     }
   }
   return best;
@@ -149,3 +158,4 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
 }
 
 }  // namespace clearance
+#endif
