@@ -96,49 +96,71 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   return c;
 }
 
-// One of the bodies (the owner of an edge or facet) as seen from the other. kMoved: the owner is B.
-template <bool kMoved>
-struct OwnerFrame {
+// As over_norm() and over_square() of core/walked_pair-inl.hpp.
+HWY_INLINE Lanes over_norm(const Points& v) {
+  return hn::Sub(all(1.5), hn::Mul(all(0.5), dot(v, v)));
+}
+HWY_INLINE Lanes over_square(const Points& v) { return hn::Sub(all(2.0), dot(v, v)); }
+
+// A body in frame A, and what is in frame A in its own. kIsB: it is B.
+template <bool kIsB>
+struct CommonFrame {
   const RelativePoses& pose;
 
-  [[nodiscard]] HWY_INLINE Points point_in(const Points& p) const {
-    if constexpr (kMoved) return rotate_back(pose.rotation, p - pose.translation);
-    return rotate(pose.rotation, p) + pose.translation;
+  [[nodiscard]] HWY_INLINE Points point_to_common(const Points& p) const {
+    if constexpr (kIsB) return rotate(pose.rotation, p) + pose.translation;
+    return p;
   }
-  [[nodiscard]] HWY_INLINE Points direction_out(const Points& v) const {
-    if constexpr (kMoved) return rotate(pose.rotation, v);
-    return rotate_back(pose.rotation, v);
+  [[nodiscard]] HWY_INLINE Points direction_to_common(const Points& v) const {
+    if constexpr (kIsB) return rotate(pose.rotation, v);
+    return v;
   }
-  HWY_INLINE void express(const Points& on_owner, const Points& on_other, const Points& n,
-                          Closest& c) const {
-    c.point_a = kMoved ? on_other : on_owner;
-    c.own_b = kMoved ? on_owner : on_other;
-    c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
-    c.normal = n;
+  [[nodiscard]] HWY_INLINE Points direction_to_own(const Points& v) const {
+    if constexpr (kIsB) return rotate_back(pose.rotation, v);
+    return v;
   }
 };
 
+// kMoved: the edge is B's.
 template <bool kMoved>
 HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
-  const OwnerFrame<kMoved> frame{pose};
-  const Points point = at.points(0), direction = at.points(3), vertex = at.points(kEdgeRows);
-  const Points from_start = frame.point_in(vertex) - point;
-  const Lanes s = dot(from_start, direction);
+  const CommonFrame<kMoved> owner{pose};
+  const CommonFrame<!kMoved> other{pose};
+  const Points own_start = at.points(0), own_e = at.points(3), own_tip = at.points(kEdgeRows);
+  const Points tip = other.point_to_common(own_tip), start = owner.point_to_common(own_start);
+  const Points e = owner.direction_to_common(own_e), from_start = tip - start;
+  Lanes s = dot(from_start, e);
+  if constexpr (kMoved) s = hn::Mul(s, over_square(e));
   const LaneMask within = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
-  const Points across = cross(from_start, direction), g = cross(direction, across);
-  const Points out = frame.direction_out(g);
-  c.apart = c.proved = norm(across);
-  const LaneMask slender = hn::Lt(c.apart, hn::Mul(all(kSlender), hn::Abs(s)));
-  Lanes length = c.apart;
+  const Points across = cross(from_start, e), way = cross(e, across);
+  const Lanes length = norm(across);
+  const LaneMask slender = hn::Lt(length, hn::Mul(all(kSlender), hn::Abs(s)));
+  Lanes of_way = length;
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), slender))) {
-    length = hn::IfThenElse(slender, norm(g), length);
+    Lanes of_slender = norm(way);
+    if constexpr (kMoved) of_slender = hn::Div(of_slender, over_norm(e));
+    of_way = hn::IfThenElse(slender, of_slender, length);
   }
-  const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
-  const Lanes side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(g);
-  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(out);
+  const Lanes certain = hn::Mul(all(kCertainRate), length);
+  const Lanes side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(way));
+  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(other.direction_to_own(way));
   c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
-  frame.express(point + times(s, direction), vertex, over(kMoved ? -out : g, length), c);
+  const Points own = own_start + times(s, own_e), common = start + times(s, e);
+  if constexpr (kMoved) {
+    const Lanes unit = over_norm(e);
+    c.apart = c.proved = hn::Mul(unit, length);
+    c.normal = over(times(hn::Neg(unit), way), of_way);
+    c.point_a = tip;
+    c.own_b = own;
+    c.point_b = common;
+  } else {
+    c.apart = c.proved = length;
+    c.normal = over(way, of_way);
+    c.point_a = common;
+    c.own_b = own_tip;
+    c.point_b = tip;
+  }
   return c;
 }
 
@@ -153,19 +175,39 @@ HWY_INLINE Lanes least_within(const FeatureRows& at, std::size_t row, const Poin
   return least;
 }
 
+// kMoved: the facet is B's.
 template <bool kMoved>
 HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
-  const OwnerFrame<kMoved> frame{pose};
-  const Points normal = at.points(0), vertex = at.points(kFacetRows);
-  const Points tip = frame.point_in(vertex);
-  c.apart = c.proved = hn::Sub(dot(normal, tip), at.lanes(3));
-  const Lanes within = least_within<kMoved>(at, kSides, tip);
-  const Points out = frame.direction_out(normal);
-  const Lanes away = Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(out);
+  const Points own_n = at.points(0), tip = at.points(kFacetRows);
+  const Points n = CommonFrame<kMoved>{pose}.direction_to_common(own_n);
+  const Lanes offset = at.lanes(3);
+  Points own_tip;
+  if constexpr (kMoved) {
+    const Points from_origin = tip - pose.translation;
+    own_tip = rotate_back(pose.rotation, from_origin);
+    c.apart = hn::Sub(hn::Mul(over_norm(n), dot(n, from_origin)), offset);
+  } else {
+    own_tip = rotate(pose.rotation, tip) + pose.translation;
+    c.apart = hn::Sub(dot(n, own_tip), offset);
+  }
+  c.proved = c.apart;
+  const Lanes within = least_within<kMoved>(at, kSides, own_tip);
+  const Lanes away = Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(
+      CommonFrame<!kMoved>{pose}.direction_to_own(n));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
-  frame.express(tip - times(c.apart, normal), vertex, kMoved ? -out : normal, c);
+  if constexpr (kMoved) {
+    c.own_b = own_tip - times(hn::Sub(dot(own_n, own_tip), offset), own_n);
+    c.point_a = tip;
+    c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+    c.normal = times(hn::Neg(over_norm(n)), n);
+  } else {
+    c.point_a = own_tip - times(c.apart, n);
+    c.own_b = tip;
+    c.point_b = own_tip;
+    c.normal = n;
+  }
   return c;
 }
 

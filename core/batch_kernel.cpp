@@ -43,7 +43,8 @@ HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses&
     tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
   }
   const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
-  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), farthest));
+  const Lanes stretched = hn::Mul(all(kStretched), farthest);
+  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), stretched));
   const Lanes between = hn::Add(hn::Mul(all(kUlp * kUlpsBetween), apart), pose.translation_error);
   const Lanes slack = hn::Add(hn::Add(on_features, between), hn::Mul(pose.rotation_error, turned));
   return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};

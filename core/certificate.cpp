@@ -25,7 +25,7 @@ void add_direction(Separators& list, const Vec3& v) noexcept {
 void add_facets(Separators& list, const ActiveSide& a, const ActiveSide& b) noexcept {
   if (a.feature() == Feature::kFacet) list.add({a.facet().normal, a.index(), kNone});
   if (b.feature() == Feature::kFacet) {
-    list.add({-b.direction_to_common(b.facet().normal), kNone, b.index()});
+    list.add({-towards_case::normal_of(b), kNone, b.index()});
   }
 }
 

@@ -25,7 +25,8 @@ Separator separator(const DifferenceBody& body, const DepthSearch::Best& best, c
   }
   const bool of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
   if (!of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
-  return {-b.direction_to_common(b.body().facets[best.facet].normal), kNone, best.facet};
+  const Vec3& normal = b.body().facets[best.facet].normal;
+  return {-b.direction_to_common(normal).normalized(), kNone, best.facet};
 }
 
 // At no distance, for heights: corners are anchors, and of an unbounded body, too, no more than

@@ -59,22 +59,26 @@ HWY_INLINE Step vertex_vertex(Walk& w) {
   return Step::kHolds;
 }
 
+// In frame A, where B is what the rotation's doubles make of it: not quite rigid, and so neither
+// are its unit vectors of unit length. Seen from B it would be A that is stretched, however far
+// away.
 template <bool kMoved>
 HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
   const Edge& edge = o.owner().edges[o.on_owner().feature];
   const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad tip = load3_alone(vertex.position), start = load3_of_4(edge.point),
-             e = load3_of_4(edge.direction);
-  const Quad from_start = o.point_in(tip) - start;
-  const double s = dot(from_start, e);
+  const Quad own_tip = load3_alone(vertex.position), own_start = load3_of_4(edge.point),
+             own_e = load3_of_4(edge.direction);
+  const Quad tip = o.opposite().point_to_common(own_tip), start = o.point_to_common(own_start),
+             e = o.direction_to_common(own_e);
+  const Quad from_start = tip - start;
+  const double s = dot(from_start, e) * (kMoved ? over_square(e) : 1.0);
   if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]), Step::kMoved;
   if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]), Step::kMoved;
   // As long as the way from the edge to the vertex, and at right angles to it; then that way. No
   // difference of long vectors: cancellation leaves nothing along the edge.
-  const Quad across = cross(from_start, e), g = cross(e, across);
-  const double apart = norm(across), limit = -kCertainRate * apart;
-  const double length = HWY_UNLIKELY(apart < kSlender * std::abs(s)) ? norm(g) : apart;
-  const Quad back = -o.direction_out(g);
+  const Quad across = cross(from_start, e), way = cross(e, across);
+  const double length = norm(across), limit = -kCertainRate * length;
+  const Quad g = o.direction_to_own(way), back = -o.opposite().direction_to_own(way);
   if (!sides_fall(edge, g, limit)) {
     rises_beside(edge, g, limit, o.on_owner());
     const Pair rates = side_rates(edge, g);
@@ -90,8 +94,11 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
     }
     return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge), Step::kMoved;
   }
-  o.w.apart = o.w.proved = apart;
-  o.express(start + s * e, tip, (kMoved ? back : g) / spread(length));
+  const double unit = kMoved ? over_norm(e) : 1.0;
+  const double of_way = HWY_UNLIKELY(length < kSlender * std::abs(s)) ? norm(way) / unit : length;
+  o.w.apart = o.w.proved = unit * length;
+  o.w.normal = (kMoved ? -unit : 1.0) * way / spread(of_way);
+  o.place(own_start + s * own_e, start + s * e, own_tip, tip);
   return Step::kHolds;
 }
 
@@ -99,13 +106,13 @@ template <bool kMoved>
 HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   const Facet& facet = o.owner().facets[o.on_owner().feature];
   const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad own_tip = load3_alone(vertex.position), n = load3_of_4(facet.normal);
-  const Quad tip = o.point_in(own_tip);
-  const double apart = dot(n, tip) - facet.offset;
+  const Quad tip = load3_alone(vertex.position), own_tip = o.point_in(tip);
+  const Quad n = o.direction_to_common(load3_of_4(facet.normal));
+  const double apart = o.height(facet, tip, own_tip, n);
   if (HWY_UNLIKELY(!(apart > 0.0)) && !o.w.overlapping) return Step::kLost;
-  const std::int32_t beyond = side_beyond(o.owner(), facet, tip);
+  const std::int32_t beyond = side_beyond(o.owner(), facet, own_tip);
   if (beyond != kNone) return to_edge(o.on_owner(), beyond), Step::kMoved;
-  const Quad back = -o.direction_out(n);
+  const Quad back = -o.opposite().direction_to_own(n);
   if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
     const Steepest away = steepest(o.other(), vertex, back);
     if (!(away.rate > kCertainRate)) {
@@ -118,7 +125,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
     return to_vertex(o.on_other(), next), Step::kMoved;
   }
   o.w.apart = o.w.proved = apart;
-  o.express(tip - apart * n, own_tip, kMoved ? back : n);
+  o.place_above(facet, apart, tip, own_tip, n);
   return Step::kHolds;
 }
 

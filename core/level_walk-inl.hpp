@@ -118,9 +118,10 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   if (!o.owner().bounded()) return Step::kLost;
   const Span span = facing(o, edge, o.on_other().feature);
   if (span.empty()) return to_edge(o.on_other(), span.beyond), Step::kMoved;
+  const auto of_facet = o.opposite();
   const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction),
-             n = load3_of_4(facet.normal);
-  const Quad down = -o.direction_in(n);
+             n = of_facet.direction_to_common(load3_of_4(facet.normal));
+  const Quad down = -o.direction_to_own(n);
   const double rise = dot(e, down);
   if (!(std::abs(rise) <= kCertainRate)) {
     const int end = rise > 0.0 ? 1 : 0;
@@ -129,12 +130,12 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   }
   if (rises_beside(edge, down, -kCertainRate, o.on_owner())) return o.w.levelled();
   const double s = std::clamp(halfway(o, start, e), span.from, span.to);
-  const Quad own = start + s * e, tip = o.point_out(own);
-  const double apart = dot(n, tip) - facet.offset;
+  const Quad own = start + s * e, above = o.point_out(own);
+  const double apart = of_facet.height(facet, own, above, n);
   if (!(apart > 0.0) && !o.w.overlapping) return Step::kLost;
   o.w.apart = apart;
   o.w.proved = apart - lost_by_tilt(o.w, std::abs(rise));
-  o.opposite().express(tip - apart * n, own, o.opposite().normal(n));
+  of_facet.place_above(facet, apart, own, above, n);
   return Step::kHolds;
 }
 

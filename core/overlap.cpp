@@ -38,8 +38,8 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
     return true;
   }
   if (has(state.b, 2, b.body().facets.size())) {
-    const Vec3 normal = b.direction_to_common(b.body().facets[state.b.feature].normal);
-    out = {-normal, kNone, state.b.feature};
+    const Vec3& normal = b.body().facets[state.b.feature].normal;
+    out = {-b.direction_to_common(normal).normalized(), kNone, state.b.feature};
     return true;
   }
   if (!has(state.a, 1, a.body().edges.size()) || !has(state.b, 1, b.body().edges.size())) {

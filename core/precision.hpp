@@ -22,7 +22,7 @@ struct Precision {
 
   // Are bounds, slack included, this near to each other what a converged answer promises?
   [[nodiscard]] bool converged(double gap) const noexcept {
-    return gap <= std::max(2.0 * (tight + slack), kConverged * size);
+    return gap <= std::max(tight + 2.0 * slack, kConverged * size);
   }
 };
 
@@ -35,10 +35,10 @@ struct PlacePrecision {
 // `farthest`: an upper bound of the distance or depth (m), which limits where on an unbounded body
 // to look.
 //
-// A wrong rotation moves a point of B by its error times reach_b. Or else the direction between the
-// bodies may be thought of as fixed to B: the wrong rotation then turns A about B's origin, from
-// where A reaches no farther than reach_a + apart, and scales the distance. Both are bounds, so the
-// smaller one counts.
+// A wrong rotation moves a point of B by its error times reach_b. Or else B may be thought of as
+// fixed: the wrong rotation then turns A about B's origin, from where A reaches no farther than
+// reach_a + apart, and what it is short of a rotation stretches the distance. Both are bounds, so
+// the smaller one counts.
 [[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
@@ -56,7 +56,8 @@ struct PlacePrecision {
   }
   if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
   p.size = p.reach_a + p.reach_b + apart;
-  const double turned = a.bounded() ? std::min(p.reach_b, p.reach_a + apart + farthest) : p.reach_b;
+  const double turned =
+      a.bounded() ? std::min(p.reach_b, p.reach_a + apart + kStretched * farthest) : p.reach_b;
   p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
             b_in_a.rotation_error * turned;
   p.tight = tight * kUlp * p.size;

@@ -20,23 +20,33 @@ inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
   return square >= kLeastSquare && square <= kMostSquare;
 }
 
-// Error of a rotation matrix in the 2-norm, for an exact quaternion. The common factor
-// s = 2/|q|^2 is off by 4 roundings, which scales R - I (norm at most 2): 8. (Near 1, |q|^2 is off
-// by one ulp for its products, one for their two sums and one for the sum of those, and 2 - |q|^2
-// is exact; or below 1, half an ulp for the last sum and one for 2 - |q|^2; 2^-55 is a quarter.)
-// What multiplies it is off by 3 in each entry, and the nine |entries| have a Frobenius norm of at
-// most 3: 9. The subtraction from 1 on the diagonal: 2.
-inline constexpr double kMatrixError = 20 * kUlp;
+// What follows is to first order; the second is 2^-50 of it, and every count is rounded up by more.
+// tests/core/rounding_count_test.cpp looks for the poses where all roundings at once are worst.
 
-// Error of a Hamilton product: a component is four products in three roundings each, at most two
-// ulps of the sum of their magnitudes (at most 1) and one of itself, so the vector is off by at
-// most 5 ulps, and the rotation, which turns by twice the angle, by 10.
-inline constexpr double kProductError = 10 * kUlp;
+// Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
+// - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
+// quotient
+//   1. (Or of nearly unit ones: from 1 on the sum is off by 1 and 2 - |q|^2 exact; below 1, by 1/2
+//   and 1; 2^-55 is 1/4.) That scales R - I, which is 2|x| long: 6|x|.
+// - The squares, there and on the diagonal 1 - 2p, p = x_j^2 + x_k^2: 4 p (1 - p); beside it
+// |R_ij|.
+// - The other products beside the diagonal: 2 (|x_i x_j| + |w x_k|).
+// - The sum in an entry and the product with the factor: 4 p and 2|R_ij|. 1 - 2p: 1/2.
+// The last three make a matrix of bounds; its 2-norm and 6|x| are together at most 15.52.
+inline constexpr double kMatrixError = 15.6 * kUlp;
 
-// R(q/|q|)^T v by two cross products. With |q| = 1 and exact inputs: each cross product is off by
-// at most 2.5 ulps of |q||v|, their weighted sum by 6.5, twice that by 13; the factor 2/|q|^2 by 4,
-// which moves the result by 8; the last two operations by 3.
-inline constexpr double kTurnError = 24 * kUlp;
+// Error of a Hamilton product a b of unit length. b's components multiply four vectors, all of unit
+// length and at right angles: the products are off by |b_i| ulps each, together at most 2; the two
+// pair sums by sqrt(b_x^2 + b_y^2) and sqrt(b_z^2 + b_w^2), together sqrt 2; their sum by 1. The
+// rotation turns by twice the angle: 8.83.
+inline constexpr double kProductError = 9 * kUlp;
+
+// R(q/|q|)^T v by two cross products, q = (x, w) of unit length and exact inputs. A cross product
+// of u and v is off by 2/sqrt 3 ulps of |u||v| in its products and 1 of itself: c = x cross v
+// by 2.16 |x|, which x cross c - w c turns and no more. That has 2.16 |x|, |w| and 1 of its own, of
+// |c| <= |x|: all in all below 5.37, twice 5.37. The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5.
+// The product with it: 2, the sum: 1.
+inline constexpr double kTurnError = 21.25 * kUlp;
 
 // Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
 // the last where the turn only permutes axes.
@@ -44,9 +54,21 @@ inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
 inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
-// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them:
-// placing a point on its feature (3), rotating it (6), an edge that is not quite at right angles to
-// n (6); the sums, the product and the quotient (8).
+// How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
+inline constexpr double kStretched = kMatrixError / kRotationError;
+
+// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
+// in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
+// in ulps of |a|, |b| and |t|
+//   rotating a vector (the products 3^(1/2), two of them summed 2^(1/2), together 3; all three 1):
+//   4; placing it, and the difference of a and b: 1 each of what is placed, which is no longer than
+//   all three together; a cross product with an edge 2.16, a norm 2.5, a product with a normal 3, a
+//   norm's quotient 2.5 + 1;
+//   an edge is at right angles to n but for 3.2, over twice a body's reach.
+// Of an edge and a vertex that is 12, 11 and 7, of a facet and a vertex 9, 9 and 9. Across edges it
+// is 10, 22 and 9, most of it from how well B's edge is known; not all of that can go with the
+// rotation's own error at once, and where it is worst 15 % of the whole is left (the test's kind
+// "edge, edge").
 inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
 
 // Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
@@ -54,7 +76,7 @@ inline constexpr double kUnderflow = 1e-150;
 
 // What rounding leaves between the bounds, by how many of the bodies are unbounded: errors of
 // direction grow along their rays. Measured on the hard cases of tests/: at most 5, 40 and 250.
-inline constexpr double kTightUlps[] = {8.0, 16.0, 16.0};
+inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
 
 // What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
 inline constexpr double kConverged = 90 * kUlp;
@@ -66,17 +88,17 @@ inline constexpr double kRadiusRounding = 0x1.1p-53;
 // (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
 inline constexpr double kSlender = 0x1p-20;
 
-// Unit vectors are off by 2^-52 and their products by three roundings more: a rate of approach
-// beyond this, per unit length, has the sign that exact arithmetic would give.
+// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give
+// with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of their
+// product all but the last sum, which is exact there or as small as the rate, by 2: 7 of 8.
 inline constexpr double kCertainRate = 0x1p-50;
 
 // Facets that are level along two edges may be tilted by a little more than either.
 inline constexpr double kLevelTilt = 2.0 * kCertainRate;
 
-// How far off the tilt of an edge or facet against a direction may be, beyond what the counts above
-// leave for it: rotating the direction (6), both directions' own rounding (2 each), the product (3)
-// over both bodies' sizes is 26 ulps of the smaller reach, and a point on a level feature takes 16
-// of the 30 that there are for both.
+// How far off the tilt of an edge or facet against a direction may be: rotating the direction (4),
+// both directions' own rounding (1 each). What their product adds, 2 over the smaller body's size,
+// is left over of the counts above: a point on a level feature takes 12 and 9 of them.
 inline constexpr double kTiltError = 6 * kUlp;
 
 // Edges nearer to parallel than this (the sine's square) have no direction across both that is

@@ -18,8 +18,12 @@ namespace towards_case {
 inline constexpr double kCrossing = 1e-5;
 
 inline Vec3 across(const Vec3& v, const Vec3& e) noexcept { return v - v.dot(e) * e; }
+// Unit vectors that the rotation's doubles have turned are not quite of unit length.
 inline Vec3 along(const ActiveSide& s) noexcept {
-  return s.direction_to_common(s.edge().direction);
+  return s.direction_to_common(s.edge().direction).normalized();
+}
+inline Vec3 normal_of(const ActiveSide& s) noexcept {
+  return s.direction_to_common(s.facet().normal).normalized();
 }
 
 inline Towards edge_edge(const ActiveSide& a, const ActiveSide& b, const Vec3& between) noexcept {
@@ -42,7 +46,7 @@ inline Towards from_facet(const Vec3& normal, const Vec3& between, bool other_is
   const bool a_vertex = a.feature() == Feature::kVertex, b_vertex = b.feature() == Feature::kVertex;
   if (a.feature() == Feature::kFacet) return from_facet(a.facet().normal, between, b_vertex);
   if (b.feature() == Feature::kFacet) {
-    return from_facet(b.direction_to_common(b.facet().normal), between, a_vertex);
+    return from_facet(normal_of(b), between, a_vertex);
   }
   const bool a_edge = a.feature() == Feature::kEdge, b_edge = b.feature() == Feature::kEdge;
   if (a_edge && b_edge) return edge_edge(a, b, between);

@@ -127,6 +127,10 @@ HWY_INLINE bool sides_fall(const Edge& edge, Quad g, double limit) {
   return edge.facet[0] == kNone || both_less(side_rates(edge, g), pair(limit));
 }
 
+// 1/|v| and 1/|v|^2 of what is a unit vector up to some roundings.
+HWY_INLINE double over_norm(Quad v) { return 1.5 - 0.5 * dot(v, v); }
+HWY_INLINE double over_square(Quad v) { return 2.0 - dot(v, v); }
+
 // One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
 // owner is B.
 template <bool kMoved>
@@ -145,14 +149,40 @@ struct Owned {
     return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
   }
   [[nodiscard]] HWY_INLINE Owned<!kMoved> opposite() const { return {w}; }
-  // The normal, from what points out of the owner.
-  [[nodiscard]] HWY_INLINE Quad normal(Quad n) const { return kMoved ? -direction_out(n) : n; }
-  // Witness points, each in its own frame; n: the normal, in frame A.
-  HWY_INLINE void express(Quad on_the_owner, Quad on_the_other, Quad n) const {
-    w.point_a = kMoved ? on_the_other : on_the_owner;
-    w.own_b = kMoved ? on_the_owner : on_the_other;
-    w.point_b = point_to_a(w.a_from_b, w.own_b);
-    w.normal = n;
+  // The owner's in frame A, and what is in frame A in the owner's.
+  [[nodiscard]] HWY_INLINE Quad point_to_common(Quad p) const {
+    return kMoved ? point_to_a(w.a_from_b, p) : p;
+  }
+  [[nodiscard]] HWY_INLINE Quad direction_to_common(Quad v) const {
+    return kMoved ? direction_to_a(w.a_from_b, v) : v;
+  }
+  [[nodiscard]] HWY_INLINE Quad direction_to_own(Quad v) const {
+    return kMoved ? direction_to_b(w.a_from_b, v) : v;
+  }
+  // How far a point of the other, by itself and in the owner's frame, lies outside the owner's
+  // facet; n: the facet's normal, direction_to_common().
+  [[nodiscard]] HWY_INLINE double height(const Facet& facet, Quad others, Quad own, Quad n) const {
+    if (!kMoved) return dot(n, own) - facet.offset;
+    return over_norm(n) * dot(n, others - w.a_from_b.translation) - facet.offset;
+  }
+  // Witness points: on the owner in its own frame and in A's, and so of the other.
+  HWY_INLINE void place(Quad own, Quad common, Quad others_own, Quad others_common) const {
+    w.point_a = kMoved ? others_common : common;
+    w.own_b = kMoved ? own : others_own;
+    w.point_b = kMoved ? common : others_common;
+  }
+  // The same for such a point, `apart` outside the facet, and the facet; and the normal.
+  HWY_INLINE void place_above(const Facet& facet, double apart, Quad others, Quad own,
+                              Quad n) const {
+    const Quad own_n = load3_of_4(facet.normal);
+    if (kMoved) {
+      const Quad below = own - (dot(own_n, own) - facet.offset) * own_n;
+      place(below, point_to_a(w.a_from_b, below), others, others);
+      w.normal = -over_norm(n) * n;
+    } else {
+      place(own - apart * n, own - apart * n, others, own);
+      w.normal = n;
+    }
   }
 };
 
