@@ -39,7 +39,8 @@ constexpr const char* kHelp =
     "  tick/NAME          one Monitor::tick: the shipped cells, and generated ones of thousands "
     "to\n"
     "                     millions of pairs; control_..._us: the machine's own noise, plain\n"
-    "                     arithmetic that takes as long as the tick's median, timed as often\n"
+    "                     arithmetic that takes as long as the tick's median, timed as often;\n"
+    "                     own_..._us: the tick's own, each tick at its best of own_runs runs\n"
     "  tick/NAME/plain    the same evaluating every pair; tick/NAME/fcl the minimum alone, by "
     "FCL's\n"
     "                     DynamicAABBTreeCollisionManager\n"
@@ -52,6 +53,7 @@ constexpr const char* kHelp =
     "truth_gap, how far the reference itself may be off; overlapping, how many pairs are.\n"
     "\n"
     "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
+    "  --version          says which one it is\n"
     "  --report DIR       runs all but cells and ticks, which takes a few minutes, and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
     "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
@@ -90,6 +92,10 @@ int main(int argc, char** argv) {
   std::vector<std::string> options, others;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
+    if (word == "--version") {
+      std::puts("clearance " CLEARANCE_VERSION);
+      return 0;
+    }
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);
     if (word == "--tick") {
       ticks = true;

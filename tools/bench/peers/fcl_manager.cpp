@@ -16,6 +16,7 @@
 #include "tools/bench/cpu_clock.hpp"
 #include "tools/bench/peers/fcl_bodies.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/tick_run.hpp"
 #include "tools/bench/ticks.hpp"
 
 namespace clearance::bench {

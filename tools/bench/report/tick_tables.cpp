@@ -21,6 +21,13 @@ std::string three(const Figure& f) {
          us(f.counted("max_us"));
 }
 
+// What is the tick's own: of each tick the least time of several runs.
+std::string own(const Figure& f) {
+  if (f.counted("own_runs") == 0.0) return "-";
+  return us(f.counted("own_p99.9_us")) + " / " + us(f.counted("own_max_us")) +
+         print(" (%.0f)", f.counted("own_runs"));
+}
+
 // What the machine makes of the same time of plain arithmetic.
 std::string noise(const Figure& f) {
   return us(f.counted("control_p99.9_us")) + " / " + us(f.counted("control_max_us"));
@@ -70,15 +77,15 @@ void add_rows(const Figures& figures, const std::string& prefix, Table& table) {
     const Figure& ours = *row;
     const Figure* fcl = figures.at(name + "/fcl");
     table.row({name.substr(prefix.size()), print("%.0f", ours.counted("pairs")), three(ours),
-               noise(ours), against(figures.at(name + "/plain"), ours), against(fcl, ours),
-               error(fcl), print("%.0f", ours.counted("queries")),
+               own(ours), noise(ours), against(figures.at(name + "/plain"), ours),
+               against(fcl, ours), error(fcl), print("%.0f", ours.counted("queries")),
                print("%.3g", ours.counted("proved")), print("%.0f", ours.counted("bytes_per_pair")),
                print("%.1f", ours.counted("start_ms"))});
   }
 }
 
 Table head(const char* cell) {
-  return Table({cell, "pairs", "tick, median / p99.9 / max us",
+  return Table({cell, "pairs", "tick, median / p99.9 / max us", "its own, p99.9 / max us (runs)",
                 "arithmetic of that median, p99.9 / max us", "plain, median us",
                 "FCL's minimum alone, median us", "its error, m (ticks)", "queries", "proved",
                 "bytes a pair", "start-up ms"});
@@ -90,7 +97,10 @@ std::string tick_tables(const Figures& figures) {
   Table cells = head("cell"), sweeps = head("sweep");
   add_rows(figures, "tick/", cells);
   add_rows(figures, "sweep/", sweeps);
-  return "Thread CPU time of one tick; multiples are of our median in the same run. Arithmetic: "
+  return "Thread CPU time of one tick; multiples are of our median in the same run. Its own: the "
+         "same ticks run "
+         "again, each with the least time that it took in any of the runs; what is slow in all of "
+         "them is the tick. Arithmetic: "
          "multiplications in registers that take as long as the median tick, timed as often "
          "right after the ticks; what is slow there is the machine. Plain: every "
          "pair evaluated in every tick; not run where that takes seconds. FCL: "

@@ -1,0 +1,46 @@
+// A monitor of a crowd, tick by tick, and what those ticks take.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/monitor.hpp"
+#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/crowd.hpp"
+
+namespace clearance::bench {
+
+// Tick `tick` of a run, from 0, after the start-up: when, and where everything is.
+[[nodiscard]] std::int64_t stamp_ns(int tick);
+
+// A monitor of a crowd and the time in its world. Two of the same crowd do the same to the bit.
+class TickRun {
+ public:
+  explicit TickRun(const Crowd& crowd, unsigned workers = 1);
+
+  // Until everything has been looked at once; returns what each tick took, ns.
+  std::vector<double> start_up();
+  void prepare();
+  // Thread CPU time of one tick, ns.
+  double tick();
+  [[nodiscard]] const Report& report() const { return *report_; }
+
+ private:
+  const Crowd& crowd_;
+  const double clock_cost_ = cpu_clock_cost();
+  Monitor monitor_;
+  std::vector<PoseSample> samples_;
+  int tick_ = 0;
+  std::int64_t now_ns_ = 0;
+  const Report* report_ = nullptr;
+};
+
+// Our minimum of each of the first `ticks` ticks after the start-up, m; NaN where it is not proved.
+[[nodiscard]] std::vector<double> proved_minima(const Crowd& crowd, int ticks);
+
+// What the ticks themselves take: `least` holds the time of each tick of a run, ns; runs them
+// again, `runs` times, with a new monitor each, and leaves the least that each has taken. The
+// machine disturbs some tick in every run, but hardly the same tick in all.
+void keep_least(const Crowd& crowd, int runs, std::vector<double>& least);
+
+}  // namespace clearance::bench
