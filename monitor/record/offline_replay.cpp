@@ -183,7 +183,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
                       (!result_.closest || report.minimum.distance < result_.closest->distance);
   if (closer) {
     result_.closest = report.minimum;
-    result_.closest_cycle = report.cycle;
+    result_.closest_tick = {report.cycle, report.cycle + cycle_offset_};
   }
   result_.rejected = report.rejected;
   if (on_tick) on_tick({report, input.sources, *monitor_});
@@ -197,7 +197,7 @@ void Replay::compare(const TickInput& input, const Report& report) {
   if (!difference) return;
   differs_ = true;
   const std::string what = "the replay differs in " + *difference;
-  fail(input.recorded->cycle, report.now_ns,
+  fail(report.cycle, report.now_ns,
        input.complete
            ? what
            : "poses that this tick used are not in the recording: it cannot be compared (" + what +
@@ -230,7 +230,8 @@ void Replay::finish_reference() {
 }
 
 void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what) {
-  result_.failures.push_back({cycle, now_ns, seconds(now_ns), what});
+  const TickNumber tick{cycle, cycle > 0 ? cycle + cycle_offset_ : 0};
+  result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
 void Replay::note_counts() {
@@ -255,16 +256,20 @@ void Replay::show_progress() {
 
 }  // namespace
 
+std::string TickNumber::text() const {
+  const std::string name = "tick " + std::to_string(cycle);
+  if (recorded == cycle) return name;
+  return name + " of the replay, " + std::to_string(recorded) + " of the daemon";
+}
+
 std::string OfflineReplay::text() const {
   std::string out;
   const auto line = [&out](const std::string& what) { out.append(what).append("\n"); };
   if (!error.empty()) line(error);
   for (const ReplayFailure& failure : failures) {
-    std::array<char, 64> when;
-    std::snprintf(when.data(), when.size(),
-                  "tick %llu (%.6f s): ", static_cast<unsigned long long>(failure.cycle),
-                  failure.time_s);
-    line(when.data() + failure.what);
+    std::array<char, 32> when;
+    std::snprintf(when.data(), when.size(), " (%.6f s): ", failure.time_s);
+    line(failure.tick.text() + when.data() + failure.what);
   }
   if (!damage.empty()) line(damage);
   for (const std::string& note : notes) line(note);

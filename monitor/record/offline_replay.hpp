@@ -56,8 +56,17 @@ struct ReplayedTick {
   const Monitor& monitor;
 };
 
+// How a person finds a tick: the replay counts its own from 1, and the daemon that was recorded may
+// have been further by then.
+struct TickNumber {
+  std::uint64_t cycle = 0;     // of the replay; 0: none
+  std::uint64_t recorded = 0;  // of the daemon; as `cycle` where the recording holds no reports
+  // "tick 12", or "tick 12 of the replay, 4012 of the daemon".
+  [[nodiscard]] std::string text() const;
+};
+
 struct ReplayFailure {
-  std::uint64_t cycle = 0;
+  TickNumber tick;
   std::int64_t now_ns = 0;
   double time_s = 0.0;  // after the first tick
   std::string what;     // which pair, zone or field, and the figures
@@ -72,7 +81,7 @@ struct OfflineReplay {
   std::uint64_t ticks = 0, compared = 0, batches = 0;
   std::int64_t first_ns = 0, last_ns = 0;
   std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
-  std::uint64_t closest_cycle = 0;
+  TickNumber closest_tick;
   std::array<std::uint64_t, kRejects> rejected{};
   std::optional<ReferenceTotals> reference;
 

@@ -66,7 +66,7 @@ TEST_F(OfflineReplayTest, NamesTheFirstTickAndFieldThatDiffers) {
   });
   const OfflineReplay result = replay({.compare = Comparison::kBits});
   ASSERT_EQ(1u, result.failures.size()) << result.text();
-  EXPECT_EQ(58u, result.failures[0].cycle);
+  EXPECT_EQ(58u, result.failures[0].tick.cycle);
   EXPECT_EQ(kStart + 57 * kTick, result.failures[0].now_ns);
   EXPECT_THAT(result.failures[0].what, HasSubstr("pairs[1] (hand - box).witness_a.y: recorded "));
 }
@@ -147,7 +147,7 @@ TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
   });
   const OfflineReplay result = replay({.compare = Comparison::kBits});
   ASSERT_EQ(1u, result.failures.size()) << result.text();
-  EXPECT_EQ(cycle, result.failures[0].cycle);
+  EXPECT_EQ(cycle, result.failures[0].tick.cycle);
   EXPECT_THAT(result.failures[0].what,
               HasSubstr("zone 'stop': recorded no change, replayed active"));
 }
@@ -229,6 +229,12 @@ TEST_F(OfflineReplayTest, RecordingThatBeginsLateIsComparedInWhatIsCertain) {
   EXPECT_TRUE(result.ok()) << result.text();
   EXPECT_EQ(150u, result.compared);
   EXPECT_THAT(result.notes, Contains(HasSubstr("begins at tick 51 of the daemon")));
+  EXPECT_EQ(result.closest_tick.cycle + 50, result.closest_tick.recorded);
+}
+
+TEST_F(OfflineReplayTest, TicksThatTheDaemonCountsOtherwiseAreNamedByBoth) {
+  EXPECT_EQ("tick 12", (TickNumber{12, 12}.text()));
+  EXPECT_EQ("tick 12 of the replay, 4012 of the daemon", (TickNumber{12, 4012}.text()));
 }
 
 TEST_F(OfflineReplayTest, TicksWhosePosesWereLostAreNotComparedInWhatIsCertain) {

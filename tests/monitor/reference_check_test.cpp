@@ -65,7 +65,7 @@ TEST_F(Reference, ThatIsMissedNamesTickPairAndFigures) {
   const OfflineReplay replay = held_against(
       row(1, "hand,box", "0.2") + row(2, "hand,box", "0.101") + row(3, "hand,box", "0.002"));
   ASSERT_EQ(2u, replay.failures.size()) << replay.text();
-  EXPECT_EQ(3u, replay.failures[0].cycle);
+  EXPECT_EQ(3u, replay.failures[0].tick.cycle);
   EXPECT_EQ(time_ns(2), replay.failures[0].now_ns);
   EXPECT_EQ(
       "hand - box: converged, distance 0.1 m, reference 0.101 m: not within the tolerance of 1e-09 "

@@ -20,8 +20,8 @@ TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBrok
   ASSERT_EQ(1u, result.failures.size()) << result.text();
   EXPECT_THAT(result.text(), HasSubstr("hand - box is 0.08"));
   EXPECT_THAT(result.text(), HasSubstr("at least 0.09 m expected"));
-  EXPECT_GT(result.failures[0].cycle, 90u);
-  EXPECT_LT(result.failures[0].cycle, 101u);
+  EXPECT_GT(result.failures[0].tick.cycle, 90u);
+  EXPECT_LT(result.failures[0].tick.cycle, 101u);
   EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
 }
 
@@ -45,7 +45,7 @@ TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMini
   record_darts(scene, run, 0.0);
   const OfflineReplay result = replay({.expect_min_distance = 0.2});
   ASSERT_EQ(1u, result.failures.size()) << result.text();
-  EXPECT_EQ(2u, result.failures[0].cycle);
+  EXPECT_EQ(2u, result.failures[0].tick.cycle);
   EXPECT_THAT(result.text(), HasSubstr("hand - box was no more than -"));
   EXPECT_THAT(result.text(),
               HasSubstr("apart between this tick and the last, at least 0.2 m expected"));

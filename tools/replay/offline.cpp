@@ -54,9 +54,8 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, double toler
               elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
-    std::printf("closest: %s, %.9g m (%.9g to %.9g) at tick %llu\n", pair_name(scene, pair).c_str(),
-                pair.distance, pair.lower, pair.upper,
-                static_cast<unsigned long long>(replay.closest_cycle));
+    std::printf("closest: %s, %.9g m (%.9g to %.9g) at %s\n", pair_name(scene, pair).c_str(),
+                pair.distance, pair.lower, pair.upper, replay.closest_tick.text().c_str());
   }
   if (replay.compared > 0) {
     std::printf("%llu reports compared\n", static_cast<unsigned long long>(replay.compared));
