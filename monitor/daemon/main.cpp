@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong
-  1  something else failed
+  1  something else failed, or --check was stopped before its end
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
@@ -76,7 +76,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   start_log("clearanced", arguments.log_level);
 
   if (arguments.check) {
-    signal.release();
+    signal.end_with(kFailed, "clearanced: stopped before the cell was checked\n");
     return check_only(arguments.cell);
   }
   const auto scene = scene_or_errors(read_cell(arguments.cell));

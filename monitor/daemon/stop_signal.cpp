@@ -1,10 +1,24 @@
 #include "monitor/daemon/stop_signal.hpp"
 
 #include <pthread.h>
+#include <unistd.h>
 
+#include <cstring>
 #include <ctime>
 
 namespace clearance {
+namespace {
+
+int status_at_the_end = 0;
+const char* words_at_the_end = "";
+
+extern "C" void end_now(int) {
+  [[maybe_unused]] const auto written =
+      write(STDERR_FILENO, words_at_the_end, std::strlen(words_at_the_end));
+  _exit(status_at_the_end);
+}
+
+}  // namespace
 
 StopSignal::StopSignal() {
   sigemptyset(&signals_);
@@ -18,6 +32,14 @@ StopSignal::StopSignal() {
 void StopSignal::release() {
   std::signal(SIGPIPE, SIG_DFL);
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void StopSignal::end_with(int status, const char* last_words) {
+  status_at_the_end = status;
+  words_at_the_end = last_words;
+  std::signal(SIGINT, end_now);
+  std::signal(SIGTERM, end_now);
+  release();
 }
 
 bool StopSignal::wait(std::int64_t timeout_ms) {

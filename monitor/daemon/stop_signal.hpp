@@ -18,6 +18,10 @@ class StopSignal {
   // has come already.
   void release();
 
+  // The same where the exit status tells something: a signal, also one that has come already, says
+  // `last_words` on stderr and ends the program with `status`. The words must stay.
+  void end_with(int status, const char* last_words);
+
   // True: a signal has come, now or before. Waits for one up to the given time.
   bool wait(std::int64_t timeout_ms);
 

@@ -28,6 +28,19 @@ TEST(RunProgram, EndsBySignalWhereTheBodyDoesNotWantToBeAsked) {
   }
 }
 
+TEST(RunProgram, EndsWithAStatusOfItsOwnWhereThatTellsSomething) {
+  for (const bool early : {false, true}) {
+    const auto body = [early](StopSignal& signal) {
+      if (early) std::raise(SIGTERM);
+      signal.end_with(kFailed, "stopped half way\n");
+      std::raise(SIGTERM);
+      return kOk;
+    };
+    EXPECT_EXIT(std::_Exit(run_program("interrupted", body)), testing::ExitedWithCode(kFailed),
+                "stopped half way");
+  }
+}
+
 TEST(RunProgram, SaysWhatWasThrownAndFails) {
   const auto body = [](StopSignal&) -> int { throw std::runtime_error("no cell today"); };
   EXPECT_EXIT(std::_Exit(run_program("unlucky", body)), testing::ExitedWithCode(kFailed),
