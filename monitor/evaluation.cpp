@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/radii.hpp"
+#include "monitor/between_ends.hpp"
 #include "monitor/carried_direction.hpp"
 #include "monitor/rounding.hpp"
 
@@ -16,10 +17,23 @@ DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, table.tracking[row]);
 }
 
+// What both objects have done since the last tick.
+struct Gone {
+  double travel, bend;  // m; the latter a sum not rounded up
+};
+
+inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evaluation) noexcept {
+  const ObjectState& a = evaluation.objects[entry.object_a];
+  const ObjectState& b = evaluation.objects[entry.object_b];
+  return {rounded_up(a.travel + b.travel), a.bend + b.bend};
+}
+
+// Returns what the directions of this evaluation and of one in the last tick tell of the time
+// between them.
 // point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
 // off by what rounding makes of how far the two are apart. `known`: bounds of the row before.
-void take_in(const DistanceResult& found, const Vec3& point_on_b, const RowBounds& known,
-             std::uint32_t row, const Evaluation& evaluation) noexcept {
+inline double take_in(const DistanceResult& found, const Vec3& point_on_b, const RowBounds& known,
+                      std::uint32_t row, const Gone& gone, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PlacedPart& a = evaluation.parts[table.part_a[row]];
   const PlacedPart& b = evaluation.parts[table.part_b[row]];
@@ -34,20 +48,27 @@ void take_in(const DistanceResult& found, const Vec3& point_on_b, const RowBound
   ClosestPoints& closest = table.closest[row];
   closest.distance = std::min(std::max(found.distance, lower), upper);
   closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
+  const Vec3 normal_before = closest.normal;
+  const double lower_before = closest.lower;
   closest.normal = turn * found.normal;
+  closest.lower = found.status == DistanceStatus::kConverged ? bounds.lower : -kInfinity;
   const Vec3 on_b = b.world_from_part_rotation * point_on_b + b.world_from_part.position;
   closest.witness_b = on_rounded_b(on_b, closest.normal, *b.shape);
   table.gap[row] = kept_gap(bounds.lower, closest.normal, a, b);
   table.status[row] = found.status;
+  const bool was_last_tick = table.row_evaluated_cycle[row] + 1 == evaluation.cycle;
   table.row_evaluated_cycle[row] = evaluation.cycle;
+  if (!was_last_tick) return -kInfinity;
+  return lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
+                             gone.travel, gone.bend);
 }
 
-void query(std::uint32_t row, Evaluation& evaluation) noexcept {
+double query(std::uint32_t row, const Gone& gone, Evaluation& evaluation) noexcept {
   const DistanceResult found = ask(row, evaluation);
   const PairTable& table = evaluation.table;
   const RowBounds known{table.lower[row], table.upper[row]};
-  take_in(found, table.tracking[row].b.point, known, row, evaluation);
   --evaluation.queries_left;
+  return take_in(found, table.tracking[row].b.point, known, row, gone, evaluation);
 }
 
 void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
@@ -61,50 +82,67 @@ std::uint32_t likely_row(std::uint32_t pair, const PairTable& table) noexcept {
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
+// A pair of several rows on its way through them.
+struct Rows {
+  double travelled;  // since they were last brought up to date, m
+  bool is_new;       // that was in this tick: of the last one nothing is known
+  Gone gone;
+  // Of those that did not stay out, m: the others are at least `smallest_upper` apart.
+  double smallest_upper = kInfinity, least_lower = kInfinity;
+  double between = kInfinity;  // at least so far apart since the last tick, m
+  bool all_that_matter = true;
+};
+
 // A row among others that travel alone proves not to be the closest: brought up to date by that.
-inline bool stays_out(std::uint32_t row, double travelled, double smallest_upper,
-                      PairTable& table) noexcept {
-  const double lower = rounded_down(table.lower[row] - travelled);
-  if (!(lower >= smallest_upper)) return false;
+// What is carried so was no nearer on the way from where it was before.
+inline bool stays_out(std::uint32_t row, Rows& rows, PairTable& table) noexcept {
+  const double lower = rounded_down(table.lower[row] - rows.travelled);
+  if (!(lower >= rows.smallest_upper)) return false;
   table.lower[row] = lower;
-  table.upper[row] = rounded_up(table.upper[row] + travelled);
+  table.upper[row] = rounded_up(table.upper[row] + rows.travelled);
+  if (rows.is_new) rows.between = std::min(rows.between, rounded_down(lower - rows.gone.travel));
   return true;
 }
 
 // Any other row: brought up to date no more precisely than it takes to tell that it is not the
-// closest, else evaluated. False: that would have taken a query too many.
-bool settle_row(std::uint32_t row, double travelled, double smallest_upper,
-                Evaluation& evaluation) noexcept {
+// closest, else evaluated, as far as the budget goes.
+void settle_row(std::uint32_t row, Rows& rows, Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const RowBounds now = bounds_now(row, travelled, evaluation.parts, table);
+  const double travel = rows.gone.travel;
+  const double before =
+      rows.is_new ? -kInfinity : rounded_down(table.lower[row] - rows.travelled + travel);
+  const RowBounds now = bounds_now(row, rows.travelled, evaluation.parts, table);
   table.lower[row] = now.lower;
   table.upper[row] = now.upper;
-  if (now.lower >= smallest_upper) return true;
-  if (evaluation.queries_left == 0) return false;
-  query(row, evaluation);
-  return true;
+  double between = -kInfinity;
+  const bool matters = now.lower < rows.smallest_upper;
+  if (matters && evaluation.queries_left > 0) {
+    between = query(row, rows.gone, evaluation);
+  } else if (matters) {
+    rows.all_that_matter = false;
+  }
+  if (between == -kInfinity) between = lower_by_ends(before, table.lower[row], travel);
+  rows.smallest_upper = std::min(rows.smallest_upper, table.upper[row]);
+  rows.least_lower = std::min(rows.least_lower, table.lower[row]);
+  rows.between = std::min(rows.between, between);
 }
 
 void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const double travelled = table.entries[pair].carried_cycle == evaluation.cycle
-                               ? 0.0
-                               : travelled_since(pair, evaluation.objects, table);
+  PairEntry& entry = table.entries[pair];
+  const bool carried = entry.carried_cycle == evaluation.cycle;
+  Rows rows{.travelled = carried ? 0.0 : travelled_since(pair, evaluation.objects, table),
+            .is_new = carried || raised_this_tick(pair, evaluation.objects, table),
+            .gone = gone_since_last_tick(entry, evaluation)};
   const std::uint32_t likely = likely_row(pair, table);
-  bool all_that_matter = settle_row(likely, travelled, kInfinity, evaluation);
-  double smallest_upper = table.upper[likely], least = table.lower[likely];
-  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
-       ++row) {
-    if (row == likely) continue;
-    if (!stays_out(row, travelled, smallest_upper, table)) {
-      if (!settle_row(row, travelled, smallest_upper, evaluation)) all_that_matter = false;
-      smallest_upper = std::min(smallest_upper, table.upper[row]);
-    }
-    least = std::min(least, table.lower[row]);
+  settle_row(likely, rows, evaluation);
+  for (std::uint32_t row = entry.first_row; row < entry.end_row; ++row) {
+    if (row != likely && !stays_out(row, rows, table)) settle_row(row, rows, evaluation);
   }
   note_carried(pair, evaluation.objects, evaluation.cycle, table);
-  table.entries[pair].least_lower = least;
-  if (all_that_matter) table.entries[pair].evaluated_cycle = evaluation.cycle;
+  entry.least_lower = rows.least_lower;
+  table.lower_between[pair] = rows.between;
+  if (rows.all_that_matter) entry.evaluated_cycle = evaluation.cycle;
 }
 
 }  // namespace
@@ -129,7 +167,8 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
     carry(pair, evaluation);
     known = {table.lower[row], table.upper[row]};
   }
-  take_in(found, point_on_b, known, row, evaluation);
+  table.lower_between[pair] =
+      take_in(found, point_on_b, known, row, gone_since_last_tick(entry, evaluation), evaluation);
   entry.least_lower = table.lower[row];
   entry.evaluated_cycle = evaluation.cycle;
 }

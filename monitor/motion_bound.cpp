@@ -12,8 +12,8 @@ using Vec4 = Eigen::Vector4d;
 
 double turn_at_most(const Vec4& before, const Vec4& after) noexcept {
   if (before == after) return 0.0;
-  const Vec4 from = before / before.norm();
-  const Vec4 to = after / after.norm();
+  const Vec4 from = before * (1.0 / before.norm());
+  const Vec4 to = after * (1.0 / after.norm());
   // |q2 - q1| = 2 sin(theta / 4): free of cancellation. q and -q are the same orientation.
   const double step = std::sqrt(std::min((to - from).squaredNorm(), (to + from).squaredNorm()));
   return rounded_up(2.0 * step) + kTurnRounding;
@@ -31,6 +31,11 @@ Motion motion_between(const Pose& before, const Pose& after) noexcept {
 double moved_at_most(const Motion& motion, double reach) noexcept {
   const double turned = motion.turn == 0.0 ? 0.0 : motion.turn * reach;  // not 0 * infinity
   return rounded_up(motion.shift + turned);
+}
+
+double bend_at_most(const Motion& motion, double reach) noexcept {
+  constexpr double kEighth = 1.0 / (8.0 * 0.9 * 0.9);
+  return motion.turn == 0.0 ? 0.0 : rounded_up(kEighth * motion.turn * motion.turn * reach);
 }
 
 }  // namespace clearance

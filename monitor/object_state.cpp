@@ -114,6 +114,7 @@ void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noex
 void travel(double reach, ObjectState& state) noexcept {
   state.reach = reach;
   state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
+  state.bend = state.moved ? bend_at_most(state.motion, reach) : 0.0;
   state.travelled_before = state.travelled;
   if (state.motion.turn > 0.0) state.turned = rounded_up(state.turned + state.motion.turn);
   state.leapt = false;

@@ -27,6 +27,9 @@ struct ObjectState {
   // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
   // m, set by travel().
   double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
+  // At any instant since the last tick no point of it was farther than this from where it would
+  // have been had it gone straight and evenly from its place then to its place now, m.
+  double bend = 0.0;
   double turned = 0.0;       // Motion::turn, in all
   double reach = kInfinity;  // no point of it is farther from its origin, m; set by travel()
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen

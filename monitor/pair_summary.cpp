@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/between_ends.hpp"
 #include "monitor/closing.hpp"
 #include "monitor/relative_travel.hpp"
 #include "monitor/rounding.hpp"
@@ -13,6 +14,8 @@ namespace {
 // Of the distance: what objects have travelled leaves less than half of this open, where nobody
 // has to know how they go together.
 constexpr double kSmallTravel = 1.0 / 64.0;
+// Of the travel: nor where directions leave less than this open.
+constexpr double kSmallShare = 1.0 / 4096.0;
 
 PairStatus status_of(DistanceStatus status) noexcept {
   switch (status) {
@@ -27,16 +30,6 @@ PairStatus status_of(DistanceStatus status) noexcept {
       break;
   }
   return PairStatus::kLoose;
-}
-
-// Both ends of the way bound what lies between: a pair that has come `there` cannot have been
-// nearer than its distance before less `there`, nor than its distance now less what is left of
-// `travel`.
-double lower_between(double before, double now, double travel) noexcept {
-  if (!(travel < kInfinity)) return now < kInfinity ? -kInfinity : now;
-  const double halfway = 0.5 * (before + now - travel);
-  const double lower = std::max({halfway, before - travel, now - travel});
-  return std::min(now, rounded_down(lower - (std::abs(now) + travel) * 0x1p-50));
 }
 
 // The row with the smallest upper bound, evaluated ones before all others.
@@ -84,22 +77,30 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
   return status;
 }
 
-// Of two objects that were known at the last tick and have not leapt since.
+// Of two objects that were known at the last tick and have not leapt since. `along`: what the
+// directions of two evaluations tell, m.
 double lower_on_the_way(const ObjectState& a, const ObjectState& b, double before, double now,
-                        Since since) noexcept {
-  double travel = rounded_up(a.travel + b.travel);
+                        double along, Since since) noexcept {
+  const double travel = rounded_up(a.travel + b.travel);
   if (travel == 0.0) return now;
+  const bool told = along > -kInfinity;
+  if (told && along >= std::min(before, now) - kSmallShare * travel) return std::min(now, along);
+  const double lower = std::max(along, lower_by_ends(before, now, travel));
   const bool matters = travel > kSmallTravel * now && a.travel > 0.0 && b.travel > 0.0;
-  if (since == Since::kByRelative && matters) {
-    travel = std::min(travel, relative_travel(a, b));
-  }
-  return lower_between(before, now, travel);
+  if (since == Since::kByTravel || !matters) return std::min(now, lower);
+  const double relative = std::min(travel, relative_travel(a, b));
+  return std::min(now, std::max(lower, lower_by_ends(before, now, relative)));
+}
+
+double lower_along(std::uint32_t pair, std::uint64_t cycle, const PairTable& table) noexcept {
+  return table.entries[pair].evaluated_cycle == cycle ? table.lower_between[pair] : -kInfinity;
 }
 
 // What summary_of() tells of the usual pair, brought up to date in this tick, in a third of the
 // time.
-PairSummary summary_of_one_row(const PairEntry& entry, const ObjectState& a, const ObjectState& b,
+PairSummary summary_of_one_row(std::uint32_t pair, const ObjectState& a, const ObjectState& b,
                                std::uint64_t cycle, const PairTable& table, Since since) noexcept {
+  const PairEntry& entry = table.entries[pair];
   const std::uint32_t row = entry.first_row;
   const std::uint64_t evaluated = table.row_evaluated_cycle[row];
   const double upper = table.upper[row];
@@ -107,7 +108,8 @@ PairSummary summary_of_one_row(const PairEntry& entry, const ObjectState& a, con
       .status = evaluated == cycle ? status_of(table.status[row]) : PairStatus::kCarried,
       .lower = entry.least_lower,
       .upper = upper,
-      .lower_since = lower_on_the_way(a, b, entry.lower_before, entry.least_lower, since),
+      .lower_since = lower_on_the_way(a, b, entry.lower_before, entry.least_lower,
+                                      lower_along(pair, cycle, table), since),
       .upper_since = upper,
       .row = row,
       .evaluated_cycle = evaluated,
@@ -148,7 +150,8 @@ double lower_since_last_tick(std::uint32_t pair, double lower,
   const ObjectState& b = objects[table.entries[pair].object_b];
   if (a.began || b.began) return lower;
   if (a.leapt || b.leapt) return -kInfinity;
-  return lower_on_the_way(a, b, lower_last_tick(pair, objects, cycle, table), lower, since);
+  return lower_on_the_way(a, b, lower_last_tick(pair, objects, cycle, table), lower,
+                          lower_along(pair, cycle, table), since);
 }
 
 PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
@@ -159,7 +162,7 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
   const ObjectState& b = objects[entry.object_b];
   const bool carried = entry.carried_cycle == cycle;
   if (a.plain && b.plain && carried && entry.end_row - entry.first_row == 1) {
-    return summary_of_one_row(entry, a, b, cycle, table, since);
+    return summary_of_one_row(pair, a, b, cycle, table, since);
   }
   PairSummary summary;
   if (!a.known() || !b.known()) return summary;

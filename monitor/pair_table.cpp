@@ -17,6 +17,7 @@ double between(double before, double now) noexcept {
 
 ClosestPoints::ClosestPoints() noexcept
     : distance(kNan),
+      lower(-kInfinity),
       witness_a(Vec3::Constant(kNan)),
       witness_b(Vec3::Constant(kNan)),
       normal(Vec3::Constant(kNan)) {}
@@ -45,6 +46,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
     }
     entry.end_row = rows();
   }
+  lower_between.assign(pairs(), -kInfinity);
   lower.assign(rows(), -kInfinity);
   upper.assign(rows(), kInfinity);
   row_evaluated_cycle.assign(rows(), 0);
@@ -62,6 +64,13 @@ double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objec
   return rounded_up(sum);
 }
 
+bool raised_this_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                      const PairTable& table) noexcept {
+  const PairEntry& entry = table.entries[pair];
+  return entry.carried_at.a > objects[entry.object_a].travelled_before ||
+         entry.carried_at.b > objects[entry.object_b].travelled_before;
+}
+
 double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
                        std::uint64_t cycle, const PairTable& table) noexcept {
   if (table.entries[pair].carried_cycle == cycle) return table.entries[pair].lower_before;
@@ -70,7 +79,7 @@ double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objec
   const double before_b = objects[table.entries[pair].object_b].travelled_before;
   const double lower = table.entries[pair].least_lower;
   if (then.a == before_a && then.b == before_b) return lower;
-  if (then.a > before_a || then.b > before_b) return -kInfinity;  // its bounds are of this tick
+  if (raised_this_tick(pair, objects, table)) return -kInfinity;
   const double travelled = between(then.a, before_a) + between(then.b, before_b);
   return travelled > 0.0 ? rounded_down(lower - rounded_up(travelled)) : lower;
 }

@@ -22,6 +22,7 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Where two parts were found to be closest, in the world. NaN until evaluated.
 struct ClosestPoints {
   double distance;  // m
+  double lower;     // along the normal, for the exact poses of then, m; -infinity: nothing
   Vec3 witness_a, witness_b;
   Vec3 normal;
   ClosestPoints() noexcept;
@@ -50,6 +51,10 @@ struct alignas(64) PairEntry {
 struct PairTable {
   std::vector<PairEntry> entries;  // as in Scene::pairs
 
+  // By pair: at least as far apart, m, from the tick before its last evaluation up to that, as the
+  // directions of two evaluations tell; -infinity: they do not.
+  std::vector<double> lower_between;
+
   // By row.
   std::vector<std::uint32_t> part_a, part_b;       // indices into parts_of(scene)
   std::vector<double> lower, upper;                // true at carried_at, m
@@ -75,6 +80,10 @@ struct PairTable {
 // date, m.
 [[nodiscard]] double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
                                      const PairTable& table) noexcept;
+
+// Something has moved since the last tick, and the pair's bounds are of this one (raise()).
+[[nodiscard]] bool raised_this_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                    const PairTable& table) noexcept;
 
 // The pair's distance at the tick before `cycle` was at least this, m, if its objects were known
 // then.

@@ -65,18 +65,19 @@ inline double sum_of_sizes(const Vec3& v) noexcept {
 
 // The product of the two poses, keeping orientations that need no product to the bit: parallel
 // faces stay parallel, and a rotated floor stays where it is. The length of the product's
-// quaternion is that of its factors: a pose means its exact normalisation.
-void compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcept {
+// quaternion is that of its factors: a pose means its exact normalisation. Returns the product's
+// rotation.
+Mat3 compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcept {
   const Pose& offset = part.object_from_part;
   const bool offset_turns = !is_identity(offset.orientation);
   const bool object_turns = !is_identity(world_from_object.orientation);
   if (!offset_turns && offset.position.isZero(0.0)) {
     part.world_from_part = world_from_object;
     part.shift_error = part.turn_error = 0.0;
-    return;
+    return rotation_matrix(world_from_object.orientation);
   }
-  put(rotation_matrix(world_from_object.orientation), offset.position, world_from_object.position,
-      part.world_from_part.position);
+  const Mat3 turn = rotation_matrix(world_from_object.orientation);
+  put(turn, offset.position, world_from_object.position, part.world_from_part.position);
   if (!offset_turns) {
     part.world_from_part.orientation = world_from_object.orientation;
   } else if (!object_turns) {
@@ -86,6 +87,7 @@ void compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcep
   }
   part.turn_error = offset_turns && object_turns ? kPlacingError : 0.0;
   part.shift_error = kPlacingError * (world_from_object.position.norm() + part.offset_length);
+  return offset_turns ? rotation_matrix(part.world_from_part.orientation) : turn;
 }
 
 void place_ball(const Mat3& turn, PlacedPart& part) noexcept {
@@ -140,8 +142,7 @@ void place(const ObjectState& object, PlacedPart& part) noexcept {
 }
 
 void place_at(const Pose& world_from_object, PlacedPart& part) noexcept {
-  compose_with_error(world_from_object, part);
-  const Mat3 turn = rotation_matrix(part.world_from_part.orientation);
+  const Mat3 turn = compose_with_error(world_from_object, part);
   place_ball(turn, part);
   part.world_from_part_rotation = turn;
   part.placed = true;

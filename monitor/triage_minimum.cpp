@@ -58,8 +58,12 @@ void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
 void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   const auto upper_of = [&table](std::uint32_t pair) {
-    return *std::min_element(table.upper.begin() + table.entries[pair].first_row,
-                             table.upper.begin() + table.entries[pair].end_row);
+    const PairEntry& entry = table.entries[pair];
+    double upper = table.upper[entry.first_row];
+    for (std::uint32_t row = entry.first_row + 1; row < entry.end_row; ++row) {
+      upper = std::min(upper, table.upper[row]);
+    }
+    return upper;
   };
   double smallest_upper = kInfinity;
   scratch_.clear();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/monitor/adversary_motion.hpp"
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -33,6 +34,31 @@ TEST(MotionBound, NoPointMovesFartherThanTheBound) {
       ASSERT_LE(moved, moved_at_most(motion, reach * (1.0 + 1e-15))) << "case " << i;
     }
   }
+}
+
+TEST(MotionBound, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
+  Random random(2);
+  double tightest = 1.0;
+  for (int i = 0; i < 5000; ++i) {
+    const Pose before = random.pose(5.0);
+    const double scale = std::pow(10.0, random.in(-4.0, 0.0));
+    const Vec3 axis = random.vec(1.0);
+    Pose after = turned(before, axis, scale * random.in(-3.1, 3.1));
+    after.position += random.vec(scale);
+    const Vec3 across = before.orientation.conjugate() * axis.unitOrthogonal();
+    const Vec3 point = i % 2 == 0 ? across : random.vec(2.0);
+    const double told = bend_at_most(motion_between(before, after), point.norm());
+    double most = 0.0;
+    for (int k = 0; k <= 10; ++k) {
+      const Vec3 straight =
+          transform(before, point) + 0.1 * k * (transform(after, point) - transform(before, point));
+      most = std::max(most,
+                      (transform(test::between(before, after, 0.1 * k), point) - straight).norm());
+    }
+    ASSERT_LE(most, told + 1e-14) << "case " << i;
+    tightest = std::min(tightest, told > 1e-9 ? 1.0 - most / told : 1.0);
+  }
+  EXPECT_LT(tightest, 0.25);
 }
 
 TEST(MotionBound, IsTightForAPointThatMovesStraightAndForOneThatTurns) {
