@@ -6,16 +6,20 @@
 #include "core/overlap_walk-inl.hpp"
 #include "core/radii.hpp"
 
-HWY_BEFORE_NAMESPACE();
 namespace clearance {
 
-// What the walk leaves open; radii included. The latter of bodies that overlapped.
+// What the walk leaves open; radii included. The latter of bodies that overlapped. Declared out
+// here: what is first declared between the macros below is compiled for that instruction set,
+// wherever it is defined.
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept;
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state) noexcept;
 
-namespace HWY_NAMESPACE {
+}  // namespace clearance
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
 
 HWY_INLINE DistanceResult rounded(DistanceResult result, const Walk& w) {
   add_radii(result, w.a, w.b);
@@ -38,13 +42,13 @@ DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedro
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace clearance
+}  // namespace clearance::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/active_side.hpp"
 #include "core/certificate.hpp"
@@ -154,14 +158,14 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   return result;
 }
 
-// The spheres around the frames' origins already say that they are far apart.
-bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                    const RelativePose& a_from_b, double far_away, DistanceResult& r) noexcept {
-  if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return false;
-  const double apart = a_from_b.translation.norm();
-  const double size = a.bounding_radius + a.radius + b.bounding_radius + b.radius;
+// The spheres around the frames' origins already say that they are far apart; radii included.
+std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const RelativePose& a_from_b,
+                                             double far_away) noexcept {
+  if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return {};
+  const double apart = a_from_b.translation.norm(), size = a.bounding_radius + b.bounding_radius;
   const double slack = a_from_b.translation_error + 0x1p-50 * (apart + size);
-  if (!(apart - size - slack >= far_away)) return false;
+  DistanceResult r;
   r.lower = apart - size - slack;
   r.upper = apart + size + slack;
   r.distance = r.lower;
@@ -169,19 +173,23 @@ bool far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   r.point_on_a = a.interior;
   r.point_on_b = a_from_b.rotation * b.interior + a_from_b.translation;
   r.status = DistanceStatus::kFarAway;
-  return true;
+  add_radii(r, a, b);
+  if (!(r.lower > 0.0) || !(r.lower >= far_away)) return {};
+  return r;
 }
 
 bool is_a_place(const RelativePose& pose) noexcept {
   return pose.rotation.allFinite() && pose.translation.allFinite();
 }
 
-DistanceResult nothing_known(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
-  return {.lower = -kInfinity,
+DistanceResult nothing_known() noexcept {
+  const Vec3 nowhere = Vec3::Constant(std::nan(""));
+  return {.distance = std::nan(""),
+          .lower = -kInfinity,
           .upper = kInfinity,
-          .normal = Vec3::Constant(std::nan("")),
-          .point_on_a = a.interior,
-          .point_on_b = b.interior};
+          .normal = nowhere,
+          .point_on_a = nowhere,
+          .point_on_b = nowhere};
 }
 
 // Lengths that overflow leave numbers that are none.
@@ -192,7 +200,7 @@ bool says_something(const DistanceResult& r) noexcept {
 
 void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& r) noexcept {
   if (!says_something(r)) {
-    r = nothing_known(a, b);
+    r = nothing_known();
   } else {
     add_radii(r, a, b);
   }
@@ -218,7 +226,7 @@ const char* name(DistanceStatus status) noexcept {
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known(a, b);
+  if (!is_a_place(a_from_b)) return nothing_known();
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
   const double apart = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, apart);
@@ -250,14 +258,13 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known(a, b);
+  if (!is_a_place(a_from_b)) return nothing_known();
+  if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
-  if (!far_by_spheres(a, b, a_from_b, options.far_away, result)) {
-    if (state.a.deep && options.depth) {
-      if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
-    } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-      return by_search(a, b, a_from_b, state, options.depth);
-    }
+  if (state.a.deep && options.depth) {
+    if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
+  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+    return by_search(a, b, a_from_b, state, options.depth);
   }
   finish(a, b, result);
   return result;

@@ -14,7 +14,7 @@ namespace clearance {
 
 enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
-  kFarAway,         // lower >= far_away; nobody asked by how much
+  kFarAway,         // lower >= far_away > 0, by the spheres around them; nobody asked by how much
   kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
   kOverlapping,     // proved: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
@@ -37,9 +37,8 @@ enum class DistanceStatus : std::uint8_t {
 // vouch for: lower is -infinity then, distance and normal are NaN, the points lie in both bodies,
 // and upper still bounds the depth (-infinity: certainly no translation).
 //
-// Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing is
-// known: the bounds are infinite, the distance is 0, as if they touched, the points lie in their
-// bodies as they stand in their own frames, the normal is NaN, and the status kIterationLimit.
+// Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing
+// is known: the bounds are infinite, all other numbers NaN, and the status is kIterationLimit.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;
@@ -56,7 +55,7 @@ struct DistanceResult {
 // After a query that was not kFarAway the two points are the witness points, before radii, each in
 // its own body's frame: transform(world_from_b, state.b.point) lies on B to the rounding of B's own
 // pose, however far away A is.
-struct TrackingState {
+struct alignas(64) TrackingState {
   static constexpr std::uint8_t kCold = 255;
   struct Side {
     std::uint8_t dimension =
@@ -67,9 +66,12 @@ struct TrackingState {
   };
   Side a, b;
 };
+static_assert(sizeof(TrackingState) == 64, "a cache line a pair");
 
 struct DistanceOptions {
-  double far_away = kInfinity;  // m: stop as soon as the lower bound reaches this
+  // m: where the spheres around both bodies prove as much, they are all that is asked. The status
+  // is kFarAway then, and the distance the lower bound.
+  double far_away = kInfinity;
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
   // Where they are not proved apart, the status is kIterationLimit then and the lower bound may be
   // -infinity.

@@ -59,11 +59,10 @@ struct RelativePose {
   Orientation world_from_a{0.0, 0.0, 0.0, 0.0}, world_from_b{0.0, 0.0, 0.0, 0.0};
 };
 
-// Error behaviour: none. Of quaternions that are zero or not finite, or positions that are not,
-// it makes no numbers, and distance() of it knows nothing.
-// Equal orientations give exactly the identity, and orientations that permute axes exactly that
-// permutation, each with rotation_error 0: parallel stays parallel. (Not where their squares over-
-// or underflow.)
+// Error behaviour: none. Of a quaternion that is zero or not finite, or a position that is not,
+// come NaNs, of which distance() says that nothing is known. Equal orientations give exactly the
+// identity, and orientations that permute axes exactly that permutation, each with rotation_error
+// 0: parallel stays parallel. (Not where their squares over- or underflow.)
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

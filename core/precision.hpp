@@ -22,7 +22,7 @@ struct Precision {
 
   // Are bounds, slack included, this near to each other what a converged answer promises?
   [[nodiscard]] bool converged(double gap) const noexcept {
-    return gap <= std::max(tight + 2.0 * slack, kConverged * size);
+    return gap <= std::max(tight + 2.0 * slack, kConvergedGap * size);
   }
 };
 

@@ -79,7 +79,7 @@ inline constexpr double kUnderflow = 1e-150;
 inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
 
 // What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
-inline constexpr double kConverged = 90 * kUlp;
+inline constexpr double kConvergedGap = 90 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;

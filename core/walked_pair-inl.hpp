@@ -53,8 +53,9 @@ struct Walk {
   }
 };
 
+// Poses that are none lead beyond the ends of edges that have none: to no feature.
 HWY_INLINE void to_vertex(Side& side, std::int32_t vertex) {
-  side.dimension = 0;
+  side.dimension = vertex == kNone ? TrackingState::kCold : 0;
   side.feature = vertex;
 }
 HWY_INLINE void to_edge(Side& side, std::int32_t edge) {
