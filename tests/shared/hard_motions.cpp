@@ -5,16 +5,12 @@
 
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance::hard {
 namespace {
 
 using Quat = Eigen::Quaterniond;
-
-Quat turn_about(const Vec3& axis, double angle) {
-  const Vec3 v = axis * std::sin(angle / 2);
-  return {std::cos(angle / 2), v.x(), v.y(), v.z()};
-}
 
 HardMotion pair_of(Random& random, const char* note) {
   return {note, any_bounded(random), any_bounded(random), {}};
@@ -33,8 +29,8 @@ HardMotion flyby(Random& random, int steps) {
   const Vec3 beside = across * reach * random.uniform(0.5, 3.0);
   for (int k = 0; k < steps; ++k) {
     const double t = 2.0 * k / steps - 1.0;
-    m.poses.emplace_back(pose_at(Vec3::Zero(), turn_about(axis_a, t)),
-                         pose_at(beside + way * (4 * reach * t), turn_about(axis_b, 2 * t)));
+    m.poses.emplace_back(pose_at(Vec3::Zero(), test::turned(axis_a, t)),
+                         pose_at(beside + way * (4 * reach * t), test::turned(axis_b, 2 * t)));
   }
   return m;
 }
@@ -45,8 +41,8 @@ HardMotion spin(Random& random, int steps) {
   const Vec3 axis = random.direction();
   const Vec3 at = random.direction() * (extent(m.a) + extent(m.b)) * 2.0;
   for (int k = 0; k < steps; ++k) {
-    m.poses.emplace_back(pose_at(Vec3::Zero(), turn_about(axis, 0.5 * k)),
-                         pose_at(at, turn_about(axis, -0.37 * k)));
+    m.poses.emplace_back(pose_at(Vec3::Zero(), test::turned(axis, 0.5 * k)),
+                         pose_at(at, test::turned(axis, -0.37 * k)));
   }
   return m;
 }
@@ -80,7 +76,7 @@ HardMotion slide(Random& random, int steps) {
     const double tilt = k > steps / 2 ? 1e-12 * (k - steps / 2) : 0.0;
     const Vec3 at(t * (half.x() + 0.25), 0.25 * t, half.z() + 0.25 + gap);
     m.poses.emplace_back(pose_at(Vec3::Zero(), world),
-                         pose_at(world * at, world * turn_about(Vec3::UnitY(), tilt)));
+                         pose_at(world * at, world * test::turned(Vec3::UnitY(), tilt)));
   }
   return m;
 }
@@ -110,7 +106,7 @@ HardMotion through(Random& random, int steps) {
   for (int k = 0; k < steps; ++k) {
     const double t = 2.0 * k / steps - 1.0;
     m.poses.emplace_back(pose_at(Vec3::Zero(), turn),
-                         pose_at(way * (reach * t), turn_about(axis, 0.3 * t)));
+                         pose_at(way * (reach * t), test::turned(axis, 0.3 * t)));
   }
   return m;
 }
@@ -142,7 +138,7 @@ HardMotion roll(Random& random, int steps) {
   m.b = random.chance(0.5) ? box(Vec3(2, 2, 0.5)) : rounded(random);
   for (int k = 0; k < steps; ++k) {
     const double angle = 2 * std::numbers::pi * k / steps;
-    const Quat lean = turn_about(Vec3(std::cos(angle), std::sin(angle), 0), 0.8);
+    const Quat lean = test::turned(Vec3(std::cos(angle), std::sin(angle), 0), 0.8);
     m.poses.emplace_back(pose_at(Vec3::Zero(), lean), pose_at(Vec3(0, 0, 2.5)));
   }
   return m;

@@ -5,14 +5,12 @@
 #include <numbers>
 #include <utility>
 
+#include "tests/shared/poses.hpp"
+
 namespace clearance::hard {
 namespace {
 
 using Quat = Eigen::Quaterniond;
-
-Quat turn_about(const Vec3& axis, double angle) {
-  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-}
 
 double either_sign(Random& random, double magnitude) { return random.sign() * magnitude; }
 
@@ -67,7 +65,7 @@ HardCase ulp_quads(Random& random) {
   Body a = body(), b = random.chance(0.5) ? a : body();
   HardCase c{"", std::move(a), std::move(b), {}, {}};
   if (random.chance(0.5)) c.pose_a.orientation = c.pose_b.orientation = random.rotation();
-  if (random.chance(0.3)) c.pose_b.orientation = turn_about(random.direction(), 1e-15);
+  if (random.chance(0.3)) c.pose_b.orientation = test::turned(random.direction(), 1e-15);
   const Vec3 up = c.pose_a.orientation * (turn * Vec3::UnitZ());
   part(c, up, 1.0, random);
   if (random.chance(0.5)) c.pose_b.position += random.in_box(0.5);
@@ -153,7 +151,7 @@ HardCase razors(Random& random) {
   };
   Body a = blade(1.0), b = blade(-1.0);
   HardCase c{"", std::move(a), std::move(b), {}, {}};
-  c.pose_b.orientation = turn_about(Vec3::UnitX(), random.log_uniform(1e-16, 1e-3));
+  c.pose_b.orientation = test::turned(Vec3::UnitX(), random.log_uniform(1e-16, 1e-3));
   c.pose_b.position.x() = random.log_uniform(1e-12, 1.0);
   if (random.chance(0.5)) {
     const Quat turn = random.rotation();

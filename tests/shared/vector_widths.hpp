@@ -26,11 +26,11 @@ class OnlyWith {
   }
 };
 
-// One lane, two, four, eight, as far as this machine goes.
+// One lane (not on Arm, where two are the least), two, four, eight, as far as this machine goes.
 inline std::vector<std::int64_t> vector_widths() {
-  std::vector<std::int64_t> all{HWY_SCALAR};
-  for (const std::int64_t target : {HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
-    if ((hwy::SupportedTargets() & target) != 0) all.push_back(target);
+  std::vector<std::int64_t> all;
+  for (const std::int64_t target : {HWY_SCALAR, HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
+    if ((HWY_TARGETS & hwy::SupportedTargets() & target) != 0) all.push_back(target);
   }
   return all;
 }
