@@ -24,7 +24,7 @@ constexpr double kTolerance = 1.5e-14;
 
 // Of the gap between the bounds of a converged answer where only one of the bodies may be
 // unbounded.
-constexpr double kConvergedGap = 1e-14;
+constexpr double kConvergedTolerance = 1e-14;
 
 // Rows or points; the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
@@ -48,6 +48,81 @@ double outside(oracle::ExactBody& body, const Pose& pose, double radius, const V
 Body eroded(Body body, double by) {
   for (HalfSpace& row : body.rows) row.offset -= by * row.normal.norm() * (1.0 + 1e-15);
   return body;
+}
+
+struct Faults {
+  std::vector<std::string> all;
+
+  void unless(bool holds, const std::string& fault) {
+    if (!holds) all.push_back(fault);
+  }
+};
+
+bool are_numbers(const DistanceResult& r, Faults& faults) {
+  const bool finite = std::isfinite(r.distance) && std::isfinite(r.lower) &&
+                      std::isfinite(r.upper) && r.point_on_a.allFinite() &&
+                      r.point_on_b.allFinite();
+  faults.unless(finite, text("a figure is not finite: distance %g in [%g, %g]", r.distance, r.lower,
+                             r.upper));
+  return finite;
+}
+
+// `depth_known`: the truth is that of the bodies, and not only that they overlap.
+void look_at_bounds(const DistanceResult& r, const ExactDistance& truth, bool depth_known,
+                    Faults& faults) {
+  faults.unless(r.lower <= r.distance && r.distance <= r.upper,
+                text("distance %.17g is not in [%.17g, %.17g]", r.distance, r.lower, r.upper));
+  faults.unless(truth.compare(r.lower) >= 0, text("LOWER %.17g is above the truth %.17g by %.3g",
+                                                  r.lower, truth.lower, r.lower - truth.lower));
+  faults.unless(!depth_known || truth.compare(r.upper) <= 0,
+                text("UPPER %.17g is below the truth %.17g by %.3g", r.upper, truth.upper,
+                     truth.upper - r.upper));
+}
+
+void look_at_status(const DistanceResult& r, const ExactDistance& truth, double tolerance,
+                    Faults& faults) {
+  const char* status = name(r.status);
+  const double gap = r.upper - r.lower;
+  const double narrow = r.status == DistanceStatus::kConverged
+                            ? kConvergedTolerance / kTolerance * tolerance
+                            : tolerance;
+  switch (r.status) {
+    case DistanceStatus::kIterationLimit:
+    case DistanceStatus::kFarAway:
+      faults.unless(false, text("status %s, truth %.17g in [%.17g, %.17g], tolerance %.3g", status,
+                                truth.lower, r.lower, r.upper, tolerance));
+      return;
+    case DistanceStatus::kOverlapping:
+      faults.unless(truth.compare(0.0) <= 0, text("overlapping, but %.17g apart", truth.lower));
+      break;
+    case DistanceStatus::kConverged:
+      faults.unless(truth.compare(0.0) > 0, text("converged, but the truth is %.17g", truth.lower));
+      break;
+    case DistanceStatus::kTouching:
+      faults.unless(
+          truth.compare(tolerance) <= 0 && truth.compare(-tolerance) >= 0,
+          text("touching, but the truth is %.17g, tolerance %.3g", truth.lower, tolerance));
+      break;
+  }
+  faults.unless(gap <= narrow, text("%s with a gap of %.3g, more than %.3g", status, gap, narrow));
+}
+
+// Are the points where distance and normal say? `placed`: what rounding may do to a point.
+void look_at_witnesses(const DistanceResult& r, double placed, Faults& faults) {
+  const Vec3 between = r.point_on_b - r.point_on_a;
+  if (r.normal.allFinite()) {
+    faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
+                  text("normal of length %.17g", r.normal.norm()));
+  }
+  if (r.status == DistanceStatus::kTouching) {
+    faults.unless(between.norm() <= placed,
+                  text("touching, but the witness points are %.3g apart", between.norm()));
+    return;
+  }
+  const double off = (between - r.distance * r.normal).norm();
+  faults.unless(off <= placed, text("%s, but from one witness point to the other it is not the "
+                                    "distance along the normal: off by %.3g, tolerance %.3g",
+                                    name(r.status), off, placed));
 }
 
 }  // namespace
@@ -124,62 +199,28 @@ bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pos
 
 std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const ExactDistance& truth,
                                                const Pose& pose_a, const Pose& pose_b) {
-  std::vector<std::string> out;
-  const double tolerance = kTolerance * size(truth, pose_a, pose_b) + 4.0 * kUnderflow;
-  const auto require = [&](bool holds, const std::string& fault) {
-    if (!holds) out.push_back(fault);
-  };
+  Faults faults;
   if (!a_.bounded() && !b_.bounded() && r.lower == -kInfinity) {
-    require(truth.cores_meet(), "no lower bound, but they are apart");
-    require(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
-            text("status %s without a lower bound", name(r.status)));
-    return out;
+    faults.unless(truth.cores_meet(), "no lower bound, but they are apart");
+    faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
+                  text("status %s without a lower bound", name(r.status)));
+    return faults.all;
   }
-  const bool finite = std::isfinite(r.distance) && std::isfinite(r.lower) &&
-                      std::isfinite(r.upper) && r.point_on_a.allFinite() &&
-                      r.point_on_b.allFinite();
-  require(finite,
-          text("a figure is not finite: distance %g in [%g, %g]", r.distance, r.lower, r.upper));
-  if (!finite) return out;
-  require(r.lower <= r.distance && r.distance <= r.upper,
-          text("distance %.17g is not in [%.17g, %.17g]", r.distance, r.lower, r.upper));
-  require(truth.compare(r.lower) >= 0, text("LOWER %.17g is above the truth %.17g by %.3g", r.lower,
-                                            truth.lower, r.lower - truth.lower));
-  const bool known = !truth.cores_meet() || depth_is_asked_for();
-  require(!known || truth.compare(r.upper) <= 0,
-          text("UPPER %.17g is below the truth %.17g by %.3g", r.upper, truth.upper,
-               truth.upper - r.upper));
+  if (!are_numbers(r, faults)) return faults.all;
+  look_at_bounds(r, truth, !truth.cores_meet() || depth_is_asked_for(), faults);
 
-  const char* status = name(r.status);
+  const double tolerance = kTolerance * size(truth, pose_a, pose_b) + 4.0 * kUnderflow;
   // Lines of two unbounded bodies that all but run along each other: the closest points are so far
   // away that doubles cannot say where, let alone to the tolerance.
   const double closest_at = (oracle::to_vec(truth.point_on_a) - pose_a.position).norm();
   const bool out_of_sight = !a_.bounded() && !b_.bounded() && kUlp * closest_at > tolerance;
   // Floors and wedges through both origins have no size that a rounding error could be relative to.
   const bool no_size = size(truth, pose_a, pose_b) == 0.0;
-  if ((out_of_sight || no_size) && r.status == DistanceStatus::kIterationLimit) return out;
-  const double gap = r.upper - r.lower;
-  require(r.status != DistanceStatus::kIterationLimit && r.status != DistanceStatus::kFarAway,
-          text("status %s, truth %.17g in [%.17g, %.17g], tolerance %.3g", status, truth.lower,
-               r.lower, r.upper, tolerance));
-  if (r.status != DistanceStatus::kIterationLimit) {
-    require(gap <= tolerance,
-            text("%s with a gap of %.3g, tolerance %.3g", status, gap, tolerance));
-  }
-  if (r.status == DistanceStatus::kOverlapping) {
-    require(truth.compare(0.0) <= 0, text("overlapping, but %.17g apart", truth.lower));
-  }
-  if (r.status == DistanceStatus::kConverged) {
-    const double converged = kConvergedGap / kTolerance * tolerance;
-    require(gap <= converged,
-            text("%s with a gap of %.3g, more than %.3g", status, gap, converged));
-    require(truth.compare(0.0) > 0, text("converged, but the truth is %.17g", truth.lower));
-  }
-  if (r.status == DistanceStatus::kTouching) {
-    require(truth.compare(tolerance) <= 0 && truth.compare(-tolerance) >= 0,
-            text("touching, but the truth is %.17g, tolerance %.3g", truth.lower, tolerance));
-    require(tolerance == 0.0 || !truth.cores_meet() || !overlap_by(tolerance, pose_a, pose_b),
-            text("touching, but a ball of %.3g fits into both", tolerance));
+  if ((out_of_sight || no_size) && r.status == DistanceStatus::kIterationLimit) return faults.all;
+  look_at_status(r, truth, tolerance, faults);
+  if (r.status == DistanceStatus::kTouching && tolerance > 0.0 && truth.cores_meet()) {
+    faults.unless(!overlap_by(tolerance, pose_a, pose_b),
+                  text("touching, but a ball of %.3g fits into both", tolerance));
   }
 
   // Two unbounded bodies may be closest, or part, far away: there the points' own coordinates are
@@ -189,28 +230,12 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
       a_.bounded() || b_.bounded() ? tolerance : std::max(tolerance, kTolerance * out_there);
   const double off_a = outside(exact_a_, pose_a, body_a_.radius, r.point_on_a, pose_a);
   const double off_b = outside(exact_b_, pose_b, body_b_.radius, r.point_on_b, pose_a);
-  require(off_a <= placed, text("witness on A is %.3g outside, tolerance %.3g", off_a, placed));
-  require(off_b <= placed, text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
-  const Vec3 between = r.point_on_b - r.point_on_a;
-  const bool clear =
-      r.status == DistanceStatus::kConverged || r.status == DistanceStatus::kOverlapping;
-  if (clear) {
-    require(std::abs(between.norm() - std::abs(r.distance)) <= placed,
-            text("witness points are %.17g apart, distance %.17g", between.norm(), r.distance));
-  }
-  if (r.normal.allFinite()) {
-    require(std::abs(r.normal.norm() - 1.0) <= 1e-14,
-            text("normal of length %.17g", r.normal.norm()));
-    if (clear) {
-      const double along = between.dot(r.normal);
-      require(std::abs(along - r.distance) <= placed,
-              text("witness points are %.17g apart along the normal, distance %.17g", along,
-                   r.distance));
-    }
-  } else {
-    require(!clear, text("%s without a normal", status));
-  }
-  return out;
+  faults.unless(off_a <= placed,
+                text("witness on A is %.3g outside, tolerance %.3g", off_a, placed));
+  faults.unless(off_b <= placed,
+                text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
+  look_at_witnesses(r, placed, faults);
+  return faults.all;
 }
 
 }  // namespace clearance
