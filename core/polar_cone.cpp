@@ -15,6 +15,9 @@ constexpr double kConstraintError = 0x1p-95;
 // A facet's normal is rounded to 2^-53 in each component, and once more where it is turned.
 constexpr double kFacetError = 0x1p-51;
 
+// Rays that differ by less than this from an edge's direction may be the edge's.
+constexpr double kSameLine = 0x1p-40;
+
 // Unit vectors made of doubles.
 constexpr double kUnitError = 0x1p-51;
 
@@ -45,6 +48,29 @@ PolarCone::PolarCone(const ActiveSide& a, const ActiveSide& b) noexcept
 WideVec PolarCone::of_ray(const Ray& ray, bool of_b) const noexcept {
   const WideVec own = wide(ray.direction) + wide(ray.rest);
   return of_b ? rotation_ * own : own;
+}
+
+// Null: there is none, or which of several it is cannot be told. Which way it runs does not matter.
+const Ray* PolarCone::ray_along(const ConvexPolyhedron& body, const Edge& edge) noexcept {
+  const Ray* found = nullptr;
+  for (const Ray& ray : body.rays) {
+    if (!(ray.direction.cross(edge.direction).norm() < kSameLine * ray.direction.norm())) continue;
+    const bool same = found && (ray.direction == -found->direction && ray.rest == -found->rest);
+    if (found && !same) return nullptr;
+    found = &ray;
+  }
+  return found;
+}
+
+PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b) const noexcept {
+  const Ray* along_a = ray_along(a_.body(), of_a);
+  const Ray* along_b = ray_along(b_.body(), of_b);
+  if (along_a == nullptr || along_b == nullptr) return {Vec3::Zero(), kInfinity};
+  const WideVec e = of_ray(*along_a, false), f = of_ray(*along_b, true), n = cross(e, f);
+  const double lengths = narrow(e).norm() * narrow(f).norm(), sine = narrow(n).stableNorm();
+  if (!(sine > kParallel * lengths)) return {Vec3::Zero(), kInfinity};
+  const Vec3 unit = narrow(DoubleDouble(1.0 / sine) * n).normalized();
+  return {unit, 4.0 * error_ * lengths / sine + kUnitError};
 }
 
 // False: one rises, or there are too many.

@@ -29,6 +29,10 @@ class PolarCone {
   };
   [[nodiscard]] Direction nearest(const Separator& s) const noexcept;
 
+  // The direction across two edges without end, one of A and one of B: the exact one is no farther
+  // off than that; infinity: not known.
+  [[nodiscard]] Direction across_lines(const Edge& of_a, const Edge& of_b) const noexcept;
+
   // Calls take(Separator) with the directions across a ray of each body where these are so nearly
   // parallel that the bodies' features do not say them. Which directions of all those across such a
   // ray the cone has does not change with the angle, but with where it opens: half of them or, of
@@ -79,6 +83,8 @@ class PolarCone {
   };
 
   [[nodiscard]] WideVec of_ray(const Ray& ray, bool of_b) const noexcept;
+  [[nodiscard]] static const Ray* ray_along(const ConvexPolyhedron& body,
+                                            const Edge& edge) noexcept;
   [[nodiscard]] bool collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
                              Level& level) const noexcept;
   [[nodiscard]] bool opposite(const Constraint& c, const Constraint& d) const noexcept;

@@ -159,6 +159,23 @@ TEST(Distance, OfColumnsWithoutEndIsThatOfTheirSections) {
                   2.5 - std::sqrt(0.5), 20.0);
 }
 
+TEST(Distance, OfColumnsThatLeanIsKnownHoweverFarAwayTheyAreClosest) {
+  std::vector<HalfSpace> rows;
+  for (const Vec3& n : {Vec3(1, 1, 0), Vec3(-1, 1, 0), Vec3(1, -1, 0), Vec3(-1, -1, 0)}) {
+    rows.push_back({n, 0.5});
+  }
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  for (const double lean : {0.3, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-11}) {
+    // Edges at x = 0.5 and x = 2.5, a metre apart in y, and so 1 / lean away in z.
+    const Pose leaning{{3, 1, 0}, {std::cos(lean / 2), std::sin(lean / 2), 0, 0}};
+    const DistanceResult r = cold(column, column, leaning);
+    expect_distance(r, 2.0, 4.0);
+    EXPECT_EQ(r.status, DistanceStatus::kConverged) << lean;
+    EXPECT_LT((r.normal - Vec3::UnitX()).norm(), kRounding);
+    EXPECT_NEAR(r.point_on_b.z() * lean, 1.0, 0.2);
+  }
+}
+
 TEST(Distance, IsTheSameForQuaternionsOfAnyLength) {
   const Pose pose_a = Pose{{1, 2, 3}, turned({1, 2, 2}, 0.3)},
              pose_b = Pose{{4, 2, 2}, turned({0, 1, 3}, 1.2)};

@@ -58,6 +58,22 @@ HardCase columns(Random& random) {
   return c;
 }
 
+HardCase leaning(Random& random) {
+  Body a = column(random, true), b = column(random, true);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  const Vec3 axis = random.chance(0.5) ? random.direction() : Vec3(Vec3::UnitX());
+  const double turn_by = random.uniform(-3.0, 3.0), lean_by = random.log_uniform(1e-14, 1.0);
+  c.pose_b.orientation = test::turned(Vec3::UnitZ(), turn_by) * test::turned(axis, lean_by);
+  if (random.chance(0.5)) {
+    const Quat turn = random.rotation();
+    c.pose_a.orientation = turn;
+    c.pose_b.orientation = turn * c.pose_b.orientation;
+  }
+  const double away = random.log_uniform(1.0, 1e3);
+  c.pose_b.position = away * random.direction();
+  return c;
+}
+
 HardCase scales(Random& random) {
   const double size = random.log_uniform(1e-120, 1e80);
   Body a = scaled(any_bounded(random), size);

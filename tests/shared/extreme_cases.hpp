@@ -10,6 +10,9 @@ namespace clearance::hard {
 // common direction, or all alike, by quaternions of different lengths.
 [[nodiscard]] HardCase columns(Random& random);
 
+// The same, leaning against each other by 1e-14 to 1 rad: closest, or meeting, up to 1e17 m away.
+[[nodiscard]] HardCase leaning(Random& random);
+
 // Bodies of 1e-120 to 1e80 m, one or both.
 [[nodiscard]] HardCase scales(Random& random);
 

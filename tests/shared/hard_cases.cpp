@@ -319,7 +319,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"dust", dust},
                                         {"far_poses", far_poses},
                                         {"selfsame", selfsame},
-                                        {"razors", razors}};
+                                        {"razors", razors},
+                                        {"leaning", leaning}};
 
 }  // namespace
 
