@@ -91,8 +91,16 @@ struct LaneFeature<2> {
   [[nodiscard]] const double* row() const noexcept { return table.row(facet.first_side); }
 };
 
-// What repeats of one body's feature in a lane, from `row` on: `most` times, its last once more
-// where there are less; of a half-space, which has no sides, zeros, within which everything lies.
+// Of a lane in which less repeats than `most` times: the last once more; of a half-space, which has
+// no sides, zeros, within which everything lies.
+void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t stride,
+              std::size_t before, std::size_t most) noexcept {
+  for (std::size_t i = stride * before; i < stride * most; ++i) {
+    block.rows[row + i][lane] = before > 0 ? block.rows[row + i - stride][lane] : 0.0;
+  }
+}
+
+// What repeats of one body's feature in a lane, from `row` on.
 template <int kDimension>
 void put_row(BatchBlock& block, std::size_t lane, std::size_t row,
              const LaneFeature<kDimension>& of, std::size_t most) noexcept {
@@ -100,18 +108,10 @@ void put_row(BatchBlock& block, std::size_t lane, std::size_t row,
   const auto count = static_cast<std::size_t>(of.repeats());
   const double* const from = of.row();
   LaneWriter to(block, lane, row);
-  for (std::size_t i = 0; i < most; ++i) {
-    const std::size_t which = std::min(i, count - 1);
-    for (std::size_t k = 0; k < kStride; ++k) to.put(count > 0 ? from[k * count + which] : 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < kStride; ++k) to.put(from[k * count + i]);
   }
-}
-
-// The same of a lane that has been written when less was the most.
-void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t stride,
-              std::size_t before, std::size_t most) noexcept {
-  for (std::size_t i = stride * before; i < stride * most; ++i) {
-    block.rows[row + i][lane] = before > 0 ? block.rows[row + i - stride][lane] : 0.0;
-  }
+  lengthen(block, lane, row, kStride, count, most);
 }
 
 // Every lane has as many as any needs.

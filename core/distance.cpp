@@ -21,24 +21,34 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-HWY_INLINE DistanceResult rounded(DistanceResult result, const Walk& w) {
+HWY_INLINE DistanceResult rounded_result_of(const Walk& w) {
+  DistanceResult result = result_of(w);
   add_radii(result, w.a, w.b);
   return result;
 }
 
-HWY_NOINLINE DistanceResult tracked_overlap(Walk& w, const Pose& world_from_a,
-                                            const Pose& world_from_b, TrackingState& state) {
-  if (walk_overlap(w)) return rounded(overlap_result_of(w), w);
-  return by_depth(w.a, w.b, pose_of(w.a_from_b, world_from_a, world_from_b), state);
+// With a pose and a walk of its own, so that those of the others can be kept in registers.
+inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
+                                                   const ConvexPolyhedron& b,
+                                                   const Pose& world_from_a,
+                                                   const Pose& world_from_b, TrackingState& state) {
+  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
+  Walk w(a, b, a_from_b, state);
+  if (!walk_overlap(w)) {
+    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
+  }
+  DistanceResult result = overlap_result_of(w);
+  add_radii(result, a, b);
+  return result;
 }
 
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
+  if (HWY_UNLIKELY(state.a.deep)) return tracked_overlap(a, b, world_from_a, world_from_b, state);
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
-  if (state.a.deep) return tracked_overlap(w, world_from_a, world_from_b, state);
-  if (walk(w) == WalkEnd::kProved) return rounded(result_of(w), w);
+  if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
