@@ -8,8 +8,9 @@
 namespace clearance {
 namespace {
 
-// Of two unit directions, each rotated into the world: how far their difference may be off.
-constexpr double kSwungError = 0x1p-46;
+// Of two unit directions, each rotated into the world by a pose that is itself rounded: how far
+// their difference may be from that of the exact ones. Fewer than 200 ulps (2^-53) each.
+constexpr double kSwungError = 0x1p-44;
 
 }  // namespace
 
