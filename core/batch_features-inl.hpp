@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-// As ClosestFeatures, where `holds`; elsewhere anything.
+// What a step of core/feature_walk-inl.hpp finds, where `holds`; elsewhere anything.
 struct Closest {
   HWY_INLINE Closest() {}  // as of Points
 

@@ -1,7 +1,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/batch_kernel.cpp"
-// Four widths: two lanes in plain C++ (any machine), SSE4, AVX2, AVX-512; NEON on Arm. What lies
-// between has the same width as one of these.
+// Four widths: one lane at the x86-64 baseline, SSE4, AVX2, AVX-512; two lanes, NEON, on Arm. What
+// lies between has the same width as one of these.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
