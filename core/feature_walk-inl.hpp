@@ -22,22 +22,20 @@ inline constexpr int kSteps = 24;
 
 // From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
 // far end.
-inline void leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepest& way) {
+inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepest& way) {
   const EdgeUse& use = body.vertex_edges[way.at];
   const Edge& edge = body.edges[use.edge];
   if (way.rate >= edge.end && edge.vertex[1 - use.side] != kNone) {
-    to_vertex(side, edge.vertex[1 - use.side]);
-  } else {
-    to_edge(side, use.edge);
+    return to_vertex(side, edge.vertex[1 - use.side]);
   }
+  return to_edge(side, use.edge);
 }
 
 inline HWY_NOINLINE Step leave_either(Walk& w, const Vertex& of_a, const Vertex& of_b, Quad g,
                                       Quad back, double limit) {
   const Steepest on_a = steepest(w.a, of_a, g), on_b = steepest(w.b, of_b, back);
-  if (on_a.rate > -limit && on_a.rate >= on_b.rate)
-    return leave_vertex(w.a, w.on_a, on_a), Step::kMoved;
-  if (on_b.rate > -limit) return leave_vertex(w.b, w.on_b, on_b), Step::kMoved;
+  if (on_a.rate > -limit && on_a.rate >= on_b.rate) return leave_vertex(w.a, w.on_a, on_a);
+  if (on_b.rate > -limit) return leave_vertex(w.b, w.on_b, on_b);
   to_level(w.a, w.on_a, vec3(g), limit);
   to_level(w.b, w.on_b, vec3(back), limit);
   return w.levelled();
@@ -72,8 +70,8 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
              e = o.direction_to_common(own_e);
   const Quad from_start = tip - start;
   const double s = dot(from_start, e) * (kMoved ? over_square(e) : 1.0);
-  if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]), Step::kMoved;
-  if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]), Step::kMoved;
+  if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]);
+  if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]);
   // As long as the way from the edge to the vertex, and at right angles to it; then that way. No
   // difference of long vectors: cancellation leaves nothing along the edge.
   const Quad across = cross(from_start, e), way = cross(e, across);
@@ -92,7 +90,7 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
       to_level(o.other(), o.on_other(), vec3(back), limit);
       return o.w.levelled();
     }
-    return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge), Step::kMoved;
+    return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge);
   }
   const double unit = kMoved ? over_norm(e) : 1.0;
   const double of_way = HWY_UNLIKELY(length < kSlender * std::abs(s)) ? norm(way) / unit : length;
@@ -111,7 +109,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   const double apart = o.height(facet, tip, own_tip, n);
   if (HWY_UNLIKELY(!(apart > 0.0)) && !o.w.overlapping) return Step::kLost;
   const std::int32_t beyond = side_beyond(o.owner(), facet, own_tip);
-  if (beyond != kNone) return to_edge(o.on_owner(), beyond), Step::kMoved;
+  if (beyond != kNone) return to_edge(o.on_owner(), beyond);
   const Quad back = -o.opposite().direction_to_own(n);
   if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
     const Steepest away = steepest(o.other(), vertex, back);
@@ -122,7 +120,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
     const EdgeUse& use = o.other().vertex_edges[away.at];
     const std::int32_t next = o.other().edges[use.edge].vertex[1 - use.side];
     if (next == kNone) return Step::kLost;
-    return to_vertex(o.on_other(), next), Step::kMoved;
+    return to_vertex(o.on_other(), next);
   }
   o.w.apart = o.w.proved = apart;
   o.place_above(facet, apart, tip, own_tip, n);
@@ -207,8 +205,11 @@ HWY_INLINE bool exists(const ConvexPolyhedron& body, const Side& side) {
 
 // A vertex that is far out along `towards`; a body without vertices is one facet, or the loop's.
 HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
-  if (body.vertices.empty()) return to_facet(side, 0);
-  to_vertex(side, body.start.at(vec3(towards)));
+  if (body.vertices.empty()) {
+    to_facet(side, 0);
+  } else {
+    to_vertex(side, body.start.at(vec3(towards)));
+  }
 }
 
 HWY_INLINE WalkEnd conclude(Walk& w) {

@@ -60,7 +60,9 @@ inline HWY_NOINLINE void to_level(const ConvexPolyhedron& body, Side& side, cons
       continue;
     }
     const std::int32_t facet = common_facet(body.edges[level], body.edges[edge]);
-    if (facet != kNone) return to_facet(side, facet);
+    if (facet == kNone) continue;
+    to_facet(side, facet);
+    return;
   }
 }
 
@@ -117,7 +119,7 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   const Facet& facet = o.other().facets[o.on_other().feature];
   if (!o.owner().bounded()) return Step::kLost;
   const Span span = facing(o, edge, o.on_other().feature);
-  if (span.empty()) return to_edge(o.on_other(), span.beyond), Step::kMoved;
+  if (span.empty()) return to_edge(o.on_other(), span.beyond);
   const auto of_facet = o.opposite();
   const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction),
              n = of_facet.direction_to_common(load3_of_4(facet.normal));
@@ -125,8 +127,8 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
   const double rise = dot(e, down);
   if (!(std::abs(rise) <= kCertainRate)) {
     const int end = rise > 0.0 ? 1 : 0;
-    if (span.side[end] != kNone) return to_edge(o.on_other(), span.side[end]), Step::kMoved;
-    return to_vertex(o.on_owner(), edge.vertex[end]), Step::kMoved;
+    if (span.side[end] != kNone) return to_edge(o.on_other(), span.side[end]);
+    return to_vertex(o.on_owner(), edge.vertex[end]);
   }
   if (rises_beside(edge, down, -kCertainRate, o.on_owner())) return o.w.levelled();
   const double s = std::clamp(halfway(o, start, e), span.from, span.to);
@@ -157,7 +159,10 @@ template <bool kMoved>
 inline bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) {
   const Edge& edge = o.owner().edges[index];
   const Span span = facing(o, edge, o.on_other().feature);
-  if (span.empty()) return to_edge(o.on_owner(), index), false;
+  if (span.empty()) {
+    to_edge(o.on_owner(), index);
+    return false;
+  }
   const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
   point = start + std::clamp(dot(point - start, e), span.from, span.to) * e;
   return true;
@@ -191,7 +196,7 @@ inline Step to_corner(const Owned<kMoved>& o, const Vec3& g) {
     }
   }
   if (corner == kNone) return Step::kLost;
-  return to_vertex(o.on_owner(), corner), Step::kMoved;
+  return to_vertex(o.on_owner(), corner);
 }
 
 // Facets that are tilted: one's lowest corner comes first, preferably the smaller body's.

@@ -53,18 +53,22 @@ struct Walk {
   }
 };
 
-// Poses that are none lead beyond the ends of edges that have none: to no feature.
-HWY_INLINE void to_vertex(Side& side, std::int32_t vertex) {
+// The features that a step goes on to. Poses that are none lead beyond the ends of edges that have
+// none: to no feature.
+HWY_INLINE Step to_vertex(Side& side, std::int32_t vertex) {
   side.dimension = vertex == kNone ? TrackingState::kCold : 0;
   side.feature = vertex;
+  return Step::kMoved;
 }
-HWY_INLINE void to_edge(Side& side, std::int32_t edge) {
+HWY_INLINE Step to_edge(Side& side, std::int32_t edge) {
   side.dimension = 1;
   side.feature = edge;
+  return Step::kMoved;
 }
-HWY_INLINE void to_facet(Side& side, std::int32_t facet) {
+HWY_INLINE Step to_facet(Side& side, std::int32_t facet) {
   side.dimension = 2;
   side.feature = facet;
+  return Step::kMoved;
 }
 
 // The first lanes of four, at most.
