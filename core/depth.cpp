@@ -5,15 +5,16 @@
 
 #include "core/depth_search.hpp"
 #include "core/polar_cone.hpp"
+#include "core/rounding.hpp"
 
 namespace clearance {
 namespace {
 
 // Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
 // the exact one next to it on the exact arc (6), a corner in its plane (6).
-constexpr double kOnArc = 12 * 0x1p-53;
+constexpr double kOnArc = 12 * kUlp;
 // How near two bounds of h must come, in the same unit.
-constexpr double kTight = 8 * 0x1p-53;
+constexpr double kTight = 8 * kUlp;
 
 using Source = DepthSearch::Source;
 

@@ -8,6 +8,7 @@
 
 #include "core/exact_rounding.hpp"
 #include "core/exact_solid.hpp"
+#include "core/rounding.hpp"
 #include "core/walking_tables.hpp"
 
 namespace clearance {
@@ -144,7 +145,7 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   body.anchors = {start, end};
   body.interior = 0.5 * start + 0.5 * end;
   body.bounding_radius = std::max(start.norm(), end.norm()) * (1.0 + 0x1p-50);
-  body.position_error = line.length.exact ? 0.0 : 0x1p-53 * line.length.value;
+  body.position_error = line.length.exact ? 0.0 : kUlp * line.length.value;
   body.radius = radius;
   add_walking_tables(body);
   return body;
