@@ -28,6 +28,11 @@ bool may_rise(const ConvexPolyhedron& body, const Vec3& n, double margin) noexce
   return rises(body, n, -margin);
 }
 
+// Positive: v lies to the left of u.
+double turn(const Eigen::Vector2d& u, const Eigen::Vector2d& v) noexcept {
+  return u.x() * v.y() - u.y() * v.x();
+}
+
 // Between two directions less than half a turn apart, r to the left of l.
 Eigen::Vector2d middle_of(const Eigen::Vector2d& l, const Eigen::Vector2d& r) noexcept {
   const Eigen::Vector2d sum = l + r;
@@ -56,7 +61,7 @@ void DepthSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
   }
   if (edge_of_x != kNone && body_.y().bounded()) {
     const Arc arc = across(body_.x().edges[edge_of_x]);
-    const Vec2 at = arc.project(n).stableNormalized();
+    const Vec2 at = unit_along(arc.project(n));
     if (within(arc, at)) {
       hold(n);
       (void)sample(arc, at);
@@ -176,9 +181,14 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
       continue;
     }
     const Vec2 between = r.corner - l.corner;
-    Vec2 m(-between.y(), between.x());
-    if (m.dot(l.at + r.at) < 0.0) m = -m;
-    const Sample middle = sample(arc, m.stableNormalized());  // squares may underflow
+    Vec2 m = unit_along(Vec2(-between.y(), between.x()));
+    if (turn(l.at, m) < 0.0) m = -m;
+    // What rounding puts beyond the arc's end shows that the bounds do not cross on it.
+    if (!(turn(l.at, m) > 0.0 && turn(m, r.at) > 0.0)) {
+      lower_to(bound);
+      continue;
+    }
+    const Sample middle = sample(arc, m);
     const double crossing = std::min(l.corner.dot(middle.at), r.corner.dot(middle.at));
     if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > kSamples) {
       lower_to(std::min({l.height(), crossing, r.height()}));

@@ -116,7 +116,7 @@ DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& 
   r.lower = bounds.lower - p.slack;
   r.upper = bounds.certain_upper() + p.slack;
   r.distance = bounds.upper;
-  r.normal = bounds.normal;
+  r.normal = bounds.lower > -kInfinity ? unit_along(bounds.normal) : bounds.normal;
   r.point_on_a = a.common();
   r.point_on_b = b.common();
   r.status = judge(bounds, p, r);

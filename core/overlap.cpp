@@ -58,7 +58,7 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
 // Where nothing is remembered: from one middle to the other.
 Separator between_middles(const ActiveSide& a, const ActiveSide& b) noexcept {
   const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
-  return {between.isZero(0.0) ? Vec3::UnitZ() : between.stableNormalized()};
+  return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
 }
 
 Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -3,10 +3,19 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace clearance {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+
+// Of unit length along v, whose squares may over- or underflow, and which may be subnormal; 0 of 0.
+template <class Vec>
+[[nodiscard]] Vec unit_along(const Vec& v) noexcept {
+  if (v.isZero(0.0)) return v;
+  const int exponent = std::ilogb(v.cwiseAbs().maxCoeff());
+  return v.unaryExpr([exponent](double x) { return std::scalbn(x, -exponent); }).normalized();
+}
 
 }  // namespace clearance

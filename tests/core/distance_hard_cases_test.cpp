@@ -90,6 +90,10 @@ constexpr OnceWrong kOnceWrong[] = {
      "there"},
     {"nested", 25000004, "the same"},
     {"sizes", 60300002, "overlap by less than rounding: three times as wide as what is known"},
+    {"selfsame", 2602101,
+     "a lower bound too high by 1.3e-9: between corners 5e-324 apart an arc was split beyond its "
+     "end"},
+    {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
 TEST(Distance, HoldsOnCasesThatWereWrongOnce) {

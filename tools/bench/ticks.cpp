@@ -186,7 +186,8 @@ void register_ticks() {
     return [count] { return orbiting_crowd({.count = count, .moving = count}); };
   };
   // FCL has no distances to half-spaces, which these have for floors.
-  register_all("tick/mcintyre", {100'000, 100'000, 0, 10}, [] { return shipped_crowd("mcintyre"); });
+  register_all("tick/mcintyre", {100'000, 100'000, 0, 10},
+               [] { return shipped_crowd("mcintyre"); });
   register_all("tick/two_arms", {20'000, 20'000, 0, 10}, [] { return shipped_crowd("two_arms"); });
   register_all("tick/robot_2k", {20'000, 2'000, 1'000, 10}, [] { return robot_in_crowd(100); });
   register_all("tick/100_all_moving_5k", {20'000, 2'000, 1'000, 10}, all_moving(100));
