@@ -10,10 +10,11 @@ namespace clearance {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// Of unit length along v, whose squares may over- or underflow, and which may be subnormal; 0 of 0.
+// Of unit length along v, whose squares may over- or underflow, and which may be subnormal; of 0,
+// or what is not finite, that.
 template <class Vec>
 [[nodiscard]] Vec unit_along(const Vec& v) noexcept {
-  if (v.isZero(0.0)) return v;
+  if (v.isZero(0.0) || !v.allFinite()) return v;
   const int exponent = std::ilogb(v.cwiseAbs().maxCoeff());
   return v.unaryExpr([exponent](double x) { return std::scalbn(x, -exponent); }).normalized();
 }
