@@ -285,12 +285,13 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state) noexcept {
+  if (!is_a_place(a_from_b)) return nothing_known();
   DistanceResult result;
   if (!still_overlapping(a, b, a_from_b, state, result) &&
       walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
     return by_search(a, b, a_from_b, state, true);
   }
-  add_radii(result, a, b);
+  finish(a, b, result);
   return result;
 }
 
