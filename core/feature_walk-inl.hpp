@@ -134,39 +134,68 @@ HWY_INLINE bool beyond_end(const Edge& edge, double at, Side& side) {
   return true;
 }
 
-HWY_INLINE Step edge_edge(Walk& w) {
-  const Edge& first = w.a.edges[w.on_a.feature];
-  const Edge& second = w.b.edges[w.on_b.feature];
-  if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
-  const Quad e = load3_of_4(first.direction), own_f = load3_of_4(second.direction);
-  const Quad start_a = load3_of_4(first.point), own_start_b = load3_of_4(second.point);
-  const Quad f = direction_to_a(w.a_from_b, own_f);
-  const Quad start_b = point_to_a(w.a_from_b, own_start_b);
-  const Quad between = start_b - start_a, n = cross(e, f);
-  const double sine2 = dot(n, n);
-  if (!(sine2 > kCrossingSine2)) {
-    return sine2 <= kLevelTilt * kLevelTilt ? parallel_edges(w, start_b, f) : Step::kLost;
+// The lines of two edges, in frame A but for own_..., and where they are nearest.
+struct EdgeLines {
+  HWY_INLINE explicit EdgeLines(const Walk& w)
+      : first(w.a.edges[w.on_a.feature]),
+        second(w.b.edges[w.on_b.feature]),
+        e(load3_of_4(first.direction)),
+        own_f(load3_of_4(second.direction)),
+        start_a(load3_of_4(first.point)),
+        own_start_b(load3_of_4(second.point)),
+        f(direction_to_a(w.a_from_b, own_f)),
+        start_b(point_to_a(w.a_from_b, own_start_b)),
+        between(start_b - start_a),
+        n(cross(e, f)),
+        sine2(dot(n, n)) {}
+
+  // s along the first and t along the second: of lines that cross.
+  HWY_INLINE void find_nearest() {
+    const double cosine = dot(e, f), along_e = dot(between, e);
+    t = (cosine * along_e - dot(between, f)) / sine2;
+    s = along_e + cosine * t;
   }
-  const double cosine = dot(e, f), along_e = dot(between, e);
-  const double t = (cosine * along_e - dot(between, f)) / sine2;
-  const double s = along_e + cosine * t;
-  if (beyond_end(first, s, w.on_a) || beyond_end(second, t, w.on_b)) return Step::kMoved;
-  const double sine = std::sqrt(sine2), limit = -kCertainRate * sine, apart = dot(between, n);
-  const Quad g = with_signs(n, spread(std::copysign(0.0, apart)));
+  HWY_INLINE void place_witnesses(Walk& w) const {
+    w.point_a = start_a + s * e;
+    w.own_b = own_start_b + t * own_f;
+    w.point_b = start_b + t * f;
+  }
+
+  // m: how much farther along an edge a body may reach, by what rounding tilts the normal.
+  [[nodiscard]] HWY_INLINE double reach_of_tilt(const Walk& w) const {
+    return 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
+                  w.b.bounding_radius * std::abs(dot(w.normal, f)));
+  }
+
+  const Edge& first;
+  const Edge& second;
+  Quad e, own_f, start_a, own_start_b, f, start_b, between, n;
+  double sine2, s = 0.0, t = 0.0;
+};
+
+HWY_INLINE Step edge_edge(Walk& w) {
+  if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
+  EdgeLines lines(w);
+  if (!(lines.sine2 > kCrossingSine2)) {
+    return lines.sine2 <= kLevelTilt * kLevelTilt ? parallel_edges(w, lines.start_b, lines.f)
+                                                  : Step::kLost;
+  }
+  lines.find_nearest();
+  if (beyond_end(lines.first, lines.s, w.on_a) || beyond_end(lines.second, lines.t, w.on_b))
+    return Step::kMoved;
+  const double sine = std::sqrt(lines.sine2), limit = -kCertainRate * sine,
+               apart = dot(lines.between, lines.n);
+  const Quad g = with_signs(lines.n, spread(std::copysign(0.0, apart)));
   const Quad back = -direction_to_b(w.a_from_b, g);
-  if (HWY_UNLIKELY(!sides_fall(first, g, limit) || !sides_fall(second, back, limit))) {
-    rises_beside(first, g, limit, w.on_a);
-    rises_beside(second, back, limit, w.on_b);
+  if (HWY_UNLIKELY(!sides_fall(lines.first, g, limit) || !sides_fall(lines.second, back, limit))) {
+    rises_beside(lines.first, g, limit, w.on_a);
+    rises_beside(lines.second, back, limit, w.on_b);
     return w.levelled();
   }
   w.normal = g / spread(sine);
-  w.point_a = start_a + s * e;
-  w.own_b = own_start_b + t * own_f;
-  w.point_b = start_b + t * f;
+  lines.place_witnesses(w);
   w.apart = norm(w.point_b - w.point_a);
-  // Along an edge the body may reach farther by what rounding tilts the normal.
-  w.proved = std::abs(apart) / sine - 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
-                                             w.b.bounding_radius * std::abs(dot(w.normal, f)));
+  w.proved = std::abs(apart) / sine - lines.reach_of_tilt(w);
   return Step::kHolds;
 }
 

@@ -55,36 +55,27 @@ HWY_INLINE double room_of(const Walk& w) {
 
 // Edges that cross, each within the other body.
 HWY_INLINE Step overlapping_edges(Walk& w) {
-  const Edge& first = w.a.edges[w.on_a.feature];
-  const Edge& second = w.b.edges[w.on_b.feature];
   if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
-  const Quad e = load3_of_4(first.direction), own_f = load3_of_4(second.direction);
-  const Quad start_a = load3_of_4(first.point), own_start_b = load3_of_4(second.point);
-  const Quad f = direction_to_a(w.a_from_b, own_f);
-  const Quad start_b = point_to_a(w.a_from_b, own_start_b);
-  const Quad between = start_b - start_a, n = cross(e, f);
-  const double sine2 = dot(n, n);
-  if (!(sine2 > kCrossingSine2)) return Step::kLost;
-  const double cosine = dot(e, f), along_e = dot(between, e);
-  const double t = (cosine * along_e - dot(between, f)) / sine2;
-  const double s = along_e + cosine * t;
-  const double to_end = std::min(std::min(s, first.end - s), std::min(t, second.end - t));
-  const double sine = std::sqrt(sine2), limit = -kCertainRate * sine, across = dot(between, n);
-  const Quad g = with_signs(n, spread(std::copysign(0.0, -across)));
+  EdgeLines lines(w);
+  if (!(lines.sine2 > kCrossingSine2)) return Step::kLost;
+  lines.find_nearest();
+  const double s = lines.s, t = lines.t;
+  const double to_end =
+      std::min(std::min(s, lines.first.end - s), std::min(t, lines.second.end - t));
+  const double sine = std::sqrt(lines.sine2), limit = -kCertainRate * sine,
+               across = dot(lines.between, lines.n);
+  const Quad g = with_signs(lines.n, spread(std::copysign(0.0, -across)));
   const Quad back = -direction_to_b(w.a_from_b, g);
-  if (!(to_end > 0.0) || !sides_fall(first, g, limit) || !sides_fall(second, back, limit)) {
+  if (!(to_end > 0.0) || !sides_fall(lines.first, g, limit) ||
+      !sides_fall(lines.second, back, limit)) {
     return Step::kLost;
   }
   w.normal = g / spread(sine);
-  w.point_a = start_a + s * e;
-  w.own_b = own_start_b + t * own_f;
-  w.point_b = start_b + t * f;
+  lines.place_witnesses(w);
   w.apart = -std::abs(across) / sine;
   w.room = to_end * sine;
-  // Along an edge the body may reach farther by what rounding tilts the normal; as far as it does,
-  // the edges' own plane is nearer.
-  const double tilt = 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
-                             w.b.bounding_radius * std::abs(dot(w.normal, f)));
+  // As far as the normal may be tilted, the edges' own plane is nearer, too.
+  const double tilt = lines.reach_of_tilt(w);
   w.proved = w.apart - tilt;
   w.beyond = tilt;
   return Step::kHolds;

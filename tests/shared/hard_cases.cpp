@@ -59,11 +59,7 @@ HardCase anywhere(Body a, Body b, Random& random) {
 // The whole pair moved rigidly, up to rounding.
 void move_world(HardCase& c, Random& random, double least, double most) {
   const Quat turn = random.rotation();
-  const Vec3 shift = random_offset(random, least, most);
-  for (Pose* pose : {&c.pose_a, &c.pose_b}) {
-    pose->position = turn * pose->position + shift;
-    pose->orientation = turn * pose->orientation;
-  }
+  move_together(c, turn, random_offset(random, least, most));
 }
 
 HardCase random_pair(Random& random) {
@@ -325,6 +321,13 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
 }  // namespace
 
 std::span<const CaseFamily> case_families() { return kCaseFamilies; }
+
+void move_together(HardCase& c, const Quat& turn, const Vec3& shift) {
+  for (Pose* pose : {&c.pose_a, &c.pose_b}) {
+    pose->position = turn * pose->position + shift;
+    pose->orientation = turn * pose->orientation;
+  }
+}
 
 void set_gap(HardCase& c, double gap) {
   const oracle::ExactDistance now = oracle::exact_distance(c.a, c.pose_a, c.b, c.pose_b);

@@ -45,6 +45,9 @@ struct MotionFamily {
 // Moves B along the line between the closest points until the gap is about `gap` (negative:
 // overlapping by that much). The pair must be apart to begin with, else nothing is moved.
 void set_gap(HardCase& pair, double gap);
+// Both bodies together, about the world's origin, and then by a shift.
+void move_together(HardCase& pair, const Eigen::Quaterniond& turn,
+                   const Vec3& shift = Vec3::Zero());
 
 // One line of the case format of clearance-distance, to keep and to send.
 [[nodiscard]] std::string json_line(const std::string& id, const std::string& family,

@@ -153,13 +153,7 @@ HardCase razors(Random& random) {
   HardCase c{"", std::move(a), std::move(b), {}, {}};
   c.pose_b.orientation = test::turned(Vec3::UnitX(), random.log_uniform(1e-16, 1e-3));
   c.pose_b.position.x() = random.log_uniform(1e-12, 1.0);
-  if (random.chance(0.5)) {
-    const Quat turn = random.rotation();
-    for (Pose* pose : {&c.pose_a, &c.pose_b}) {
-      pose->position = turn * pose->position;
-      pose->orientation = turn * pose->orientation;
-    }
-  }
+  if (random.chance(0.5)) move_together(c, random.rotation());
   return c;
 }
 

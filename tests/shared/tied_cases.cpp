@@ -88,13 +88,7 @@ HardCase twin_facets(Random& random) {
   c.pose_b.position = Vec3::Unit(random.integer(0, 2)) * any_sign(random, reach);
   if (random.chance(0.4)) c.pose_b.position += random.in_box(0.5);
   set_gap(c, random.chance(0.3) ? 0.0 : any_sign(random, random.log_uniform(1e-16, 0.1)));
-  if (random.chance(0.5)) {
-    const Quat turn = random.rotation();
-    for (Pose* pose : {&c.pose_a, &c.pose_b}) {
-      pose->position = turn * pose->position;
-      pose->orientation = turn * pose->orientation;
-    }
-  }
+  if (random.chance(0.5)) move_together(c, random.rotation());
   return c;
 }
 
