@@ -229,7 +229,8 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   const Points last_a = at.common_points(kPointA), mine = at.common_points(kPointB);
   const Points theirs = rotate_back(pose.rotation, last_a - pose.translation);
   const Points middle = mine + times(all(0.5), theirs - mine);
-  c.own_b = middle - times(hn::Sub(dot(m, middle), offset_b), m);
+  const Lanes height = hn::Sub(dot(m, middle), offset_b);
+  c.own_b = middle - times(height, m);
   c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
   c.apart = hn::Sub(dot(n, c.point_b), offset_a);
   c.point_a = c.point_b - times(c.apart, n);
@@ -241,6 +242,12 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
                                least_within<true>(at, kSidesOfB, c.own_b));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Le(tilt2, all(kLevelTilt * kLevelTilt)));
+  // Of bounded bodies, a lane's own last points are never farther off.
+  if (HWY_UNLIKELY(!at.block.plain)) {
+    const Lanes size =
+        hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
+    c.holds = hn::And(c.holds, hn::Le(hn::Abs(height), hn::Mul(all(2.0), size)));
+  }
   return c;
 }
 

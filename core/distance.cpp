@@ -193,6 +193,8 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   DistanceResult result = conclude(a, b, bounds, p);
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
   if (bounds.certain_upper() - above > p.tight) refine(a, b, a_from_b, p, result);
+  // Points far away, whose places cost much, may be nearer than is proved.
+  result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
   return result;
 }

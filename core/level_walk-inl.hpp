@@ -146,11 +146,17 @@ HWY_INLINE Quad onto(const Facet& facet, Quad p) {
   return p - (dot(n, p) - facet.offset) * n;
 }
 
-// Halfway between the last witness points, on B's facet, in frame B.
-HWY_INLINE Quad halfway_on_facet(const Walk& w, const Facet& of_b) {
-  const Quad mine = load3(w.on_b.point);
+// Halfway between the last witness points, on B's facet, in frame B. False: these were another
+// pair's, or far out on a half-space, and as far off the facet's plane that rounding leaves `own`
+// beside it.
+HWY_INLINE bool halfway_on_facet(const Walk& w, const Facet& of_b, Quad& own) {
+  const Quad mine = load3(w.on_b.point), n = load3_of_4(of_b.normal);
   const Quad theirs = point_to_b(w.a_from_b, load3(w.on_a.point));
-  return onto(of_b, mine + 0.5 * (theirs - mine));
+  const Quad middle = mine + 0.5 * (theirs - mine);
+  const double height = dot(n, middle) - of_b.offset;
+  own = middle - height * n;
+  const double size = (w.a.bounding_radius + w.b.bounding_radius) + w.a_from_b.apart;
+  return std::abs(height) <= 2.0 * size;
 }
 
 // From a point that has passed the edge of the owner's facet back to it, in the owner's frame.
@@ -214,7 +220,9 @@ inline HWY_NOINLINE Step facet_facet(Walk& w) {
   const Quad tilt = direction_to_b(w.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
   if (HWY_UNLIKELY(!(tilt2 <= kLevelTilt * kLevelTilt))) return leave_facets(w, n, m);
-  Quad own = halfway_on_facet(w, of_b), tip = point_to_a(w.a_from_b, own);
+  Quad own;
+  if (HWY_UNLIKELY(!halfway_on_facet(w, of_b, own))) return Step::kLost;
+  Quad tip = point_to_a(w.a_from_b, own);
   const std::int32_t beyond_a = side_beyond(w.a, of_a, tip);
   const std::int32_t beyond_b = beyond_a == kNone ? side_beyond(w.b, of_b, own) : kNone;
   if (HWY_UNLIKELY(beyond_a != kNone || beyond_b != kNone)) {

@@ -93,6 +93,8 @@ constexpr OnceWrong kOnceWrong[] = {
     {"selfsame", 2602101,
      "a lower bound too high by 1.3e-9: between corners 5e-324 apart an arc was split beyond its "
      "end"},
+    {"leaning", 501800007,
+     "no bounds at all: far away the points were nearer than the proof, by their own rounding"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 

@@ -146,5 +146,23 @@ TEST(LevelWalk, StandsStillWhileTheBodiesDo) {
   }
 }
 
+// Halfway between points of bodies of 1e84 m rounding left a point half a metre inside a box, and
+// the bounds of boxes face to face were 0.5 m too high.
+TEST(LevelWalk, HoldsWithTheStateOfAPairThatIsFarLarger) {
+  DistanceJudge judge(hard::box({1.0, 0.5, 0.25}), hard::box({1.0, 0.5, 0.25}));
+  const Pose beside{{0.0, -1.1, -0.14}, Quat::Identity()};
+  const oracle::ExactDistance truth = judge.truth(Pose{}, beside);
+  for (double far = 1.0; far < 1e300; far *= 8.0) {
+    for (std::uint8_t dimension = 0; dimension < 3; ++dimension) {
+      TrackingState state;
+      state.a = {dimension, false, 3, Vec3(-far, 0.7 * far, far)};
+      state.b = {dimension, false, 2, Vec3(far, 0.2 * far, -far)};
+      const DistanceResult result = judge.ask(Pose{}, beside, state);
+      const auto faults = judge.faults(result, truth, Pose{}, beside);
+      EXPECT_TRUE(faults.empty()) << far << ": " << faults.front();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clearance
