@@ -9,12 +9,10 @@
 #include "core/batch_block.hpp"
 #include "core/batch_lane.hpp"
 #include "core/batch_slots.hpp"
+#include "core/batch_tenure.hpp"
 
 namespace clearance {
 namespace {
-
-// Rounds between two attempts of vector code at features of which it could not tell.
-constexpr std::uint32_t kRetry = 64;
 
 // What a pair's state says without its points.
 struct Features {
@@ -41,9 +39,10 @@ class DistanceBatch::Rounds {
             std::vector<TrackingState>(pairs.size())},
         slots_(of_),
         results_(pairs.size() + 1),
-        failed_lanes_(slots_.blocks().size() + 1) {
+        failed_lanes_(slots_.blocks().size() + 1),
+        loose_(pairs.size() / kBits + 1),
+        tenures_(pairs.size()) {
     failed_.reserve(pairs.size());
-    loose_.reserve(pairs.size());
     forget();
   }
 
@@ -52,7 +51,7 @@ class DistanceBatch::Rounds {
     ++rounds_;
     poses_ = world_from_body;
     judge_blocks();
-    single_queries_ = loose_.size() + failed_.size();
+    single_queries_ = loose_pairs_ + failed_.size();
     ask_loose();
     for (const std::uint32_t pair : failed_) ask_failed(pair);
     slots_.close_holes();
@@ -62,8 +61,10 @@ class DistanceBatch::Rounds {
   void forget() noexcept {
     std::fill(of_.states.begin(), of_.states.end(), TrackingState{});
     slots_.clear();
-    loose_.clear();
-    for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) loose_.push_back(pair);
+    std::fill(tenures_.begin(), tenures_.end(), Tenure{});
+    std::fill(loose_.begin(), loose_.end(), 0);
+    loose_pairs_ = 0;
+    for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) loosen(pair);
   }
 
   [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept {
@@ -75,6 +76,8 @@ class DistanceBatch::Rounds {
   [[nodiscard]] std::size_t single_queries() const noexcept { return single_queries_; }
 
  private:
+  static constexpr std::uint32_t kBits = 64;  // of a word of loose_
+
   [[nodiscard]] std::optional<FeatureKind> kind_of(std::uint32_t pair,
                                                    const TrackingState& state) const noexcept {
     return feature_kind(of_.a(pair), of_.b(pair), state);
@@ -107,34 +110,51 @@ class DistanceBatch::Rounds {
     results_[pair] = distance(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair]);
   }
 
-  // Those that have come to features that vector code can judge are loose no longer; where it just
-  // could not tell of these very features, it is asked again only now and then.
+  void loosen(std::uint32_t pair) noexcept {
+    loose_[pair / kBits] |= std::uint64_t{1} << (pair % kBits);
+    ++loose_pairs_;
+  }
+  void tie(std::uint32_t pair, FeatureKind kind) noexcept {
+    loose_[pair / kBits] &= ~(std::uint64_t{1} << (pair % kBits));
+    --loose_pairs_;
+    slots_.enter(pair, kind);
+  }
+
+  // In the order of the pairs. More than one step, and the features are others, or the pair is none
+  // for vector code.
   void ask_loose() noexcept {
-    std::size_t kept = 0;
-    for (const std::uint32_t pair : loose_) {
-      const Features before(of_.states[pair]);
-      ask(pair);
-      const bool stuck = before == Features(of_.states[pair]) && (rounds_ + pair) % kRetry != 0;
-      const auto kind = kind_of(pair, of_.states[pair]);
-      if (kind && !stuck) {
-        slots_.enter(pair, *kind);
-      } else {
-        loose_[kept++] = pair;
+    for (std::uint32_t word = 0; word < loose_.size(); ++word) {
+      for (std::uint64_t bits = loose_[word]; bits != 0; bits &= bits - 1) {
+        const auto pair = word * kBits + static_cast<std::uint32_t>(std::countr_zero(bits));
+        ask(pair);
+        Tenure& tenure = tenures_[pair];
+        tenure.add(rounds_, results_[pair].iterations != 1);
+        if (!tenure.settled(rounds_)) continue;
+        if (const auto kind = kind_of(pair, of_.states[pair])) {
+          tie(pair, *kind);
+        } else {
+          tenure.wait(Tenure::kNotAtAll);
+        }
       }
     }
-    loose_.resize(kept);
   }
 
   void ask_failed(std::uint32_t pair) noexcept {
     const Features before(of_.states[pair]);
     slots_.leave(pair);
     ask(pair);
+    Tenure& tenure = tenures_[pair];
+    tenure.add(rounds_, true);
     const auto kind = kind_of(pair, of_.states[pair]);
-    if (kind && before != Features(of_.states[pair])) {
+    if (before == Features(of_.states[pair])) {
+      tenure.wait(Tenure::kRetry);
+    } else if (!kind) {
+      tenure.wait(Tenure::kNotAtAll);
+    } else if (tenure.settled(rounds_)) {
       slots_.enter(pair, *kind);
-    } else {
-      loose_.push_back(pair);
+      return;
     }
+    loosen(pair);
   }
 
   BatchPairs of_;
@@ -143,8 +163,9 @@ class DistanceBatch::Rounds {
   std::vector<FailedLanes> failed_lanes_;  // of this round, at the front
   std::vector<std::uint32_t> failed_;      // pairs of this round
   std::span<const Pose> poses_;
-  std::vector<std::uint32_t> loose_;  // pairs that are in no block
-  std::size_t single_queries_ = 0;
+  std::vector<std::uint64_t> loose_;  // a bit a pair: it is in no block
+  std::vector<Tenure> tenures_;       // [pair]
+  std::size_t loose_pairs_ = 0, single_queries_ = 0;
   std::uint32_t rounds_ = 0;
 };
 

@@ -225,6 +225,24 @@ TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
   }
 }
 
+// Closest by corner and edge in turn; then still.
+TEST(DistanceBatch, AsksARestlessPairSinglyUntilItKeepsItsFeatures) {
+  const ConvexPolyhedron cube = test::cube();
+  const ConvexPolyhedron* const bodies[] = {&cube, &cube};
+  const BodyPair pairs[] = {{0, 1}};
+  DistanceBatch batch(bodies, pairs);
+  for (int step = 0; step < 100; ++step) {
+    const Pose poses[] = {turned_to(step % 2, -1.0), turned_to(0, 1.0)};
+    (void)batch.evaluate(poses);
+    EXPECT_EQ(batch.single_queries(), 1U) << "step " << step;
+  }
+  const Pose still[] = {turned_to(1, -1.0), turned_to(0, 1.0)};
+  (void)batch.evaluate(still);
+  EXPECT_EQ(batch.single_queries(), 1U);
+  for (int step = 0; step < 20; ++step) (void)batch.evaluate(still);
+  EXPECT_EQ(batch.single_queries(), 0U);
+}
+
 TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     Random random(seed);

@@ -1,0 +1,47 @@
+// How long a pair of a batch keeps its features, and so whether it is worth a lane.
+//
+// A pair in a lane costs a third of a single query; one that has to leave its lane, one and a half
+// of them more. So a pair that changes its features in more than about a quarter of the rounds is
+// better off outside.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace clearance {
+
+class Tenure {
+ public:
+  // Features that vector code could not tell of are tried there again after so many rounds.
+  static constexpr std::uint16_t kRetry = 64;
+  // Of features that vector code does not judge: nearly for ever.
+  static constexpr std::uint16_t kNotAtAll = 0xffff;
+
+  // The pair was asked in round `now`, which wraps around: did it come to other features?
+  void add(std::uint32_t now, bool changed) noexcept {
+    const auto stay =
+        static_cast<std::int32_t>(std::min<std::uint32_t>(now - since_, kLongest)) * kFraction;
+    const std::int32_t mean = mean_ + (stay - mean_) / kMemory;
+    mean_ = static_cast<std::uint16_t>(changed ? mean : mean_);
+    since_ = changed ? now : since_;
+    wait_ = changed ? (mean < kRestless ? kCalm : std::uint16_t{0}) : wait_;
+  }
+  // After add(): may it enter a lane? One that was restless has to keep its features for a while.
+  [[nodiscard]] bool settled(std::uint32_t now) const noexcept { return now - since_ >= wait_; }
+  // Not before so many rounds, unless it comes to other features.
+  void wait(std::uint16_t rounds) noexcept { wait_ = rounds; }
+
+ private:
+  // Rounds at the same features: the mean of the last sixteen times or so, none counted as more
+  // than kLongest, in 64ths. Restless pairs stay less than four and a half; they are calm again
+  // after twelve.
+  static constexpr std::int32_t kFraction = 64, kMemory = 16, kLongest = 31;
+  static constexpr std::int32_t kRestless = 9 * kFraction / 2;
+  static constexpr std::uint16_t kCalm = 12;
+
+  std::uint32_t since_ = 0;
+  std::uint16_t mean_ = kLongest * kFraction;
+  std::uint16_t wait_ = 0;
+};
+
+}  // namespace clearance
