@@ -17,6 +17,12 @@ bool same_parts(const Object& left, const Object& right) {
                     same);
 }
 
+// Whether a hull is much simpler than the object.
+bool is_fine(const Object& object) {
+  return object.parts.size() > 1 ||
+         (object.parts.size() == 1 && object.parts[0].shape.facets.size() > kFineFacets);
+}
+
 EnclosingHull hull_of(const Object& object) {
   auto made = enclosing_polyhedron(shapes_of(object));
   return made ? std::make_shared<const ConvexPolyhedron>(std::move(*made)) : nullptr;
@@ -35,7 +41,7 @@ std::vector<EnclosingHull> enclosing_hulls(const Scene& scene) {
   std::vector<std::size_t> originals;  // objects whose hull was made
   for (const Object& object : scene.objects) {
     EnclosingHull hull;
-    if (object.parts.size() > 1) {
+    if (is_fine(object)) {
       const auto original = std::find_if(
           originals.begin(), originals.end(),
           [&](std::size_t earlier) { return same_parts(scene.objects[earlier], object); });

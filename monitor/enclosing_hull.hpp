@@ -1,7 +1,7 @@
 // The reduced model of an object: one convex polyhedron of few facets around all its parts.
 //
 // Between the ball, which tells least and costs least, and the parts, every one of which has to be
-// asked about. An object of one part has none, however many facets that has (monitor/README.md).
+// asked about, or fetched from memory where it has many facets.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,14 @@ namespace clearance {
 
 using EnclosingHull = std::shared_ptr<const ConvexPolyhedron>;
 
+// An object of one part has a hull if that part has more facets than this: twice those of a hull.
+inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;
+
 // The object's parts in its frame. The object must stay where it is.
 [[nodiscard]] std::vector<PlacedShape> shapes_of(const Object& object);
 
-// One an object, in its frame; null for an object of one part, or with an unbounded one. Objects of
-// the same parts share theirs.
+// One an object, in its frame; null for an object of one simple part, or with an unbounded one.
+// Objects of the same parts share theirs.
 [[nodiscard]] std::vector<EnclosingHull> enclosing_hulls(const Scene& scene);
 
 }  // namespace clearance

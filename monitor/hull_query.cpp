@@ -28,12 +28,13 @@ HullQuery::HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts)
   }
 }
 
-bool HullQuery::possible(std::uint32_t pair, const PairTable& table) const noexcept {
-  if (table.rows_of(pair) < 2) return false;
-  const auto has_model = [this](std::uint32_t object) {
-    return hulls_[object] != nullptr || only_part_[object] != kNoModel;
+bool HullQuery::possible(const PairEntry& pair) const noexcept {
+  const auto has_hull = [this](std::uint32_t object) { return hulls_[object] != nullptr; };
+  const auto has_model = [&](std::uint32_t object) {
+    return has_hull(object) || only_part_[object] != kNoModel;
   };
-  return has_model(table.entries[pair].object_a) && has_model(table.entries[pair].object_b);
+  return has_model(pair.object_a) && has_model(pair.object_b) &&
+         (has_hull(pair.object_a) || has_hull(pair.object_b));
 }
 
 double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {

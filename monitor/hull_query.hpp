@@ -17,9 +17,9 @@ class HullQuery {
  public:
   HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts);
 
-  // Whether that may save anything: the pair has several rows, and both objects have one model
-  // around everything, a hull or their only part.
-  [[nodiscard]] bool possible(std::uint32_t pair, const PairTable& table) const noexcept;
+  // Whether that may save anything: one of the objects has a hull at least, and the other one a
+  // hull or only one part.
+  [[nodiscard]] bool possible(const PairEntry& pair) const noexcept;
 
   // A lower bound of the pair's distance for the poses in use, m; -infinity where the models
   // overlap: how deep decides nothing. Takes one query of the budget. possible(), and both objects

@@ -139,7 +139,7 @@ bool Triage::by_models(std::uint32_t pair, Evaluation& evaluation, const Enough&
   if (enough(balls.lower)) return true;
   const bool hopeless = balls.upper <= broad_phase_.horizon();
   if (hopeless || evaluation.queries_left <= (budget_ + 1) / 2) return false;
-  if (!hulls_.possible(pair, evaluation.table)) return false;
+  if (!hulls_.possible(evaluation.table.entries[pair])) return false;
   const double lower = hulls_.lower(pair, evaluation);
   if (!enough(lower)) return false;
   raise(pair, lower, evaluation.objects, evaluation.table);

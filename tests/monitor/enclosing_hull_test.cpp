@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/made.hpp"
 
 namespace clearance {
@@ -21,18 +22,23 @@ Object object_of(std::vector<Part> parts) {
   return object;
 }
 
-TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOnly) {
+TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets) {
   Scene scene;
   const Part floor{"floor", test::half_space(Vec3::UnitZ(), 0.0), {}};
   scene.objects = {object_of({box_at(1.0, Vec3::Zero()), box_at(1.0, Vec3::UnitX())}),
-                   object_of({box_at(1.0, Vec3::Zero())}), object_of({}),
-                   object_of({box_at(1.0, Vec3::Zero()), floor})};
+                   object_of({box_at(1.0, Vec3::Zero())}),
+                   object_of({}),
+                   object_of({box_at(1.0, Vec3::Zero()), floor}),
+                   object_of({{"ball", test::made(hard::facet_ball(10)), {}}})};
+  ASSERT_GT(scene.objects[4].parts[0].shape.facets.size(), kFineFacets);
   const auto hulls = enclosing_hulls(scene);
-  ASSERT_EQ(hulls.size(), 4u);
+  ASSERT_EQ(hulls.size(), 5u);
   EXPECT_TRUE(hulls[0]);
   EXPECT_FALSE(hulls[1]);
   EXPECT_FALSE(hulls[2]);
   EXPECT_FALSE(hulls[3]);
+  ASSERT_TRUE(hulls[4]);
+  EXPECT_LE(hulls[4]->facets.size(), kFineFacets / 2);
 }
 
 TEST(EnclosingHull, IsSharedByObjectsOfTheSamePartsOnly) {

@@ -29,13 +29,16 @@ struct TwoObjects {
   explicit TwoObjects(Random& random) {
     scene.objects.resize(2);
     for (std::size_t i = 0; i < 2; ++i) {
-      const int parts = random.integer(i == 0 ? 2 : 1, 3);
-      for (int p = 0; p < parts; ++p) add(i, random);
+      const bool fine = i == 0 && random.chance(0.2);
+      const int parts = fine ? 1 : random.integer(i == 0 ? 2 : 1, 3);
+      for (int p = 0; p < parts; ++p) add(i, fine ? hard::facet_ball(10) : simple(random), random);
     }
     scene.pairs.push_back({0, 1, false});
   }
-  void add(std::size_t object, Random& random) {
-    const Body body = random.chance(0.3) ? hard::rounded(random) : hard::any_bounded(random);
+  static Body simple(Random& random) {
+    return random.chance(0.3) ? hard::rounded(random) : hard::any_bounded(random);
+  }
+  void add(std::size_t object, const Body& body, Random& random) {
     bodies[object].push_back(body);
     const Pose place{random.in_box(1.0),
                      random.chance(0.3) ? Eigen::Quaterniond::Identity() : random.rotation()};
@@ -66,7 +69,7 @@ TEST(HullQuery, IsNeverAboveTheDistanceOfTheParts) {
     std::vector<PlacedPart> parts = parts_of(two.scene);
     PairTable table(two.scene, parts);
     HullQuery hulls(two.scene, parts);
-    ASSERT_TRUE(hulls.possible(0, table));
+    ASSERT_TRUE(hulls.possible(table.entries[0]));
     std::vector<ObjectState> objects(2);
     for (ObjectState& object : objects) {
       object.seen = object.moved = true;
@@ -83,23 +86,25 @@ TEST(HullQuery, IsNeverAboveTheDistanceOfTheParts) {
   EXPECT_GT(apart, 30);
 }
 
-TEST(HullQuery, IsAskedOfPairsOfSeveralPartsWithoutUnboundedOnes) {
+TEST(HullQuery, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
-  scene.objects.resize(4);
+  scene.objects.resize(5);
   const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));
   const ConvexPolyhedron floor = test::half_space(Vec3::UnitZ(), -9.0);
   scene.objects[0].parts = {{"a", cube, {}}, {"b", cube, {.position = Vec3(3, 0, 0)}}};
   scene.objects[1].parts = {{"a", cube, {}}};
   scene.objects[2].parts = {{"floor", floor, {}}};
   scene.objects[3].parts = {{"floor", floor, {}}, {"a", cube, {}}};
-  scene.pairs = {{0, 1, false}, {0, 2, false}, {0, 3, false}, {1, 2, false}};
+  scene.objects[4].parts = {{"ball", test::made(hard::facet_ball(10)), {}}};
+  scene.pairs = {{0, 1, false}, {0, 2, false}, {0, 3, false}, {1, 2, false}, {1, 4, false}};
   const std::vector<PlacedPart> parts = parts_of(scene);
   const PairTable table(scene, parts);
   const HullQuery hulls(scene, parts);
-  EXPECT_TRUE(hulls.possible(0, table));
-  EXPECT_TRUE(hulls.possible(1, table)) << "a floor alone is its own model";
-  EXPECT_FALSE(hulls.possible(2, table)) << "a floor and a cube have no hull";
-  EXPECT_FALSE(hulls.possible(3, table)) << "one row: nothing to save";
+  EXPECT_TRUE(hulls.possible(table.entries[0]));
+  EXPECT_TRUE(hulls.possible(table.entries[1])) << "a floor alone is its own model";
+  EXPECT_FALSE(hulls.possible(table.entries[2])) << "a floor and a cube have no hull";
+  EXPECT_FALSE(hulls.possible(table.entries[3])) << "both are as simple as can be";
+  EXPECT_TRUE(hulls.possible(table.entries[4])) << "one row, but of many facets";
 }
 
 // Time runs fast, so that pairs wake and fall asleep all the time.

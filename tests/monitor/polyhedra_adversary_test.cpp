@@ -47,7 +47,14 @@ Part hull(Random& random, double size, const Pose& offset) {
   return {"hull", test::made(polyhedron_from_vertices(points)), offset};
 }
 
-// Needles, plates, hulls and a body in two pieces, a floor; two zones.
+// Of more facets than anything that does not get an enclosing hull.
+Part pebble(Random& random, double size) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) points.push_back(size * random.vec(1.0).normalized());
+  return {"pebble", test::made(polyhedron_from_vertices(points)), {}};
+}
+
+// Needles, plates, hulls, a pebble and a body in two pieces, a floor; two zones.
 Scene polyhedra(Random& random) {
   const Part needle = test::block({0.4, 0.004, 0.004}, random.pose(0.1));
   std::vector<Object> objects;
@@ -56,6 +63,7 @@ Scene polyhedra(Random& random) {
     objects.push_back(test::moving("hull", {hull(random, 0.15, random.pose(0.1))}));
   }
   objects.push_back(test::moving("two", {hull(random, 0.1, random.pose(0.3)), needle}));
+  objects.push_back(test::moving("pebble", {pebble(random, 0.1)}));
   objects.push_back(test::moving("plate", {test::block({0.3, 0.3, 0.002})}));
   objects.push_back(test::fixed("floor", {test::floor()}, test::at(0, 0, -1.2)));
   for (int i = 0; i < 3; ++i) {

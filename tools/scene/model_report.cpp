@@ -141,7 +141,7 @@ std::string model_table(const Scene& scene) {
                     "models\n"
                     "error: no point of a model is farther than this from the object's nearest "
                     "part; of full ones, the rounding of their numbers\n"
-                    "-: unbounded, or one part, which is asked at once\n",
+                    "-: unbounded, or one simple part, which is asked at once\n",
                     scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
 }
 
