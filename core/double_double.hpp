@@ -52,9 +52,10 @@ constexpr DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.hi
 
 namespace exact {
 
-// Do these add up to zero for certain? Errors of sums are summed up again until nothing is left.
+// The same sum, most of it in the last part: errors of sums are summed up again, until mostly
+// nothing is left.
 template <std::size_t kCount>
-constexpr bool sum_is_zero(std::array<double, kCount> parts) noexcept {
+constexpr void distil(std::array<double, kCount>& parts) noexcept {
   for (std::size_t pass = 0; pass < kCount; ++pass) {
     for (std::size_t i = 1; i < kCount; ++i) {
       const DoubleDouble s = sum(parts[i - 1], parts[i]);
@@ -62,10 +63,25 @@ constexpr bool sum_is_zero(std::array<double, kCount> parts) noexcept {
       parts[i - 1] = s.low;
     }
   }
+}
+
+// Do these add up to zero for certain?
+template <std::size_t kCount>
+constexpr bool sum_is_zero(std::array<double, kCount> parts) noexcept {
+  distil(parts);
   for (const double part : parts) {
     if (part != 0.0) return false;
   }
   return true;
+}
+
+// To zero or less?
+template <std::size_t kCount>
+constexpr bool sum_is_not_positive(std::array<double, kCount> parts) noexcept {
+  distil(parts);
+  double rest = 0.0;
+  for (std::size_t i = 0; i + 1 < kCount; ++i) rest += parts[i] < 0.0 ? -parts[i] : parts[i];
+  return parts[kCount - 1] <= -2.0 * rest;
 }
 
 }  // namespace exact

@@ -3,23 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace clearance::exact {
 namespace {
 
 constexpr int kDoubleBits = 53;
+constexpr int kLeastExponent = -1074;  // of a double's last bit
 
 long bits(const Integer& x) {
   return sgn(x) == 0 ? 0 : static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
 }
 
-// x * 2^shift, rounded down for a negative shift.
+// x * 2^shift, towards zero for a negative shift: what is opposite stays so.
 Integer shifted(const Integer& x, long shift) {
   Integer result;
   if (shift >= 0) {
     mpz_mul_2exp(result.get_mpz_t(), x.get_mpz_t(), static_cast<mp_bitcnt_t>(shift));
   } else {
-    mpz_fdiv_q_2exp(result.get_mpz_t(), x.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
+    mpz_tdiv_q_2exp(result.get_mpz_t(), x.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
   }
   return result;
 }
@@ -112,19 +114,22 @@ RoundedDirection rounded_unit(const Integer3& direction) {
 RoundedDirection nearest_direction(const Integer3& direction) {
   Integer3 shortest = direction;
   reduce(shortest);
-  long longest = 0;
+  long longest = 0, lowest = std::numeric_limits<long>::max();
   bool exact = true;
   for (const Integer& component : shortest) {
     if (sgn(component) == 0) continue;
     longest = std::max(longest, bits(component));
     const long trailing = static_cast<long>(mpz_scan1(component.get_mpz_t(), 0));
     exact = exact && bits(component) - trailing <= kDoubleBits;
+    lowest = std::min(lowest, trailing);
   }
-  if (!exact || longest > 900) return rounded_unit(direction);
+  if (!exact || 1 - longest + lowest < kLeastExponent) return rounded_unit(direction);
   Vec3 vector;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double component = shortest[i].get_d();
-    vector[static_cast<Eigen::Index>(i)] = std::ldexp(component, static_cast<int>(1 - longest));
+    long exponent = 0;
+    const double significand = mpz_get_d_2exp(&exponent, shortest[i].get_mpz_t());
+    vector[static_cast<Eigen::Index>(i)] =
+        std::ldexp(significand, static_cast<int>(exponent + 1 - longest));
   }
   return {vector, true};
 }

@@ -21,18 +21,21 @@ constexpr double kSameLine = 0x1p-40;
 // Unit vectors made of doubles.
 constexpr double kUnitError = 0x1p-51;
 
-// The three products' exact sum is 0, or not for certain.
-bool exactly_level(const Vec3& n, const Vec3& g) noexcept {
-  std::array<double, 6> parts;
+// Products of what is far from overflow are scaled up by the square of this: with none but two
+// subnormals are digits lost below then.
+constexpr double kUp = 0x1p500, kLeastProduct = 1e-250;
+
+// Do the three products add up to 0 or less, for certain?
+bool falls_or_is_level(const Vec3& n, const Vec3& g) noexcept {
+  std::array<double, 6> parts{};
   for (int i = 0; i < 3; ++i) {
-    const DoubleDouble p = exact::product(n[i], g[i]);
-    if (n[i] * g[i] != 0.0 ? std::abs(n[i] * g[i]) < 1e-250 : n[i] != 0.0 && g[i] != 0.0) {
-      return false;  // digits are lost below
-    }
+    if (n[i] == 0.0 || g[i] == 0.0) continue;
+    const DoubleDouble p = exact::product(kUp * n[i], kUp * g[i]);
+    if (!(std::abs(p.high) > kLeastProduct)) return false;
     parts[static_cast<std::size_t>(2 * i)] = p.low;
     parts[static_cast<std::size_t>(2 * i + 1)] = p.high;
   }
-  return exact::sum_is_zero(parts);
+  return exact::sum_is_not_positive(parts);
 }
 
 double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }
@@ -136,8 +139,10 @@ bool PolarCone::holds_as_it_is(const Separator& s, const Vec3& n,
     const bool of_facets_body = facet && c.of_b == (s.facet_of_b != kNone);
     if (of_facets_body || c.slope < -margin) return true;
     if (exact_n.isZero(0.0)) return false;
-    if (c.of_b && axis_of_b >= 0) return c.own[axis_of_b] == 0.0 && c.rest[axis_of_b] == 0.0;
-    return c.known && exactly_level(exact_n, narrow(c.g));
+    if (c.of_b && axis_of_b >= 0) {
+      return c.slope < 0.0 || (c.own[axis_of_b] == 0.0 && c.rest[axis_of_b] == 0.0);
+    }
+    return c.known && falls_or_is_level(exact_n, narrow(c.g));
   });
 }
 

@@ -6,7 +6,13 @@
 namespace clearance {
 namespace {
 
-using Components = std::array<double, 4>;  // x, y, z, w
+// Of a quaternion that has been scaled.
+struct Scaled {
+  double value;
+  bool zero;   // as given: scaling may have made nothing of what is subnormal
+  bool whole;  // zero, or so large that doubles have all digits of its products
+};
+using Components = std::array<Scaled, 4>;  // x, y, z, w
 
 // A sum or product of wide numbers is off by at most 2^-102 of its terms. Of four products, a
 // component of conj(a) b is off by 2^-101; an entry of the matrix has four of those, once more as
@@ -21,22 +27,23 @@ Components scaled(const RelativePose::Orientation& q) noexcept {
   const int exponent = std::ilogb(q.coeffs().cwiseAbs().maxCoeff());
   Components out;
   for (int i = 0; i < 4; ++i) {
-    out[static_cast<std::size_t>(i)] = std::ldexp(q.coeffs()[i], -exponent);
+    const double given = q.coeffs()[i], value = std::ldexp(given, -exponent);
+    const bool zero = given == 0.0;
+    out[static_cast<std::size_t>(i)] = {value, zero, zero || std::abs(value) > kSmallest};
   }
   return out;
-}
-
-// As given: scaling may have made nothing of what is subnormal.
-bool digits_kept(const RelativePose::Orientation& q) noexcept {
-  const double least = kSmallest * q.coeffs().cwiseAbs().maxCoeff();
-  return std::all_of(q.coeffs().begin(), q.coeffs().end(),
-                     [least](double x) { return x == 0.0 || std::abs(x) > least; });
 }
 
 // One component of a product of quaternions: four products of doubles.
 struct FourProducts {
   std::array<DoubleDouble, 4> terms;
+  bool whole = true;  // no digit of them is missing
 
+  void put(std::size_t i, double sign, const Scaled& a, const Scaled& b) noexcept {
+    if (a.zero || b.zero) return;
+    terms[i] = exact::product(sign * a.value, b.value);
+    whole = whole && a.whole && b.whole;
+  }
   [[nodiscard]] DoubleDouble sum() const noexcept {
     return (terms[0] + terms[1]) + (terms[2] + terms[3]);
   }
@@ -48,18 +55,24 @@ struct FourProducts {
       parts[2 * i + 1] = terms[i].high;
     }
     parts[8] = -x;
-    return exact::sum_is_zero(parts);
+    return whole && exact::sum_is_zero(parts);
   }
 };
 
 // conj(a) b.
 std::array<FourProducts, 4> relative(const Components& a, const Components& b) noexcept {
-  const auto times = [&](std::size_t i, std::size_t k) { return exact::product(a[i], b[k]); };
-  constexpr std::size_t x = 0, y = 1, z = 2, w = 3;
-  return {{{{times(w, x), -times(x, w), times(z, y), -times(y, z)}},
-           {{times(w, y), -times(y, w), times(x, z), -times(z, x)}},
-           {{times(w, z), -times(z, w), times(y, x), -times(x, y)}},
-           {{times(w, w), times(x, x), times(y, y), times(z, z)}}}};
+  constexpr std::size_t w = 3;
+  std::array<FourProducts, 4> out;
+  for (std::size_t x = 0; x < 3; ++x) {
+    const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+    out[x].put(0, 1.0, a[w], b[x]);
+    out[x].put(1, -1.0, a[x], b[w]);
+    out[x].put(2, 1.0, a[z], b[y]);
+    out[x].put(3, -1.0, a[y], b[z]);
+    out[w].put(x + 1, 1.0, a[x], b[x]);
+  }
+  out[w].put(0, 1.0, a[w], b[w]);
+  return out;
 }
 
 // N(q) / |q|^2.
@@ -166,7 +179,7 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   WideRotation out;
   out.rows = matrix(of);
   out.error = kWideError;
-  if (digits_kept(pose.world_from_a) && digits_kept(pose.world_from_b)) set_axes(of, out);
+  set_axes(of, out);
   return agrees(out, pose) ? out : as_given;
 }
 

@@ -278,6 +278,36 @@ TEST(Distance, OfAColumnInAWallThatIsTiltedByASubnormalHasNoLowerBound) {
   }
 }
 
+// Turned about the column, by as little, the wall stands beside it all the same.
+TEST(Distance, OfAColumnAndAWallTurnedAboutItByASubnormalIsThatOfTheirSections) {
+  const ConvexPolyhedron column = prism_without_end({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}});
+  const ConvexPolyhedron wall = half_space({-1, 0, 0}, -2.0);
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double length : {1.0, 24.0, 0x1p600}) {
+    Pose turned = at(0.5, 7.0, -3.0);
+    turned.orientation = Eigen::Quaterniond(length, 0.0, 0.0, -least);
+    expect_distance(cold(column, wall, turned), 2.0, 20.0);
+    turned.orientation = Eigen::Quaterniond(least, 0.0, 0.0, -length);
+    expect_distance(cold(wall, column, turned), 1.0, 20.0);
+  }
+}
+
+// Tilted by as little, which side of the wall a column without end is on for ever hangs on the
+// sign.
+TEST(Distance, OfAColumnDownwardsAndAWallTiltedByASubnormalHangsOnTheWay) {
+  std::vector<HalfSpace> rows = {{{0, 0, 1}, 1.0}};
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+    rows.push_back({n, 0.5});
+  }
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double tilt : {1e-30, 1e-200, 1e-310, least}) {
+    expect_distance(cold(column, half_space({-1, tilt, 0}, -2.0), at(0, 3, 1)), 1.5, 10.0);
+    expect_distance(cold(half_space({-1, 0, -tilt}, -2.0), column, at(0, 3, 1)), 1.5, 10.0);
+    EXPECT_EQ(cold(column, half_space({-1, 0, tilt}, -2.0), at(0, 3, 1)).lower, -kInfinity);
+  }
+}
+
 TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
   TrackingState state;
   const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));

@@ -106,9 +106,22 @@ TEST(ExactRounding, DirectionsThatDoublesCanHoldAreExact) {
   const RoundedDirection axis = nearest_direction({0, 0, Integer(-5) << 300});
   EXPECT_TRUE(axis.exact);
   EXPECT_EQ(axis.vector, Vec3(0, 0, -1));
+  const RoundedDirection tilted = nearest_direction({-(Integer(1) << 1074), 0, 1});
+  EXPECT_TRUE(tilted.exact);
+  EXPECT_EQ(tilted.vector, Vec3(-1, 0, 0x1p-1074));
+  EXPECT_FALSE(nearest_direction({Integer(1) << 1075, 0, 1}).exact);
   const RoundedDirection lost = nearest_direction({(Integer(1) << 53) + 1, 1, 0});
   EXPECT_FALSE(lost.exact);
   EXPECT_NEAR(lost.vector.norm(), 1.0, 1e-15);
+}
+
+TEST(ExactRounding, OppositeDirectionsStayOpposite) {
+  const Integer large = (Integer(1) << 1200) + 1;
+  const RoundedDirection there = nearest_direction({large, -3, 7 * large}),
+                         back = nearest_direction({-large, 3, -7 * large});
+  EXPECT_FALSE(there.exact);
+  EXPECT_EQ(there.vector, -back.vector);
+  EXPECT_EQ(there.rest, -back.rest);
 }
 
 }  // namespace
