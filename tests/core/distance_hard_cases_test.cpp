@@ -1,7 +1,6 @@
 // distance() against the exact truth, on every family of hard cases and motions.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <ostream>
 
 #include "tests/shared/distance_judge.hpp"
@@ -159,33 +158,6 @@ TEST_P(DistanceAlongMotions, HoldsAgainstTheExactTruthAtEveryStep) {
 
 INSTANTIATE_TEST_SUITE_P(Hard, DistanceAlongMotions, testing::ValuesIn(hard::motion_families()),
                          [](const auto& test) { return std::string(test.param.name); });
-
-// One state is carried through all of it: around A in a spiral that closes after some thousand
-// turns, B turning, from apart to where they overlap.
-Pose on_its_way(int step, double near, double far) {
-  const double t = 1e-3 * step;
-  const Vec3 way(std::cos(t), std::sin(t) * std::cos(0.37 * t), std::sin(t) * std::sin(0.37 * t));
-  const double distance = near + (far - near) * (0.5 + 0.5 * std::cos(0.0171 * t));
-  const Eigen::Quaterniond turn(std::cos(0.61 * t), 0.6 * std::sin(0.61 * t), 0.0,
-                                0.8 * std::sin(0.61 * t));
-  return {distance * way, turn};
-}
-
-TEST(Distance, HoldsAfterAMillionTrackedSteps) {
-  constexpr int kSteps = 1'000'000, kJudgedEvery = 31'250;
-  const hard::Body bodies[] = {hard::box({0.5, 0.4, 0.3}), hard::link(5, 1.0, 0.2)};
-  for (const hard::Body& body : bodies) {
-    DistanceJudge judge(body, body);
-    TrackingState state;
-    for (int k = 1; k <= kSteps; ++k) {
-      const Pose pose_b = on_its_way(k, 0.8, 2.5);
-      const DistanceResult result = judge.ask(Pose{}, pose_b, state);
-      if (k % kJudgedEvery != 0) continue;
-      const auto faults = judge.faults(result, judge.truth(Pose{}, pose_b), Pose{}, pose_b);
-      EXPECT_TRUE(faults.empty()) << body.rows.size() << " facets, step " << k << joined(faults);
-    }
-  }
-}
 
 }  // namespace
 }  // namespace clearance
