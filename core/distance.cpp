@@ -12,9 +12,11 @@ namespace clearance {
 // here: what is first declared between the macros below is compiled for that instruction set,
 // wherever it is defined.
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept;
+                         const RelativePose& a_from_b, TrackingState& state, bool depth,
+                         DistancePath* path) noexcept;
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state) noexcept;
+                        const RelativePose& a_from_b, TrackingState& state,
+                        DistancePath* path) noexcept;
 
 }  // namespace clearance
 
@@ -35,7 +37,7 @@ inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
   if (!walk_overlap(w)) {
-    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
+    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, nullptr);
   }
   DistanceResult result = overlap_result_of(w);
   add_radii(result, a, b);
@@ -49,7 +51,7 @@ DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedro
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
   if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true, nullptr);
 }
 
 }  // namespace clearance::HWY_NAMESPACE
@@ -75,6 +77,10 @@ namespace clearance {
 HWY_EXPORT(tracked_distance);
 
 namespace {
+
+void note(DistancePath* path, DistancePath taken) noexcept {
+  if (path != nullptr) *path = taken;
+}
 
 // What is known so far of the distance between the cores, slack not yet taken.
 struct Bounds {
@@ -172,7 +178,8 @@ void bound_by_lines(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
   bounds.beyond = beyond;
 }
 
-DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
+DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b,
+                             DistancePath* path) noexcept {
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.tight);
@@ -192,7 +199,10 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
     prove_from_below(bounds, a, b, p);
   DistanceResult result = conclude(a, b, bounds, p);
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.certain_upper() - above > p.tight) refine(a, b, a_from_b, p, result);
+  if (bounds.certain_upper() - above > p.tight) {
+    note(path, DistancePath::kRobust);
+    refine(a, b, a_from_b, p, result);
+  }
   // Points far away, whose places cost much, may be nearer than is proved.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
@@ -266,13 +276,15 @@ const char* name(DistanceStatus status) noexcept {
 }
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
+                         const RelativePose& a_from_b, TrackingState& state, bool depth,
+                         DistancePath* path) noexcept {
+  note(path, DistancePath::kLoop);
   if (!is_a_place(a_from_b)) return nothing_known();
   ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
   const double apart = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, apart);
   side_b.place_near(state.b, side_a, apart);
-  DistanceResult result = core_distance(side_a, side_b, a_from_b);
+  DistanceResult result = core_distance(side_a, side_b, a_from_b, path);
   state = {side_a.tracked(), side_b.tracked()};
   if (!(result.lower > 0.0)) {
     if (depth) {
@@ -286,12 +298,16 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 }
 
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state) noexcept {
+                        const RelativePose& a_from_b, TrackingState& state,
+                        DistancePath* path) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
   DistanceResult result;
-  if (!still_overlapping(a, b, a_from_b, state, result) &&
-      walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-    return by_search(a, b, a_from_b, state, true);
+  note(path, DistancePath::kOverlap);
+  if (!still_overlapping(a, b, a_from_b, state, result)) {
+    note(path, DistancePath::kWalk);
+    if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+      return by_search(a, b, a_from_b, state, true, path);
+    }
   }
   finish(a, b, result);
   return result;
@@ -301,12 +317,19 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
+  note(options.path, DistancePath::kSpheres);
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
   if (state.a.deep && options.depth) {
-    if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-    return by_search(a, b, a_from_b, state, options.depth);
+    note(options.path, DistancePath::kOverlap);
+    if (!walk_overlap(a, b, a_from_b, state, result)) {
+      return by_depth(a, b, a_from_b, state, options.path);
+    }
+  } else {
+    note(options.path, DistancePath::kWalk);
+    if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+      return by_search(a, b, a_from_b, state, options.depth, options.path);
+    }
   }
   finish(a, b, result);
   return result;

@@ -68,6 +68,15 @@ struct alignas(64) TrackingState {
 };
 static_assert(sizeof(TrackingState) == 64, "a cache line a pair");
 
+// Which way an answer came: core/README.md, "What the iteration is".
+enum class DistancePath : std::uint8_t {
+  kWalk,     // step 1 proved it
+  kLoop,     // the loop, and of what touches or overlaps then the depth
+  kRobust,   // the loop and then the robust path
+  kOverlap,  // at once from where they overlapped last
+  kSpheres,  // see DistanceOptions::far_away
+};
+
 struct DistanceOptions {
   // m: where the spheres around both bodies prove as much, they are all that is asked. The status
   // is kFarAway then, and the distance the lower bound.
@@ -76,6 +85,8 @@ struct DistanceOptions {
   // Where they are not proved apart, the status is kIterationLimit then and the lower bound may be
   // -infinity.
   bool depth = true;
+  // Where to say which way the answer came; null: nowhere. It changes nothing else.
+  DistancePath* path = nullptr;
 };
 
 // noexcept, no heap, deterministic. Any state is accepted.

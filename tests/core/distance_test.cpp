@@ -330,6 +330,25 @@ TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
             DistanceStatus::kOverlapping);
 }
 
+TEST(Distance, SaysWhichWayTheAnswerCame) {
+  const ConvexPolyhedron column = prism_without_end({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
+  TrackingState state;
+  const auto way = [&](const ConvexPolyhedron& body, const Pose& pose, double far_away) {
+    DistancePath path = DistancePath::kRobust;
+    TrackingState other = state;
+    const RelativePose b = relative_pose(Pose{}, pose);
+    const DistanceResult r = distance(body, body, b, state, {.far_away = far_away, .path = &path});
+    EXPECT_EQ(r.distance, distance(body, body, b, other, {.far_away = far_away}).distance);
+    return path;
+  };
+  EXPECT_EQ(way(cube(), at(1.5, 0.3, 0.2), kInfinity), DistancePath::kWalk);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kLoop);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kOverlap);
+  EXPECT_EQ(way(cube(), at(9.0, 0.3, 0.2), 5.0), DistancePath::kSpheres);
+  const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
+  EXPECT_EQ(way(column, leaning, kInfinity), DistancePath::kRobust);
+}
+
 TEST(Distance, NamesEveryStatus) {
   EXPECT_STREQ(name(DistanceStatus::kConverged), "converged");
   EXPECT_STREQ(name(DistanceStatus::kFarAway), "far_away");

@@ -273,6 +273,15 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
   EXPECT_NE(r.err.find("50 queries"), std::string::npos) << r.err;
 }
 
+TEST_F(DistanceTool, CountsWhichWayTheAnswersCame) {
+  std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n' << cubes("overlapping", 0.25);
+  const Outcome r = run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl"));
+  EXPECT_NE(r.err.find("by the walk 1, by the loop 1 (1 touch or overlap, 0 by the robust path), "
+                       "by the last overlap 0"),
+            std::string::npos)
+      << r.err;
+}
+
 TEST_F(DistanceTool, SaysWhatIsWrongWithItsArguments) {
   EXPECT_EQ(run("").status, 2);
   EXPECT_EQ(run("--cases -").status, 2);

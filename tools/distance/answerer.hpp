@@ -1,6 +1,8 @@
-// Answers cases with every figure that the core gives, and keeps the time.
+// Answers cases with every figure that the core gives, keeps the time, and counts which way the
+// answers came.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -16,6 +18,18 @@ struct DistanceAnswer {
   Vec3 own_point_on_b;  // the witness point in B's own frame, before the radius
 };
 
+// How many answers came each way, by DistancePath; and how many of those that left the walk touch
+// or overlap.
+struct PathCount {
+  std::array<std::size_t, 5> by_path{};
+  std::size_t met = 0;
+
+  [[nodiscard]] std::size_t operator[](DistancePath path) const {
+    return by_path[static_cast<std::size_t>(path)];
+  }
+  void add(DistancePath path, DistanceStatus status);
+};
+
 class Answerer {
  public:
   // `cold`: forget the state between the poses of a motion. `repeat`: ask everything so often, for
@@ -25,16 +39,19 @@ class Answerer {
   // An answer as --help describes it: one entry a pose where it is a motion.
   [[nodiscard]] nlohmann::ordered_json answer(const DistanceCase& question);
 
-  // To stderr.
+  // To stderr; the second line is how often each path was taken.
   void print_summary(std::size_t lines, std::size_t bad_lines) const;
 
  private:
   std::vector<DistanceAnswer> run(const DistanceCase& question);
+  void count_paths(const DistanceCase& question);
+  void print_paths() const;
 
   bool cold_;
   int repeat_;
   std::size_t queries_ = 0;
   std::size_t not_converged_ = 0;
+  PathCount paths_;
   std::chrono::steady_clock::duration time_{};
 };
 
