@@ -24,9 +24,11 @@ enum class FeatureKind : std::uint8_t {
   kVertexFacet,
   kFacetVertex,
   kEdgeEdge,
+  kEdgeFacet,
+  kFacetEdge,
   kFacetFacet,
 };
-inline constexpr std::size_t kFeatureKinds = 7;
+inline constexpr std::size_t kFeatureKinds = 9;
 
 // Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
 // first of them up to the points are not read of a plain block, nor kept.
@@ -47,8 +49,8 @@ enum CommonRow : std::size_t {
   kFeatureRows = kPointB + 3
 };
 
-// Rows of the features, from kFeatureRows on: first an edge's or facet's, if there is one, then a
-// vertex's (of two of a kind A's first), then what repeats:
+// Rows of the features, from kFeatureRows on: that of more dimensions first (of two of a kind A's),
+// then what repeats:
 //   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
 //   facet   normal 3, offset
 //   vertex  position 3
@@ -62,6 +64,7 @@ inline constexpr std::size_t kDirectionsOfA = 2 * kVertexRows;  // vertex-vertex
 inline constexpr std::size_t kDirectionsOfB = kDirectionsOfA + kMostRepeats * kDirectionRows;
 inline constexpr std::size_t kDirectionsAtEdge = kEdgeRows + kVertexRows;  // edge-vertex
 inline constexpr std::size_t kSides = kFacetRows + kVertexRows;            // facet-vertex
+inline constexpr std::size_t kSidesAtEdge = kFacetRows + kEdgeRows;        // edge-facet
 inline constexpr std::size_t kDirectionsAtFacet = kSides + kMostRepeats * kSideRows;
 inline constexpr std::size_t kSidesOfA = 2 * kFacetRows;  // facet-facet
 inline constexpr std::size_t kMostSidesOfTwo = 6;         // of each: what the rows have room for
@@ -70,6 +73,7 @@ inline constexpr std::size_t kSidesOfB = kSidesOfA + kMostSidesOfTwo * kSideRows
 inline constexpr std::size_t kRows =
     kFeatureRows + kDirectionsAtFacet + kMostRepeats * kDirectionRows;
 static_assert(kSidesOfB + kMostSidesOfTwo * kSideRows <= kRows - kFeatureRows);
+static_assert(kSidesAtEdge + kMostRepeats * kSideRows <= kRows - kFeatureRows);
 
 struct alignas(64) BatchBlock {
   std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};

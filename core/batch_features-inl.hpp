@@ -1,6 +1,6 @@
-// The straight-line part of core/feature_walk-inl.hpp and core/level_walk-inl.hpp, operation for
-// operation, for as many pairs as a vector has lanes: are these features the closest ones still,
-// and where do they put the witness points? Compiled once an instruction set.
+// The straight-line part of core/feature_walk-inl.hpp, operation for operation, for as many pairs
+// as a vector has lanes: are these features the closest ones still, and where do they put the
+// witness points? Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_FEATURES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_FEATURES_INL_HPP_
 #undef CLEARANCE_BATCH_FEATURES_INL_HPP_
@@ -175,79 +175,69 @@ HWY_INLINE Lanes least_within(const FeatureRows& at, std::size_t row, const Poin
   return least;
 }
 
-// kMoved: the facet is B's.
-template <bool kMoved>
+// A facet, A's or B's, and what is above it: as Owned of core/walked_pair-inl.hpp.
+template <bool kOfB>
+struct Ground {
+  const RelativePoses& pose;
+  Points own_n, n;  // the normal in its body's frame, and in A's
+  Lanes offset;
+
+  HWY_INLINE Ground(const FeatureRows& at, const RelativePoses& relative)
+      : pose(relative),
+        own_n(at.points(0)),
+        n(CommonFrame<kOfB>{relative}.direction_to_common(own_n)),
+        offset(at.lanes(3)) {}
+
+  // From the other body's frame to the facet's.
+  [[nodiscard]] HWY_INLINE Points point_in(const Points& p) const {
+    if constexpr (kOfB) return rotate_back(pose.rotation, p - pose.translation);
+    return rotate(pose.rotation, p) + pose.translation;
+  }
+  [[nodiscard]] HWY_INLINE Points direction_in(const Points& v) const {
+    if constexpr (kOfB) return rotate_back(pose.rotation, v);
+    return rotate(pose.rotation, v);
+  }
+  // And back.
+  [[nodiscard]] HWY_INLINE Points point_out(const Points& p) const {
+    if constexpr (kOfB) return rotate(pose.rotation, p) + pose.translation;
+    return rotate_back(pose.rotation, p - pose.translation);
+  }
+  // `others`: in the other body's frame, `own`: in the facet's.
+  [[nodiscard]] HWY_INLINE Lanes height(const Points& others, const Points& own) const {
+    if constexpr (kOfB) {
+      return hn::Sub(hn::Mul(over_norm(n), dot(n, others - pose.translation)), offset);
+    }
+    return hn::Sub(dot(n, own), offset);
+  }
+  // The witness points, c.apart from each other, and the normal.
+  HWY_INLINE void place_above(const Points& others, const Points& own, Closest& c) const {
+    if constexpr (kOfB) {
+      c.own_b = own - times(hn::Sub(dot(own_n, own), offset), own_n);
+      c.point_a = others;
+      c.point_b = point_out(c.own_b);
+      c.normal = times(hn::Neg(over_norm(n)), n);
+    } else {
+      c.point_a = own - times(c.apart, n);
+      c.own_b = others;
+      c.point_b = own;
+      c.normal = n;
+    }
+  }
+};
+
+// kOfB: the facet is B's.
+template <bool kOfB>
 HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
-  const Points own_n = at.points(0), tip = at.points(kFacetRows);
-  const Points n = CommonFrame<kMoved>{pose}.direction_to_common(own_n);
-  const Lanes offset = at.lanes(3);
-  Points own_tip;
-  if constexpr (kMoved) {
-    const Points from_origin = tip - pose.translation;
-    own_tip = rotate_back(pose.rotation, from_origin);
-    c.apart = hn::Sub(hn::Mul(over_norm(n), dot(n, from_origin)), offset);
-  } else {
-    own_tip = rotate(pose.rotation, tip) + pose.translation;
-    c.apart = hn::Sub(dot(n, own_tip), offset);
-  }
-  c.proved = c.apart;
-  const Lanes within = least_within<kMoved>(at, kSides, own_tip);
-  const Lanes away = Beside<!kMoved>{at, kDirectionsAtFacet}.least_rate(
-      CommonFrame<!kMoved>{pose}.direction_to_own(n));
+  const Ground<kOfB> facet(at, pose);
+  const Points tip = at.points(kFacetRows), own_tip = facet.point_in(tip);
+  c.apart = c.proved = facet.height(tip, own_tip);
+  const Lanes within = least_within<kOfB>(at, kSides, own_tip);
+  const Lanes away = Beside<!kOfB>{at, kDirectionsAtFacet}.least_rate(
+      CommonFrame<!kOfB>{pose}.direction_to_own(facet.n));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Gt(away, all(kCertainRate)));
-  if constexpr (kMoved) {
-    c.own_b = own_tip - times(hn::Sub(dot(own_n, own_tip), offset), own_n);
-    c.point_a = tip;
-    c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
-    c.normal = times(hn::Neg(over_norm(n)), n);
-  } else {
-    c.point_a = own_tip - times(c.apart, n);
-    c.own_b = tip;
-    c.point_b = own_tip;
-    c.normal = n;
-  }
-  return c;
-}
-
-// The smaller reach, of bounded bodies.
-HWY_INLINE Lanes least_reach(const FeatureRows& at) {
-  if (HWY_LIKELY(at.block.plain)) return hn::Min(at.common(kReachA), at.common(kReachB));
-  const auto reach = [&](CommonRow unbounded, CommonRow row) HWY_ATTR {
-    return hn::IfThenElse(hn::Eq(at.common(unbounded), all(0.0)), at.common(row), all(kInfinity));
-  };
-  return hn::Min(reach(kUnboundedA, kReachA), reach(kUnboundedB, kReachB));
-}
-
-HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose) {
-  Closest c;
-  const Points n = at.points(0), m = at.points(kFacetRows);
-  const Lanes offset_a = at.lanes(3), offset_b = at.lanes(kFacetRows + 3);
-  const Points tilt = rotate_back(pose.rotation, n) + m;
-  const Lanes tilt2 = dot(tilt, tilt);
-  const Points last_a = at.common_points(kPointA), mine = at.common_points(kPointB);
-  const Points theirs = rotate_back(pose.rotation, last_a - pose.translation);
-  const Points middle = mine + times(all(0.5), theirs - mine);
-  const Lanes height = hn::Sub(dot(m, middle), offset_b);
-  c.own_b = middle - times(height, m);
-  c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
-  c.apart = hn::Sub(dot(n, c.point_b), offset_a);
-  c.point_a = c.point_b - times(c.apart, n);
-  c.normal = n;
-  const Lanes lost =
-      hn::Mul(hn::Mul(all(2.0), least_reach(at)), hn::Add(hn::Sqrt(tilt2), all(kTiltError)));
-  c.proved = hn::Sub(c.apart, lost);
-  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b),
-                               least_within<true>(at, kSidesOfB, c.own_b));
-  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
-                    hn::Le(tilt2, all(kLevelTilt * kLevelTilt)));
-  // Of bounded bodies, a lane's own last points are never farther off.
-  if (HWY_UNLIKELY(!at.block.plain)) {
-    const Lanes size =
-        hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
-    c.holds = hn::And(c.holds, hn::Le(hn::Abs(height), hn::Mul(all(2.0), size)));
-  }
+  facet.place_above(tip, own_tip, c);
   return c;
 }
 

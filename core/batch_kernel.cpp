@@ -12,6 +12,7 @@
 
 #include "core/batch_block.hpp"
 #include "core/batch_features-inl.hpp"
+#include "core/batch_level-inl.hpp"
 #include "core/precision.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -109,6 +110,8 @@ HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
   if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
   if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
   if constexpr (kKind == FeatureKind::kEdgeEdge) return edge_edge(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeFacet) return edge_facet<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetEdge) return edge_facet<false>(at, pose);
   if constexpr (kKind == FeatureKind::kFacetFacet) return facet_facet(at, pose);
 }
 
@@ -158,6 +161,8 @@ std::size_t judge_all(const BatchRound& round) {
   count = judge_list<FeatureKind::kVertexFacet>(round, count);
   count = judge_list<FeatureKind::kFacetVertex>(round, count);
   count = judge_list<FeatureKind::kEdgeEdge>(round, count);
+  count = judge_list<FeatureKind::kEdgeFacet>(round, count);
+  count = judge_list<FeatureKind::kFacetEdge>(round, count);
   return judge_list<FeatureKind::kFacetFacet>(round, count);
 }
 

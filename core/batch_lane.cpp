@@ -134,10 +134,11 @@ void put_repeats(BatchBlock& block, std::size_t lane, const LaneFeature<kOfA>& a
                  const LaneFeature<kOfB>& b) noexcept {
   constexpr bool kAlike = kOfA == kOfB;
   constexpr std::size_t kAtVertex = kOfA + kOfB == 1 ? kDirectionsAtEdge : kDirectionsAtFacet;
+  constexpr std::size_t kAtFacet = kOfA + kOfB == 3 ? kSidesAtEdge : kSides;
   constexpr std::size_t kRow[] = {kAlike ? kDirectionsOfA : kAtVertex, 0,
-                                  kAlike ? kSidesOfA : kSides};
+                                  kAlike ? kSidesOfA : kAtFacet};
   constexpr std::size_t kRowOfB[] = {kAlike ? kDirectionsOfB : kAtVertex, 0,
-                                     kAlike ? kSidesOfB : kSides};
+                                     kAlike ? kSidesOfB : kAtFacet};
   if constexpr (kOfA != 1) {
     put_repeats(block, lane, kRow[kOfA], a, block.most_a);
   }
@@ -164,7 +165,7 @@ void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a
 
 constexpr std::array kPutFeatures = {put_features<0, 0>, put_features<0, 1>, put_features<1, 0>,
                                      put_features<0, 2>, put_features<2, 0>, put_features<1, 1>,
-                                     put_features<2, 2>};
+                                     put_features<1, 2>, put_features<2, 1>, put_features<2, 2>};
 static_assert(kPutFeatures.size() == kFeatureKinds);
 
 bool point_or_segment(const ConvexPolyhedron& body) noexcept {
@@ -223,8 +224,14 @@ std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a, const ConvexP
     case 4:
       if (!a.bounded() || !b.bounded()) return {};
       return FeatureKind::kEdgeEdge;
+    case 5:
+      if (!a.bounded()) return {};
+      return FeatureKind::kEdgeFacet;
     case 6:
       return FeatureKind::kFacetVertex;
+    case 7:
+      if (!b.bounded()) return {};
+      return FeatureKind::kFacetEdge;
     case 8:
       if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
       if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};

@@ -75,12 +75,17 @@ struct Span {
   std::int32_t beyond = kNone;
 };
 
+// In the order of the sums of Quads.
+HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
+  return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
+}
+
 inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index, const Vec3& start,
                                 const Vec3& direction, Span span) {
   const Facet& facet = body.facets[index];
   for (std::int32_t i = 0; i < facet.sides && !span.empty(); ++i) {
     const FacetSide side = body.side_of(facet, i);
-    const double speed = side.inward.dot(direction), gap = side.inward.dot(start) - side.offset;
+    const double speed = dot(side.inward, direction), gap = dot(side.inward, start) - side.offset;
     const std::int32_t edge = body.facet_edges[facet.first_side + i].edge;
     const double meets = -gap / speed;
     if (speed > 0.0 && meets > span.from) {

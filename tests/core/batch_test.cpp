@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
@@ -222,6 +224,28 @@ TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
       (void)batch.evaluate(poses);
       EXPECT_EQ(batch.single_queries(), 0U) << a << b << " step " << step;
     }
+  }
+}
+
+// A cube on edge over another one's face and over a floor, all of them turned anyhow: tilted by
+// rounding, and as far as the sides of the face are concerned, one way and the other.
+TEST(DistanceBatch, JudgesEdgesThatSlideOverFacesInLanes) {
+  Motion motion;
+  motion.bodies = {test::cube(), test::cube(), test::half_space(Vec3::UnitX(), -1.0)};
+  motion.pairs = {{0, 1}, {1, 0}, {0, 2}, {2, 0}};
+  Random random(12);
+  const Pose world{random.in_box(1.0), random.rotation()};
+  const Eigen::Quaterniond on_edge(Eigen::AngleAxisd(std::numbers::pi / 4.0, Vec3::UnitZ()));
+  constexpr int kSteps = 60;
+  for (int step = 0; step < kSteps; ++step) {
+    const double phase = 0.1 * step;
+    const Pose upper{Vec3(1.5, 0.2 * std::sin(phase), 0.7 * std::cos(phase)), on_edge};
+    motion.poses.push_back({compose(world, upper), world, world});
+  }
+  for (const std::int64_t target : vector_widths()) {
+    const OnlyWith only(target);
+    const Difference seen = follow(motion, "on edge");
+    EXPECT_LT(seen.single_queries, seen.answers / 20) << DistanceBatch::instruction_set();
   }
 }
 
