@@ -1,12 +1,16 @@
 #include "core/batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
+#include <new>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "core/batch_block.hpp"
+#include "core/batch_departure.hpp"
 #include "core/batch_lane.hpp"
 #include "core/batch_slots.hpp"
 #include "core/batch_tenure.hpp"
@@ -14,20 +18,18 @@
 namespace clearance {
 namespace {
 
-// What a pair's state says without its points.
-struct Features {
-  explicit Features(const TrackingState& s) noexcept
-      : dimension_a(s.a.dimension),
-        dimension_b(s.b.dimension),
-        deep(s.a.deep),
-        a(s.a.feature),
-        b(s.b.feature) {}
-  bool operator==(const Features&) const noexcept = default;
-
-  std::uint8_t dimension_a, dimension_b;
-  bool deep;
-  std::int32_t a, b;
+// A pair that has left its lane, the features that it has been walked to, by their dimensions, and
+// how far that was.
+struct Departed {
+  std::uint32_t pair;
+  std::uint8_t dimensions;
+  WalkStart start;
 };
+constexpr std::uint8_t kMostDimensions = 8;  // two facets
+
+std::uint8_t dimensions_of(const TrackingState& s) noexcept {
+  return static_cast<std::uint8_t>(3 * s.a.dimension + s.b.dimension);
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ class DistanceBatch::Rounds {
         failed_lanes_(slots_.blocks().size() + 1),
         loose_(pairs.size() / kBits + 1),
         tenures_(pairs.size()) {
-    failed_.reserve(pairs.size());
+    departed_.reserve(pairs.size());
+    order_.reserve(pairs.size());
     forget();
   }
 
@@ -50,10 +53,11 @@ class DistanceBatch::Rounds {
     assert(world_from_body.size() == of_.bodies.size());
     ++rounds_;
     poses_ = world_from_body;
+    query_ = tracked_query();
     judge_blocks();
-    single_queries_ = loose_pairs_ + failed_.size();
+    single_queries_ = loose_pairs_ + departed_.size();
     ask_loose();
-    for (const std::uint32_t pair : failed_) ask_failed(pair);
+    ask_departed();
     slots_.close_holes();
     return {results_.data(), of_.pairs.size()};
   }
@@ -83,7 +87,6 @@ class DistanceBatch::Rounds {
     return feature_kind(of_.a(pair), of_.b(pair), state);
   }
 
-  // What failed is listed by pairs: others may move into their lanes before their turn comes.
   void judge_blocks() noexcept {
     BatchRound round;
     round.blocks = slots_.blocks().data();
@@ -95,19 +98,40 @@ class DistanceBatch::Rounds {
       round.lists[i] = {blocks.data(), blocks.size()};
     }
     const std::size_t count = run_batch(round);
-    failed_.clear();
+    departed_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       const FailedLanes& of = failed_lanes_[i];
       const BatchBlock& block = slots_.blocks()[of.block];
       for (std::uint32_t lanes = of.lanes; lanes != 0; lanes &= lanes - 1) {
-        failed_.push_back(block.pair[static_cast<std::size_t>(std::countr_zero(lanes))]);
+        depart_lane(of, block, static_cast<std::size_t>(std::countr_zero(lanes)));
       }
     }
   }
 
-  void ask(std::uint32_t pair) noexcept {
+  // All leave their lanes before any comes to a new one.
+  void depart_lane(const FailedLanes& of, const BatchBlock& block, std::size_t lane) noexcept {
+    const std::uint32_t pair = block.pair[lane];
+    slots_.leave(pair);
+    TrackingState& state = of_.states[pair];
+    const WalkStart start = depart(block.kind, of_.a(pair), of_.b(pair), of, lane, state);
+    departed_.push_back({pair, dimensions_of(state), start});
+  }
+
+  void ask(std::uint32_t pair, WalkStart start = {}) noexcept {
     const auto [a, b] = of_.pairs[pair];
-    results_[pair] = distance(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair]);
+    // In its place, not copied there.
+    new (&results_[pair]) DistanceResult(
+        query_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
+  }
+
+  // Sorted by where they are now: the processor foresees what it has just done.
+  void ask_departed() noexcept {
+    std::array<std::uint32_t, kMostDimensions + 2> ends{};
+    for (const Departed& d : departed_) ++ends[d.dimensions + 1U];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    order_.resize(departed_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[ends[departed_[i].dimensions]++] = i;
+    for (const std::uint32_t i : order_) ask_departed(departed_[i]);
   }
 
   void loosen(std::uint32_t pair) noexcept {
@@ -139,14 +163,13 @@ class DistanceBatch::Rounds {
     }
   }
 
-  void ask_failed(std::uint32_t pair) noexcept {
-    const Features before(of_.states[pair]);
-    slots_.leave(pair);
-    ask(pair);
+  void ask_departed(const Departed& d) noexcept {
+    const std::uint32_t pair = d.pair;
+    ask(pair, d.start);
     Tenure& tenure = tenures_[pair];
     tenure.add(rounds_, true);
     const auto kind = kind_of(pair, of_.states[pair]);
-    if (before == Features(of_.states[pair])) {
+    if (results_[pair].iterations == 1) {
       tenure.wait(Tenure::kRetry);
     } else if (!kind) {
       tenure.wait(Tenure::kNotAtAll);
@@ -161,8 +184,10 @@ class DistanceBatch::Rounds {
   BatchSlots slots_;
   std::vector<DistanceResult> results_;    // [pair], and one for lanes that are not in use
   std::vector<FailedLanes> failed_lanes_;  // of this round, at the front
-  std::vector<std::uint32_t> failed_;      // pairs of this round
+  std::vector<Departed> departed_;         // of this round
+  std::vector<std::uint32_t> order_;       // of these, sorted
   std::span<const Pose> poses_;
+  TrackedQuery query_ = nullptr;
   std::vector<std::uint64_t> loose_;  // a bit a pair: it is in no block
   std::vector<Tenure> tenures_;       // [pair]
   std::size_t loose_pairs_ = 0, single_queries_ = 0;

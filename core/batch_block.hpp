@@ -88,9 +88,23 @@ struct alignas(64) BatchBlock {
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
 };
 
+// Which neighbour takes over where the features are the closest no longer.
+enum NextFeature : std::int32_t {
+  kNextUnknown = -1,  // rounding cannot tell, or it is not lanes' to say
+  // From 0 on: the vertex's edge at an edge, the facet's side, the edge of A's vertex of two.
+  kNextOfOther = kMostRepeats,     // + i: the edge of a vertex at a facet, of B's of two
+  kNextBeside = 2 * kMostRepeats,  // + k: of an edge at a vertex, its facet
+  kNextEnd = kNextBeside + 2,      // + k: of an edge (A's of two) its vertex
+  kNextEndB = kNextEnd + 2,        // + k: of B's of two
+  // Less than kNextEnd, of two edges: i + kNextBesideB * j, facet i - 1 of A's and j - 1 of B's.
+  kNextBesideB = 3,
+};
+
 // The lanes of a block whose pairs are for distance(): bit i, lane i.
-struct FailedLanes {
+struct alignas(64) FailedLanes {
   std::uint32_t block, lanes;
+  alignas(64) std::array<double, kBlockLanes> next;  // NextFeature
+  std::array<double, kBlockLanes> rate;  // of two vertices: how fast that edge approaches
 };
 
 // One round of the vector code over all blocks.

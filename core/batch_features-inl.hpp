@@ -8,6 +8,7 @@
 #define CLEARANCE_BATCH_FEATURES_INL_HPP_
 #endif
 
+#include "core/batch_neighbours-inl.hpp"
 #include "core/batch_pose-inl.hpp"
 #include "core/feature_walk.hpp"
 
@@ -22,63 +23,7 @@ struct Closest {
   LaneMask holds;
   Points point_a, point_b, own_b, normal;
   Lanes apart, proved;
-};
-
-// Where a lane's rows are and how often what repeats does.
-struct FeatureRows {
-  const double* rows;  // of the first lane, at kFeatureRows
-  const BatchBlock& block;
-
-  [[nodiscard]] HWY_INLINE Points points(std::size_t row) const {
-    return load_points(rows + row * kBlockLanes);
-  }
-  [[nodiscard]] HWY_INLINE Lanes lanes(std::size_t row) const {
-    return load(rows + row * kBlockLanes);
-  }
-  [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
-    return load(rows - (kFeatureRows - row) * kBlockLanes);
-  }
-  [[nodiscard]] HWY_INLINE Points common_points(CommonRow row) const {
-    return load_points(rows - (kFeatureRows - row) * kBlockLanes);
-  }
-  // A rate at which what lies beside a feature falls away; where nothing does, `of_nothing`.
-  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes rate, double of_nothing) const {
-    if (HWY_LIKELY(block.plain)) return rate;
-    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), rate, all(of_nothing));
-  }
-};
-
-// The edges of a vertex, A's or B's, or the facets of an edge.
-template <bool kOfB>
-struct Beside {
-  const FeatureRows& at;
-  std::size_t row;
-  static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
-
-  [[nodiscard]] HWY_INLINE Lanes least_rate(const Points& g) const {
-    Lanes least = all(kInfinity);
-    for (std::size_t i = 0; i < edges(); ++i) least = hn::Min(least, rate(i, g));
-    return at.unless_bare(kBare, least, kInfinity);
-  }
-  [[nodiscard]] HWY_INLINE Lanes greatest_rate(const Points& g) const {
-    Lanes greatest = all(-kInfinity);
-    for (std::size_t i = 0; i < edges(); ++i) greatest = hn::Max(greatest, rate(i, g));
-    return at.unless_bare(kBare, greatest, -kInfinity);
-  }
-  [[nodiscard]] HWY_INLINE Lanes least_of_two(const Points& g) const {
-    return at.unless_bare(kBare, hn::Min(rate(0, g), rate(1, g)), kInfinity);
-  }
-  [[nodiscard]] HWY_INLINE Lanes greatest_of_two(const Points& g) const {
-    return at.unless_bare(kBare, hn::Max(rate(0, g), rate(1, g)), -kInfinity);
-  }
-
- private:
-  [[nodiscard]] HWY_INLINE std::size_t edges() const {
-    return kOfB ? at.block.most_b : at.block.most_a;
-  }
-  [[nodiscard]] HWY_INLINE Lanes rate(std::size_t i, const Points& g) const {
-    return dot(at.points(row + kDirectionRows * i), g);
-  }
+  Lanes next, rate;  // as of FailedLanes
 };
 
 HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pose) {
@@ -90,9 +35,14 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   c.apart = c.proved = norm(g);
   const Lanes certain = hn::Mul(all(kCertainRate), c.apart);
   c.normal = over(g, c.apart);
-  const Lanes on_a = Beside<false>{at, kDirectionsOfA}.greatest_rate(g);
-  const Lanes on_b = Beside<true>{at, kDirectionsOfB}.least_rate(rotate_back(pose.rotation, g));
-  c.holds = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
+  const Extreme on_a = Beside<false>{at, kDirectionsOfA}.greatest_rate(g);
+  const Extreme on_b = Beside<true>{at, kDirectionsOfB}.least_rate(rotate_back(pose.rotation, g));
+  c.holds = hn::And(hn::Lt(on_a.rate, hn::Neg(certain)), hn::Gt(on_b.rate, certain));
+  const Lanes rate_b = hn::Neg(on_b.rate);
+  const LaneMask of_a = hn::And(hn::Gt(on_a.rate, certain), hn::Ge(on_a.rate, rate_b));
+  c.rate = hn::IfThenElse(of_a, on_a.rate, rate_b);
+  c.next = hn::IfThenElse(of_a, on_a.which,
+                          if_certain(hn::Gt(rate_b, certain), named(on_b.which, kNextOfOther)));
   return c;
 }
 
@@ -132,7 +82,8 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   const Points e = owner.direction_to_common(own_e), from_start = tip - start;
   Lanes s = dot(from_start, e);
   if constexpr (kMoved) s = hn::Mul(s, over_square(e));
-  const LaneMask within = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
+  const Lanes begin = at.lanes(6), end = at.lanes(7);
+  const LaneMask within = hn::And(hn::Gt(s, begin), hn::Lt(s, end));
   const Points across = cross(from_start, e), way = cross(e, across);
   const Lanes length = norm(across);
   const LaneMask slender = hn::Lt(length, hn::Mul(all(kSlender), hn::Abs(s)));
@@ -143,9 +94,14 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
     of_way = hn::IfThenElse(slender, of_slender, length);
   }
   const Lanes certain = hn::Mul(all(kCertainRate), length);
-  const Lanes side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(way));
-  const Lanes away = Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(other.direction_to_own(way));
-  c.holds = hn::And(within, hn::And(hn::Lt(side, hn::Neg(certain)), hn::Gt(away, certain)));
+  const Extreme side = Beside<kMoved>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(way));
+  const Extreme away =
+      Beside<!kMoved>{at, kDirectionsAtEdge}.least_rate(other.direction_to_own(way));
+  const LaneMask falls = hn::Lt(side.rate, hn::Neg(certain));
+  c.holds = hn::And(within, hn::And(falls, hn::Gt(away.rate, certain)));
+  c.next = hn::IfThenElse(falls, if_certain(hn::Gt(hn::Neg(away.rate), certain), away.which),
+                          if_certain(hn::Gt(side.rate, certain), named(side.which, kNextBeside)));
+  c.next = unless_beyond(begin, end, s, kNextEnd, c.next);
   const Points own = own_start + times(s, own_e), common = start + times(s, e);
   if constexpr (kMoved) {
     const Lanes unit = over_norm(e);
@@ -166,11 +122,11 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
 
 // How far within the sides of a facet, A's or B's, a point lies at least; zero: at most on one.
 template <bool kOfB>
-HWY_INLINE Lanes least_within(const FeatureRows& at, std::size_t row, const Points& p) {
+HWY_INLINE Extreme least_within(const FeatureRows& at, std::size_t row, const Points& p) {
   const std::size_t sides = kOfB ? at.block.most_b : at.block.most_a;
-  Lanes least = all(0.0);
+  Extreme least{all(0.0), all(0.0)};
   for (std::size_t i = 0; i < sides; ++i, row += kSideRows) {
-    least = hn::Min(least, hn::Sub(dot(at.points(row), p), at.lanes(row + 3)));
+    least.lower(hn::Sub(dot(at.points(row), p), at.lanes(row + 3)), i);
   }
   return least;
 }
@@ -232,11 +188,14 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Ground<kOfB> facet(at, pose);
   const Points tip = at.points(kFacetRows), own_tip = facet.point_in(tip);
   c.apart = c.proved = facet.height(tip, own_tip);
-  const Lanes within = least_within<kOfB>(at, kSides, own_tip);
-  const Lanes away = Beside<!kOfB>{at, kDirectionsAtFacet}.least_rate(
+  const Extreme within = least_within<kOfB>(at, kSides, own_tip);
+  const Extreme away = Beside<!kOfB>{at, kDirectionsAtFacet}.least_rate(
       CommonFrame<!kOfB>{pose}.direction_to_own(facet.n));
-  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
-                    hn::Gt(away, all(kCertainRate)));
+  const LaneMask above = hn::Gt(c.apart, all(0.0)), inside = hn::Ge(within.rate, all(0.0));
+  c.holds = hn::And(hn::And(above, inside), hn::Gt(away.rate, all(kCertainRate)));
+  const Lanes down =
+      if_certain(hn::Gt(hn::Neg(away.rate), all(kCertainRate)), named(away.which, kNextOfOther));
+  c.next = if_certain(above, hn::IfThenElse(inside, down, within.which));
   facet.place_above(tip, own_tip, c);
   return c;
 }
@@ -253,16 +212,27 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const Lanes sine2 = dot(n, n), cosine = dot(e, f), along_e = dot(between, e);
   const Lanes t = hn::Div(hn::Sub(hn::Mul(cosine, along_e), dot(between, f)), sine2);
   const Lanes s = hn::Add(along_e, hn::Mul(cosine, t));
-  const LaneMask on_first = hn::And(hn::Gt(s, at.lanes(6)), hn::Lt(s, at.lanes(7)));
-  const LaneMask on_second =
-      hn::And(hn::Gt(t, at.lanes(kSecond + 6)), hn::Lt(t, at.lanes(kSecond + 7)));
+  const Lanes begin_a = at.lanes(6), end_a = at.lanes(7);
+  const Lanes begin_b = at.lanes(kSecond + 6), end_b = at.lanes(kSecond + 7);
+  const LaneMask on_first = hn::And(hn::Gt(s, begin_a), hn::Lt(s, end_a));
+  const LaneMask on_second = hn::And(hn::Gt(t, begin_b), hn::Lt(t, end_b));
   const Lanes sine = hn::Sqrt(sine2), certain = hn::Mul(all(kCertainRate), sine);
   const Lanes apart = dot(between, n);
   const Points g = times(hn::CopySign(all(1.0), apart), n);
-  const Lanes on_a = Beside<false>{at, kInwardRow}.greatest_of_two(g);
-  const Lanes on_b =
+  const Extreme on_a = Beside<false>{at, kInwardRow}.greatest_of_two(g);
+  const Extreme on_b =
       Beside<true>{at, kSecond + kInwardRow}.least_of_two(rotate_back(pose.rotation, g));
-  const LaneMask falls = hn::And(hn::Lt(on_a, hn::Neg(certain)), hn::Gt(on_b, certain));
+  const LaneMask rises_a = hn::Ge(on_a.rate, hn::Neg(certain));
+  const LaneMask rises_b = hn::Le(on_b.rate, certain);
+  const LaneMask falls = hn::And(hn::Lt(on_a.rate, hn::Neg(certain)), hn::Gt(on_b.rate, certain));
+  const auto beside = [](LaneMask rises, const Extreme& side, double step) HWY_ATTR {
+    return hn::IfThenElseZero(rises, hn::Mul(all(step), hn::Add(side.which, all(1.0))));
+  };
+  c.next = if_certain(hn::Or(rises_a, rises_b),
+                      hn::Add(beside(rises_a, on_a, 1.0), beside(rises_b, on_b, kNextBesideB)));
+  c.next = unless_beyond(begin_b, end_b, t, kNextEndB, c.next);
+  c.next = unless_beyond(begin_a, end_a, s, kNextEnd, c.next);
+  c.next = if_certain(hn::Gt(sine2, all(kCrossingSine2)), c.next);
   c.normal = over(g, sine);
   c.holds =
       hn::And(hn::And(hn::Gt(sine2, all(kCrossingSine2)), falls), hn::And(on_first, on_second));

@@ -117,7 +117,8 @@ HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
 
 // Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
 template <FeatureKind kKind>
-HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round) {
+HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round,
+                             FailedLanes& failed) {
   double* rows = block.rows[0].data() + first;
   const Pose* poses = round.world_from_body;
   const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
@@ -129,6 +130,10 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   } else {
     add_radii(rows, r);
     write(r, block, first, round.results);
+  }
+  hn::Store(hn::IfThenElse(c.holds, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
+  if constexpr (kKind == FeatureKind::kVertexVertex) {
+    hn::Store(c.rate, Tag(), &failed.rate[first]);
   }
   store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
   store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
@@ -143,13 +148,14 @@ std::size_t judge_list(const BatchRound& round, std::size_t count) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
+    FailedLanes& failed = round.failed[count];
     std::size_t good = 0;
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {
-      good |= judge<kKind>(block, first, round) << first;
+      good |= judge<kKind>(block, first, round, failed) << first;
     }
-    const auto failed = static_cast<std::uint32_t>(block.taken & ~good);
-    round.failed[count] = {list.blocks[k], failed};
-    count += failed != 0;
+    failed.block = list.blocks[k];
+    failed.lanes = static_cast<std::uint32_t>(block.taken & ~good);
+    count += failed.lanes != 0;
   }
   return count;
 }

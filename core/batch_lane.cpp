@@ -260,6 +260,13 @@ void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& s
   to.put(state.b.point);
 }
 
+void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& state) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.a.point[static_cast<Eigen::Index>(i)] = block.rows[kPointA + i][lane];
+    state.b.point[static_cast<Eigen::Index>(i)] = block.rows[kPointB + i][lane];
+  }
+}
+
 Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept {
   return {block.rows[row][lane], block.rows[row + 1][lane], block.rows[row + 2][lane]};
 }

@@ -71,7 +71,7 @@ HWY_INLINE Closest edge_facet(const FeatureRows& at, const RelativePoses& pose) 
                          at.lanes(kEdge + 6), at.lanes(kEdge + 7));
   const Points up = CommonFrame<!kOfB>{pose}.direction_to_own(facet.n);
   const Lanes rise = hn::Abs(dot(e, up));
-  const Lanes away = Beside<!kOfB>{at, kEdge + kInwardRow}.least_of_two(up);
+  const Lanes away = Beside<!kOfB>{at, kEdge + kInwardRow}.least_of_two(up).rate;
   const Points mine = at.common_points(kOfB ? kPointA : kPointB);
   const Points theirs = facet.point_out(at.common_points(kOfB ? kPointB : kPointA));
   const Lanes halfway = dot(mine + times(all(0.5), theirs - mine) - start, e);
@@ -81,6 +81,7 @@ HWY_INLINE Closest edge_facet(const FeatureRows& at, const RelativePoses& pose) 
   c.proved = hn::Sub(c.apart, lost_by_tilt(at, rise));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Gt(away, all(kCertainRate))),
                     hn::And(hn::Le(rise, all(kCertainRate)), hn::Lt(span.from, span.to)));
+  c.next = all(kNextUnknown);
   facet.place_above(own, above, c);
   return c;
 }
@@ -101,8 +102,9 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   c.point_a = c.point_b - times(c.apart, n);
   c.normal = n;
   c.proved = hn::Sub(c.apart, lost_by_tilt(at, hn::Sqrt(tilt2)));
-  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b),
-                               least_within<true>(at, kSidesOfB, c.own_b));
+  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b).rate,
+                               least_within<true>(at, kSidesOfB, c.own_b).rate);
+  c.next = all(kNextUnknown);
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                     hn::Le(tilt2, all(kLevelTilt * kLevelTilt)));
   // Of bounded bodies, a lane's own last points are never farther off.

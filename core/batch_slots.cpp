@@ -42,8 +42,7 @@ void BatchSlots::enter(std::uint32_t pair, FeatureKind kind) noexcept {
 void BatchSlots::leave(std::uint32_t pair) noexcept {
   const Slot slot = slots_[pair];
   BatchBlock& from = blocks_[slot.block];
-  of_.states[pair].a.point = last_point(from, slot.lane, kPointA);
-  of_.states[pair].b.point = last_point(from, slot.lane, kPointB);
+  take_last_points(from, slot.lane, of_.states[pair]);
   from.pair[slot.lane] = of_.no_pair();
   from.taken &= static_cast<std::uint8_t>(~(1U << slot.lane));
   slots_[pair] = {};
@@ -114,8 +113,7 @@ std::uint32_t BatchSlots::take_last(Settled& of) noexcept {
   const std::size_t lane = --end.lanes;
   const std::uint32_t pair = end.pair[lane];
   if (pair != of_.no_pair()) {
-    of_.states[pair].a.point = last_point(end, lane, kPointA);
-    of_.states[pair].b.point = last_point(end, lane, kPointB);
+    take_last_points(end, lane, of_.states[pair]);
     end.pair[lane] = of_.no_pair();
     end.taken &= static_cast<std::uint8_t>(~(1U << lane));
   }

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "core/distance.cpp"
 #include "core/vector_widths.hpp"
 // That comes first.
+#include "core/batch_departure.hpp"
 #include "core/overlap_walk-inl.hpp"
 #include "core/radii.hpp"
 
@@ -46,10 +47,12 @@ inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
 
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
-                                TrackingState& state) {
+                                TrackingState& state, WalkStart start) {
   if (HWY_UNLIKELY(state.a.deep)) return tracked_overlap(a, b, world_from_a, world_from_b, state);
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
+  w.steps = start.steps;
+  w.levels = start.levels;
   if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true, nullptr);
 }
@@ -338,8 +341,10 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const Pose& world_from_a, const Pose& world_from_b,
                         TrackingState& state) noexcept {
-  return HWY_DYNAMIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state);
+  return HWY_DYNAMIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state, {});
 }
+
+TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(tracked_distance); }
 
 }  // namespace clearance
 #endif
