@@ -60,18 +60,53 @@ double certified(const DifferenceBody& body, const DepthSearch::Best& best, cons
   return -separation(s, a, b, p) + p.slack;
 }
 
-// Between unbounded bodies whose lines all but run along each other, directions that neither facets
-// nor arcs say.
-void try_across_near_parallels(const ActiveSide& a, const ActiveSide& b, const Precision& p,
-                               Depth& out) noexcept {
-  if (a.body().bounded() || b.body().bounded()) return;
-  PolarCone(a, b).across_near_parallels([&](const Separator& s) {
+// Bodies with one line each, which cross: the direction across both, or its opposite, parts them or
+// none does.
+void bound_across_lines(const PolarCone& cone, const ActiveSide& a, const ActiveSide& b,
+                        const Precision& p, Depth& out) noexcept {
+  const auto [n, off] = cone.only_direction();
+  if (!(off < kInfinity)) return;
+  double least = kInfinity;
+  for (const Vec3& m : {n, Vec3(-n)}) {
+    const Vec3& on_a = a.body().anchors[support(a.body(), m).anchor];
+    const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(m)).anchor];
+    const Vec3 corner = on_a - b.point_to_common(on_b);
+    const double value = m.dot(corner), rounding = off * p.size + p.slack;
+    const PolarCone::Rise rise = cone.rise_of_others({m, off});
+    if (rise == PolarCone::Rise::kRise) continue;
+    least = std::min(least, value - rounding);
+    if (rise == PolarCone::Rise::kUnknown || !(value + rounding < out.upper)) continue;
+    out.value = value;
+    out.upper = value + rounding;
+    out.normal = m;
+  }
+  if (least < kInfinity) out.lower = std::max(out.lower, least);
+}
+
+// Directions between two unbounded bodies that the search does not say: across lines that all but
+// run along each other; and a facet's, where it took another one for the best that doubles cannot
+// tell from it, but along which one of the bodies goes on for ever.
+void try_further_directions(const ActiveSide& a, const ActiveSide& b, const Precision& p,
+                            Depth& out) noexcept {
+  const auto attempt = [&](const Separator& s) {
     const double value = -separation(s, a, b, p);
     if (!(value + p.slack < out.upper)) return;
     out.value = value;
     out.upper = value + p.slack;
     out.normal = s.normal;
-  });
+  };
+  const PolarCone cone(a, b);
+  cone.across_near_parallels(attempt);
+  if (p.converged(out.upper - out.lower)) return;
+  bound_across_lines(cone, a, b, p, out);
+  if (p.converged(out.upper - out.lower)) return;
+  const auto count = [](const ActiveSide& s) {
+    return static_cast<std::int32_t>(s.body().facets.size());
+  };
+  for (std::int32_t i = 0; i < count(a); ++i) attempt({a.body().facets[i].normal, i, kNone});
+  for (std::int32_t i = 0; i < count(b); ++i) {
+    attempt({-b.direction_to_common(b.body().facets[i].normal).normalized(), kNone, i});
+  }
 }
 
 // How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
@@ -141,7 +176,7 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   if (best.source == Source::kNothing) {
     const double rounding = kOnArc * start.size + start.slack;
     if (search.lower() > rounding) out.lower = search.lower() - rounding;
-    try_across_near_parallels(a, b, start, out);
+    if (!body.y().bounded()) try_further_directions(a, b, start, out);
     return out;
   }
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
@@ -156,7 +191,7 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   if (!search.ended_early()) {
     out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
-  if (!body.x().bounded()) try_across_near_parallels(a, b, p, out);
+  if (!body.y().bounded()) try_further_directions(a, b, p, out);
   return out;
 }
 

@@ -18,6 +18,12 @@ constexpr double kFacetError = 0x1p-51;
 // Rays that differ by less than this from an edge's direction may be the edge's.
 constexpr double kSameLine = 0x1p-40;
 
+// Of a cross product in wide numbers, over the factors' lengths: of two vectors; of rays that are
+// not exactly doubles, besides; of a ray and one that has been turned, all of this together. And
+// over the product's own length, of a small turn's part of it.
+constexpr double kCrossError = 0x1p-101, kRaysError = 0x1p-103, kTurnedError = 0x1p-99,
+                 kMoveError = 0x1p-90;
+
 // Unit vectors made of doubles.
 constexpr double kUnitError = 0x1p-51;
 
@@ -36,6 +42,26 @@ bool falls_or_is_level(const Vec3& n, const Vec3& g) noexcept {
     parts[static_cast<std::size_t>(2 * i + 1)] = p.high;
   }
   return exact::sum_is_not_positive(parts);
+}
+
+// A ray whose opposite is one as well, for certain.
+bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
+  return body.vertices.empty() &&
+         std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& other) {
+           return other.direction == -ray.direction && other.rest == -ray.rest;
+         });
+}
+
+// Null: none, or, of half-spaces and slabs, a whole plane of them.
+const Ray* only_line(const ConvexPolyhedron& body) noexcept {
+  const Ray* found = nullptr;
+  int lines = 0;
+  for (const Ray& ray : body.rays) {
+    if (!is_line(body, ray)) continue;
+    found = &ray;
+    ++lines;
+  }
+  return lines == 2 ? found : nullptr;
 }
 
 double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }
@@ -69,11 +95,47 @@ PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b)
   const Ray* along_a = ray_along(a_.body(), of_a);
   const Ray* along_b = ray_along(b_.body(), of_b);
   if (along_a == nullptr || along_b == nullptr) return {Vec3::Zero(), kInfinity};
-  const WideVec e = of_ray(*along_a, false), f = of_ray(*along_b, true), n = cross(e, f);
-  const double lengths = narrow(e).norm() * narrow(f).norm(), sine = narrow(n).stableNorm();
-  if (!(sine > kParallel * lengths)) return {Vec3::Zero(), kInfinity};
-  const Vec3 unit = narrow(DoubleDouble(1.0 / sine) * n).normalized();
-  return {unit, 4.0 * error_ * lengths / sine + kUnitError};
+  return across(*along_a, *along_b);
+}
+
+// Of frames that all but coincide the way from one ray to the other is known better than both.
+PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const noexcept {
+  const WideVec e = of_ray(of_a, false), f = of_ray(of_b, true);
+  const double lengths = narrow(e).norm() * narrow(f).norm();
+  WideVec n = cross(e, f);
+  double error = rotation_.error + kTurnedError;
+  if (rotation_.small_turn) {
+    const WideVec own = wide(of_b.direction) + wide(of_b.rest), still = cross(e, own);
+    n = still + cross(e, rotation_.move_of(own));
+    error = kMoveError * narrow(n).stableNorm() / lengths;
+    if (!narrow(still).isZero(0.0)) error += kCrossError;
+    if (!of_a.exact || !of_b.exact) error += kRaysError;
+  }
+  const double sine = narrow(n).stableNorm() / lengths;
+  if (!(sine > kParallel)) return {Vec3::Zero(), kInfinity};
+  const Vec3 unit = narrow(DoubleDouble(1.0 / (sine * lengths)) * n).normalized();
+  return {unit, error / sine + kUnitError};
+}
+
+PolarCone::Direction PolarCone::only_direction() const noexcept {
+  const Ray* const along_a = only_line(a_.body());
+  const Ray* const along_b = only_line(b_.body());
+  if (along_a == nullptr || along_b == nullptr) return {Vec3::Zero(), kInfinity};
+  return across(*along_a, *along_b);
+}
+
+PolarCone::Rise PolarCone::rise_of_others(const Direction& n) const noexcept {
+  double steepest = -kInfinity;
+  const auto look_at = [&](const ConvexPolyhedron& body, const Vec3& m) {
+    for (const Ray& ray : body.rays) {
+      if (is_line(body, ray)) continue;
+      steepest = std::max(steepest, m.dot(ray.direction) / ray.direction.norm());
+    }
+  };
+  look_at(a_.body(), n.n);
+  look_at(b_.body(), Vec3(-b_.direction_to_own(n.n)));
+  const double unsure = n.off + kLevel;
+  return steepest > unsure ? Rise::kRise : steepest < -unsure ? Rise::kFall : Rise::kUnknown;
 }
 
 // False: one rises, or there are too many.

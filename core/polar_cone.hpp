@@ -33,6 +33,14 @@ class PolarCone {
   // off than that; infinity: not known.
   [[nodiscard]] Direction across_lines(const Edge& of_a, const Edge& of_b) const noexcept;
 
+  // Where each body has one line and these cross for certain, the cone has no other directions than
+  // this and its opposite; infinity: not known.
+  [[nodiscard]] Direction only_direction() const noexcept;
+  // How any ray but lines rises along n and along all that is no farther off: they all fall, one
+  // rises, or neither for certain.
+  enum class Rise { kFall, kUnknown, kRise };
+  [[nodiscard]] Rise rise_of_others(const Direction& n) const noexcept;
+
   // Calls take(Separator) with the directions across a ray of each body where these are so nearly
   // parallel that the bodies' features do not say them. Which directions of all those across such a
   // ray the cone has does not change with the angle, but with where it opens: half of them or, of
@@ -85,6 +93,7 @@ class PolarCone {
   [[nodiscard]] WideVec of_ray(const Ray& ray, bool of_b) const noexcept;
   [[nodiscard]] static const Ray* ray_along(const ConvexPolyhedron& body,
                                             const Edge& edge) noexcept;
+  [[nodiscard]] Direction across(const Ray& of_a, const Ray& of_b) const noexcept;
   [[nodiscard]] bool collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
                              Level& level) const noexcept;
   [[nodiscard]] bool opposite(const Constraint& c, const Constraint& d) const noexcept;

@@ -15,6 +15,11 @@ struct WideRotation {
   // The axis of A (0, 1, 2) that B's x, y and z lie along for certain, either way: what lies along
   // such an axis is turned to the bit, and what stands across it stays across. -1: none.
   std::array<int, 3> lands_on{-1, -1, -1};
+  // Of frames that all but coincide, the relative quaternion: its vector to 2^-100 of its own
+  // length; and twice over the square.
+  bool small_turn = false;
+  WideVec vector;
+  DoubleDouble scalar, twice_over_square;
 
   [[nodiscard]] bool exact() const noexcept { return error == 0.0; }
   // Is v, of frame B, turned to the bit?
@@ -33,6 +38,10 @@ struct WideRotation {
   [[nodiscard]] WideRotation transposed() const noexcept {
     WideRotation out;
     out.error = error;
+    out.small_turn = small_turn;
+    out.vector = WideVec{} - vector;
+    out.scalar = scalar;
+    out.twice_over_square = twice_over_square;
     out.rows = {{{rows[0].x, rows[1].x, rows[2].x},
                  {rows[0].y, rows[1].y, rows[2].y},
                  {rows[0].z, rows[1].z, rows[2].z}}};
@@ -40,6 +49,11 @@ struct WideRotation {
   }
   [[nodiscard]] WideVec operator*(const WideVec& v) const noexcept {
     return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
+  }
+  // Where small_turn: by how much v is moved, to 2^-96 of that.
+  [[nodiscard]] WideVec move_of(const WideVec& v) const noexcept {
+    const WideVec across = cross(vector, v);
+    return twice_over_square * (scalar * across + cross(vector, across));
   }
 
  private:

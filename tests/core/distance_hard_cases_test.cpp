@@ -94,6 +94,11 @@ constexpr OnceWrong kOnceWrong[] = {
      "end"},
     {"leaning", 501800007,
      "no bounds at all: far away the points were nearer than the proof, by their own rounding"},
+    {"selfsame", 533200007,
+     "a depth bounded to 0.6 m: of two facets that doubles cannot tell apart, the wrong one's"},
+    {"selfsame", 514300007, "the same, swapped"},
+    {"leaning", 562700007, "a depth bounded to 11 m: between lines at 1e-15"},
+    {"leaning", 603100007, "the same, to 44 m"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
@@ -112,6 +117,27 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
             judge.faults(result, judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
         EXPECT_TRUE(faults.empty())
             << once.family << ' ' << once.seed << ": " << once.story << joined(faults);
+      }
+    }
+  }
+}
+
+// Turned by the last bit of a quaternion, their lines cross 1e15 m away: there, where nobody can
+// see them, the witness points would meet along the normal.
+TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {
+  for (const std::uint64_t seed : {3102001, 1102104, 3702104}) {
+    for (const hard::CaseFamily& family : hard::case_families()) {
+      if (std::string(family.name) != "selfsame") continue;
+      Random random(seed);
+      const hard::HardCase c = family.make(random);
+      DistanceJudge judge(c.a, c.b);
+      const oracle::ExactDistance truth = judge.truth(c.pose_a, c.pose_b);
+      TrackingState state;
+      for (int k = 0; k < 3; ++k) {
+        const DistanceResult r = judge.ask(c.pose_a, c.pose_b, state);
+        EXPECT_GE(truth.compare(r.lower), 0) << seed;
+        EXPECT_LE(truth.compare(r.upper), 0) << seed;
+        EXPECT_LE(r.upper - r.lower, 1.5e-14 * judge.size(truth, c.pose_a, c.pose_b)) << seed;
       }
     }
   }
