@@ -33,10 +33,10 @@ class Tenure {
 
  private:
   // Rounds at the same features: the mean of the last sixteen times or so, none counted as more
-  // than kLongest, in 64ths. Restless pairs stay less than four and a half; they are calm again
+  // than kLongest, in 64ths. Restless pairs stay less than three and a half; they are calm again
   // after twelve.
   static constexpr std::int32_t kFraction = 64, kMemory = 16, kLongest = 31;
-  static constexpr std::int32_t kRestless = 9 * kFraction / 2;
+  static constexpr std::int32_t kRestless = 7 * kFraction / 2;
   static constexpr std::uint16_t kCalm = 12;
 
   std::uint32_t since_ = 0;
