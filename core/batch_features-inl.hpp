@@ -125,8 +125,9 @@ template <bool kOfB>
 HWY_INLINE Extreme least_within(const FeatureRows& at, std::size_t row, const Points& p) {
   const std::size_t sides = kOfB ? at.block.most_b : at.block.most_a;
   Extreme least{all(0.0), all(0.0)};
-  for (std::size_t i = 0; i < sides; ++i, row += kSideRows) {
-    least.lower(hn::Sub(dot(at.points(row), p), at.lanes(row + 3)), i);
+  Lanes number = all(0.0);
+  for (std::size_t i = 0; i < sides; ++i, row += kSideRows, number = after(number)) {
+    least.lower(hn::Sub(dot(at.points(row), p), at.lanes(row + 3)), number);
   }
   return least;
 }
@@ -226,7 +227,7 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const LaneMask rises_b = hn::Le(on_b.rate, certain);
   const LaneMask falls = hn::And(hn::Lt(on_a.rate, hn::Neg(certain)), hn::Gt(on_b.rate, certain));
   const auto beside = [](LaneMask rises, const Extreme& side, double step) HWY_ATTR {
-    return hn::IfThenElseZero(rises, hn::Mul(all(step), hn::Add(side.which, all(1.0))));
+    return hn::IfThenElseZero(rises, hn::Mul(all(step), after(side.which)));
   };
   c.next = if_certain(hn::Or(rises_a, rises_b),
                       hn::Add(beside(rises_a, on_a, 1.0), beside(rises_b, on_b, kNextBesideB)));

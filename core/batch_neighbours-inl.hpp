@@ -43,15 +43,17 @@ struct FeatureRows {
 struct Extreme {
   Lanes rate, which;
 
-  HWY_INLINE void lower(Lanes number, std::size_t i) { take(hn::Lt(number, rate), number, i); }
-  HWY_INLINE void raise(Lanes number, std::size_t i) { take(hn::Gt(number, rate), number, i); }
+  HWY_INLINE void lower(Lanes number, Lanes i) { take(hn::Lt(number, rate), number, i); }
+  HWY_INLINE void raise(Lanes number, Lanes i) { take(hn::Gt(number, rate), number, i); }
 
  private:
-  HWY_INLINE void take(LaneMask where, Lanes number, std::size_t i) {
+  HWY_INLINE void take(LaneMask where, Lanes number, Lanes i) {
     rate = hn::IfThenElse(where, number, rate);
-    which = hn::IfThenElse(where, all(static_cast<double>(i)), which);
+    which = hn::IfThenElse(where, i, which);
   }
 };
+
+HWY_INLINE Lanes after(Lanes number) { return hn::Add(number, all(1.0)); }
 
 // Neighbours by their numbers, NextFeature.
 HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, all(from)); }
@@ -73,25 +75,29 @@ struct Beside {
 
   [[nodiscard]] HWY_INLINE Extreme least_rate(const Points& g) const {
     Extreme least{all(kInfinity), all(0.0)};
-    for (std::size_t i = 0; i < edges(); ++i) least.lower(rate(i, g), i);
+    Lanes number = all(0.0);
+    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+      least.lower(rate(i, g), number);
     least.rate = at.unless_bare(kBare, least.rate, kInfinity);
     return least;
   }
   [[nodiscard]] HWY_INLINE Extreme greatest_rate(const Points& g) const {
     Extreme greatest{all(-kInfinity), all(0.0)};
-    for (std::size_t i = 0; i < edges(); ++i) greatest.raise(rate(i, g), i);
+    Lanes number = all(0.0);
+    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+      greatest.raise(rate(i, g), number);
     greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
     return greatest;
   }
   [[nodiscard]] HWY_INLINE Extreme least_of_two(const Points& g) const {
     Extreme least{rate(0, g), all(0.0)};
-    least.lower(rate(1, g), 1);
+    least.lower(rate(1, g), all(1.0));
     least.rate = at.unless_bare(kBare, least.rate, kInfinity);
     return least;
   }
   [[nodiscard]] HWY_INLINE Extreme greatest_of_two(const Points& g) const {
     Extreme greatest{rate(0, g), all(0.0)};
-    greatest.raise(rate(1, g), 1);
+    greatest.raise(rate(1, g), all(1.0));
     greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
     return greatest;
   }

@@ -30,6 +30,14 @@ HWY_INLINE Lanes all(double value) { return hn::Set(Tag(), value); }
 struct Points {
   HWY_INLINE Points() {}  // compiled for this instruction set, as a default would not be
   HWY_INLINE Points(Lanes at_x, Lanes at_y, Lanes at_z) : x(at_x), y(at_y), z(at_z) {}
+  // One by one: as a whole the compiler copies them in memory.
+  HWY_INLINE Points(const Points& p) : x(p.x), y(p.y), z(p.z) {}
+  HWY_INLINE Points& operator=(const Points& p) {
+    x = p.x;
+    y = p.y;
+    z = p.z;
+    return *this;
+  }
 
   Lanes x, y, z;
 };
