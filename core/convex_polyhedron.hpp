@@ -123,10 +123,16 @@ struct ConvexPolyhedron {
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex
   VectorRows facet_sides{4};  // a row a facet: of facet_edges[i]
   VectorRows planes{4};       // one row: normals and offsets of all facets
+  // The vertices at the far ends of `vertex_edges`, kNone where such an edge does not end; and the
+  // facets on the far sides of `facet_edges`.
+  std::vector<std::int32_t> neighbours, facets_beside;
   StartTable start;
 
   // A point well inside (in the relative interior of a point or segment).
   Vec3 interior = Vec3::Zero();
+  // The ball of this radius around `interior` lies inside, rounding included, m; 0: not known. Made
+  // by add_walking_tables().
+  double inner_radius = 0.0;
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
+#include "core/deepest_corners.hpp"
 #include "core/deepest_points.hpp"
 #include "core/difference_body.hpp"
 
@@ -87,14 +89,45 @@ class DepthSearch {
   void arcs() noexcept;
   void arc_of(const Edge& edge) noexcept;
   void run_bounded() noexcept;
-  template <class Normal, class Farthest>
-  void look_at_facets(const ConvexPolyhedron& body, DeepestPoints& points, Source source,
-                      const Normal& normal, const Farthest& farthest) noexcept;
-  void facets_of_x(DeepestPoints& of_y) noexcept;
-  void facets_of_y(DeepestPoints& of_x) noexcept;
-  void take_least(const DeepestPoints& points, Source source, const Vec3& n) noexcept;
+  // One of the bodies, whose facets are looked at, and the other.
+  struct Facing {
+    const ConvexPolyhedron& body;
+    const ConvexPolyhedron& other;
+    Placement body_from_other;
+    Source source;
+    // The direction in the other's frame in which it is the deepest below a facet.
+    [[nodiscard]] Vec3 against(const Facet& facet) const noexcept {
+      return -(body_from_other.turn.transpose() * facet.normal);
+    }
+    // How deep one of the other's corners lies below a facet, m.
+    [[nodiscard]] double below(const Facet& facet, std::int32_t corner) const noexcept {
+      return facet.offset - facet.normal.dot(body_from_other(other.anchors[corner]));
+    }
+  };
+  [[nodiscard]] Facing x_facing_y() const noexcept {
+    return {body_.x(), body_.y(), body_.x_from_y(), Source::kFacetOfX};
+  }
+  [[nodiscard]] Facing y_facing_x() const noexcept {
+    return {body_.y(), body_.x(), body_.y_from_x(), Source::kFacetOfY};
+  }
+  void take_least(const Facing& facing, const DeepestCorners& corners) noexcept;
+  std::int32_t look_up(const Facing& facing, std::int32_t facet) noexcept;
+  DeepestPoints::Shallow narrow_down(const Facing& facing, DeepestPoints& points) noexcept;
+  void look_at_facets(const Facing& facing, DeepestPoints& points) noexcept;
+  void look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
+                   std::uint16_t* corners) noexcept;
+  [[nodiscard]] bool is_settled(const Facing& facing, std::int32_t facet,
+                                std::int32_t corner) noexcept;
+  void few_corners() noexcept;
+  void many_corners() noexcept;
+  void facets_of_y_bounded() noexcept;
+  void arcs(DeepestCorners& of_y) noexcept;
   void arcs(DeepestPoints& of_y) noexcept;
-  void arc_between(const Edge& edge, const DeepestPoints& of_y) noexcept;
+  void arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept;
+  [[nodiscard]] Vec3 corner_below(std::int32_t facet, DeepestPoints& of_y) const noexcept;
+  [[nodiscard]] bool settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
+                             const DeepestPoints::Point* ball) noexcept;
+  void arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept;
   void full_circle(const Edge& edge) noexcept;
   [[nodiscard]] Arc across(const Edge& edge) const noexcept;
   // Does a direction of the arc's plane lie between the normals of the edge's facets?
@@ -121,7 +154,6 @@ class DepthSearch {
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
-  std::size_t main_ = 0;  // which of the points of Y lies lowest along the best direction, mostly
 
   // Corners found on the way, by where the directions point that they were found for: six axes by
   // the signs of the other two components.

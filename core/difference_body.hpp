@@ -12,6 +12,15 @@
 
 namespace clearance {
 
+// Points of one frame in another: turn (p - before) + after.
+struct Placement {
+  Mat3 turn;
+  Vec3 before, after;
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const noexcept {
+    return turn * (p - before) + after;
+  }
+};
+
 class DifferenceBody {
  public:
   // X is the body whose edges the search follows: the unbounded one of two, the one without facets
@@ -39,6 +48,12 @@ class DifferenceBody {
   }
   [[nodiscard]] Vec3 point_to_y(const Vec3& p) const noexcept {
     return x_from_y_.transpose() * (p - origin_of_y_);
+  }
+  [[nodiscard]] Placement x_from_y() const noexcept {
+    return {x_from_y_, Vec3::Zero(), origin_of_y_};
+  }
+  [[nodiscard]] Placement y_from_x() const noexcept {
+    return {x_from_y_.transpose(), origin_of_y_, Vec3::Zero()};
   }
   // Between directions from X towards Y in X's frame and from A towards B in A's.
   [[nodiscard]] Vec3 to_common(const Vec3& n) const noexcept {

@@ -16,8 +16,7 @@ std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at,
     const Steepest way = steepest(body, body.vertices[at], m);
     certain = way.rate < -kCertainRate;
     if (!(way.rate > kCertainRate)) return at;
-    const EdgeUse& use = body.vertex_edges[way.at];
-    at = body.edges[use.edge].vertex[1 - use.side];
+    at = body.neighbours[way.at];
   }
 }
 

@@ -1,5 +1,6 @@
 #include "core/walking_tables.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/rounding.hpp"
@@ -35,6 +36,30 @@ void add_outgoing(ConvexPolyhedron& body) {
   }
 }
 
+// What lies on the far ends of vertices' edges, and on the far sides of facets'.
+void add_neighbours(ConvexPolyhedron& body) {
+  body.neighbours.clear();
+  body.facets_beside.clear();
+  for (const EdgeUse& use : body.vertex_edges) {
+    body.neighbours.push_back(body.edges[use.edge].vertex[1 - use.side]);
+  }
+  for (const EdgeUse& use : body.facet_edges) {
+    body.facets_beside.push_back(body.edges[use.edge].facet[1 - use.side]);
+  }
+}
+
+// How far every facet is from the middle, less what can be off: a normal is by 2 roundings, their
+// product by 3, the difference by 1, and whoever adds the radius to a product of their own adds 2.
+double inner_radius(const ConvexPolyhedron& body) {
+  constexpr double kRoundings = 16 * kUlp;
+  if (!body.bounded() || body.facets.empty()) return 0.0;
+  double nearest = kInfinity;
+  for (const Facet& facet : body.facets) {
+    nearest = std::min(nearest, facet.offset - facet.normal.dot(body.interior));
+  }
+  return std::max(0.0, nearest - kRoundings * body.bounding_radius - body.position_error);
+}
+
 void add_facet_sides(ConvexPolyhedron& body) {
   body.facet_sides.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
@@ -64,7 +89,9 @@ void add_walking_tables(ConvexPolyhedron& body) {
   const double reach = body.bounded() ? body.bounding_radius : 0.0;
   body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
   body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
+  body.inner_radius = inner_radius(body);
   add_outgoing(body);
+  add_neighbours(body);
   add_facet_sides(body);
   add_planes(body);
   if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {

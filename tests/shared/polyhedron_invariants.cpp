@@ -226,7 +226,11 @@ class Inspection {
       }
       expect(facet.normal.dot(body_.interior - facet.point) <= tolerance(facet.point),
              "the interior point is inside", 0);
+      const double inside = facet.offset - facet.normal.dot(body_.interior);
+      expect(body_.inner_radius == 0.0 || inside >= body_.inner_radius, "the inner ball is inside",
+             0);
     }
+    expect(body_.inner_radius >= 0.0, "the inner radius is a length", 0);
   }
 
   void check_summary() {

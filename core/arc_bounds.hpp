@@ -1,0 +1,47 @@
+// Bounds from below along the arc between the normals l and r of two facets that share an edge.
+//
+// On the arc n = ((1 - s) l + s r) / N with 0 <= s <= 1 and N <= 1. Of a point c of the difference
+// body h(n) >= c.n, which is, where positive, at least (1 - s) c.l + s c.r; between two directions
+// of the arc it is at least the lesser one there. So every s, however rounded, at which one point
+// takes over from the other gives a bound that holds.
+#pragma once
+
+#include <algorithm>
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+// What one point has at the two ends, m.
+struct OnArc {
+  double l, r;
+  [[nodiscard]] double at(double s) const noexcept { return l + s * (r - l); }
+  [[nodiscard]] double least() const noexcept { return std::min(l, r); }
+};
+
+// One point up to where they cross, and the other from there on; or one of them all along.
+[[nodiscard]] inline double least_of_two(const OnArc& first, const OnArc& last) noexcept {
+  const double alone = std::max(first.least(), last.least());
+  const double lead = first.l - last.l, behind = last.r - first.r;
+  if (!(lead > 0.0 && behind > 0.0)) return alone;
+  const double s = lead / (lead + behind);
+  return std::max(alone, std::min({first.l, first.at(s), last.at(s), last.r}));
+}
+
+// One point up to where it has no more than `enough`, the other from where it has as much, and a
+// ball between: what its middle has, and its radius. apart: |l - r|^2, with which the middle's
+// share grows between the ends (1 / N >= 1 + s (1 - s) |l - r|^2 / 2).
+[[nodiscard]] inline double least_with_ball(const OnArc& first, const OnArc& middle, double radius,
+                                            const OnArc& last, double apart,
+                                            double enough) noexcept {
+  if (!(middle.least() >= 0.0)) return -kInfinity;
+  const double from = first.l > enough ? (first.l - enough) / (first.l - first.r) : 0.0;
+  const double to = last.r > enough ? (last.r - enough) / (last.r - last.l) : 0.0;
+  if (!(from >= 0.0 && to >= 0.0 && from + to <= 1.0)) return -kInfinity;
+  const auto ball = [&](double s) {
+    return middle.at(s) * (1.0 + 0.5 * s * (1.0 - s) * apart) + radius;
+  };
+  return std::min({first.l, first.at(from), ball(from), ball(1.0 - to), last.at(1.0 - to), last.r});
+}
+
+}  // namespace clearance
