@@ -1,7 +1,5 @@
 #include "core/batch_departure.hpp"
 
-#include <array>
-
 namespace clearance {
 namespace {
 
