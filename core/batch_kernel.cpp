@@ -95,6 +95,7 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
     DistanceResult& result = results[block.pair[first + i]];
     to[i] = &result.distance;
     result.status = DistanceStatus::kConverged;
+    result.path = DistancePath::kWalk;
     result.iterations = 1;
   }
   store_columns({{r.distance, r.lower, r.upper, r.normal.x}}, to, 0);

@@ -6,20 +6,7 @@
 #include "core/batch_departure.hpp"
 #include "core/overlap_walk-inl.hpp"
 #include "core/radii.hpp"
-
-namespace clearance {
-
-// What the walk leaves open; radii included. The latter of bodies that overlapped. Declared out
-// here: what is first declared between the macros below is compiled for that instruction set,
-// wherever it is defined.
-DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state, bool depth,
-                         DistancePath* path) noexcept;
-DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state,
-                        DistancePath* path) noexcept;
-
-}  // namespace clearance
+#include "core/search.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
@@ -38,7 +25,7 @@ inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
   if (!walk_overlap(w)) {
-    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, nullptr);
+    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
   }
   DistanceResult result = overlap_result_of(w);
   add_radii(result, a, b);
@@ -54,7 +41,7 @@ HWY_INLINE DistanceResult walked_distance(const ConvexPolyhedron& a, const Conve
   w.steps = start.steps;
   w.levels = start.levels;
   if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true, nullptr);
+  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
 // Two of it: another argument costs a query that begins at the beginning 1 ns.
@@ -73,19 +60,10 @@ DistanceResult departed_distance(const ConvexPolyhedron& a, const ConvexPolyhedr
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
-#include "core/active_side.hpp"
-#include "core/certificate.hpp"
-#include "core/dqp3.hpp"
 #include "core/feature_walk.hpp"
 #include "core/overlap.hpp"
-#include "core/polar_cone.hpp"
-#include "core/precision.hpp"
-#include "core/robust.hpp"
-#include "core/towards.hpp"
 
 namespace clearance {
 
@@ -93,137 +71,6 @@ HWY_EXPORT(tracked_distance);
 HWY_EXPORT(departed_distance);
 
 namespace {
-
-void note(DistancePath* path, DistancePath taken) noexcept {
-  if (path != nullptr) *path = taken;
-}
-
-// What is known so far of the distance between the cores, slack not yet taken.
-struct Bounds {
-  double lower = -kInfinity;
-  double upper = kInfinity;
-  double beyond = 0.0;  // what the points' places may cost beyond the slack
-  Vec3 normal = Vec3::Constant(std::nan(""));
-
-  [[nodiscard]] double certain_upper() const noexcept { return upper + beyond; }
-  void raise(double value, const Vec3& n) noexcept {
-    if (value > lower) {
-      lower = value;
-      normal = n;
-    }
-  }
-};
-
-void prove_from_below(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
-                      const Precision& p) noexcept {
-  for (const Separator& s : separators(a, b)) {
-    bounds.raise(separation(s, a, b, p), s.normal);
-    if (bounds.certain_upper() - bounds.lower <= p.tight) return;
-  }
-  if (a.body().bounded() || b.body().bounded()) return;
-  PolarCone(a, b).across_near_parallels(
-      [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); });
-}
-
-DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {
-  if (!p.converged(r.upper - r.lower) && bounds.upper > p.slack) {
-    return DistanceStatus::kIterationLimit;
-  }
-  return r.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
-}
-
-DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& bounds,
-                        const Precision& p) noexcept {
-  DistanceResult r;
-  r.lower = bounds.lower - p.slack;
-  r.upper = bounds.certain_upper() + p.slack;
-  r.distance = bounds.upper;
-  r.normal = bounds.lower > -kInfinity ? unit_along(bounds.normal) : bounds.normal;
-  r.point_on_a = a.common();
-  r.point_on_b = b.common();
-  r.status = judge(bounds, p, r);
-  return r;
-}
-
-// The distance that the optimal active set proves by itself: what lies behind both features along
-// `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
-// n.
-double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const ActiveSide& b,
-                       const Precision& p) noexcept {
-  const auto along_edge = [&](const ActiveSide& s) {
-    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
-                                         : 0.0;
-  };
-  return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
-}
-
-// Lines that all but run along each other are closest far beyond where Precision looks for the
-// closest points of unbounded bodies: what rounding costs the points there.
-double beyond_reach(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
-                    const Precision& p) noexcept {
-  if (a.body().bounded() || b.body().bounded()) return 0.0;
-  const double out_a = std::max(0.0, a.own().norm() - p.reach_a);
-  const double out_b = std::max(0.0, b.own().norm() - p.reach_b);
-  return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
-}
-
-// Is where a point lies along its edge, m, certainly between the ends, off by this or not?
-bool is_between_ends(const ActiveSide& side, double off) noexcept {
-  const double at = (side.own() - side.edge().point).dot(side.edge().direction);
-  return at - off > side.edge().begin && at + off < side.edge().end;
-}
-
-// Where lines are closest far away, how far they are apart is known better than where: it is how
-// far they are along the direction across both, measured near the bodies' origins.
-void bound_by_lines(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
-                    const Precision& p) noexcept {
-  if (!(bounds.beyond > 0.0)) return;
-  if (a.feature() != Feature::kEdge || b.feature() != Feature::kEdge) return;
-  const double sine = towards_case::along(a).cross(towards_case::along(b)).norm();
-  // Beyond this a wrong rotation moves the closest points by more than a part of the way to them.
-  if (!(sine > 0x1p-42)) return;
-  const double out = a.own().norm() + b.own().norm();
-  const double off = 0x1p-3 * out + 0x1p-46 * p.size / sine;
-  if (!is_between_ends(a, off) || !is_between_ends(b, off)) return;
-  const auto across = PolarCone(a, b).across_lines(a.edge(), b.edge());
-  if (!(across.off < kInfinity)) return;
-  const Vec3 between = b.point_to_common(b.edge().point) - a.edge().point;
-  const double apart = std::abs(across.n.dot(between)), beyond = across.off * between.norm();
-  if (!(apart + beyond < bounds.certain_upper())) return;
-  bounds.upper = apart;
-  bounds.beyond = beyond;
-}
-
-DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b,
-                             DistancePath* path) noexcept {
-  const double first = (b.common() - a.common()).norm();
-  const Precision start = precision(a.body(), b.body(), a_from_b, first);
-  const Dqp3Outcome outcome = dqp3(a, b, start.tight);
-
-  Bounds bounds;
-  bounds.upper = (b.common() - a.common()).norm();
-  const Precision p = precision(a.body(), b.body(), a_from_b, std::min(first, bounds.upper));
-  bounds.beyond = beyond_reach(a, b, a_from_b, p);
-  if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
-    const double apart = outcome.towards.norm();
-    const Vec3 n = outcome.towards / apart;
-    bounds.raise(proved_distance(n, apart, a, b, p), n);
-  }
-  const bool met = outcome.end == Dqp3End::kContact;
-  if (!met) bound_by_lines(bounds, a, b, p);
-  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
-    prove_from_below(bounds, a, b, p);
-  DistanceResult result = conclude(a, b, bounds, p);
-  const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.certain_upper() - above > p.tight) {
-    note(path, DistancePath::kRobust);
-    refine(a, b, a_from_b, p, result);
-  }
-  // Points far away, whose places cost much, may be nearer than is proved.
-  result.distance = std::max(result.distance, std::min(result.lower, result.upper));
-  result.iterations = outcome.iterations;
-  return result;
-}
 
 // The spheres around the frames' origins already say that they are far apart; radii included.
 std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
@@ -240,37 +87,10 @@ std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const Co
   r.point_on_a = a.interior;
   r.point_on_b = a_from_b.rotation * b.interior + a_from_b.translation;
   r.status = DistanceStatus::kFarAway;
+  r.path = DistancePath::kSpheres;
   add_radii(r, a, b);
   if (!(r.lower > 0.0) || !(r.lower >= far_away)) return {};
   return r;
-}
-
-bool is_a_place(const RelativePose& pose) noexcept {
-  return pose.rotation.allFinite() && pose.translation.allFinite();
-}
-
-DistanceResult nothing_known() noexcept {
-  const Vec3 nowhere = Vec3::Constant(std::nan(""));
-  return {.distance = std::nan(""),
-          .lower = -kInfinity,
-          .upper = kInfinity,
-          .normal = nowhere,
-          .point_on_a = nowhere,
-          .point_on_b = nowhere};
-}
-
-// Lengths that overflow leave numbers that are none.
-bool says_something(const DistanceResult& r) noexcept {
-  if (r.status == DistanceStatus::kOverlapping) return r.lower <= r.upper;
-  return r.lower <= r.distance && r.distance <= r.upper && std::isfinite(r.distance);
-}
-
-void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& r) noexcept {
-  if (!says_something(r)) {
-    r = nothing_known();
-  } else {
-    add_radii(r, a, b);
-  }
 }
 
 }  // namespace
@@ -291,61 +111,16 @@ const char* name(DistanceStatus status) noexcept {
   return "";
 }
 
-DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state, bool depth,
-                         DistancePath* path) noexcept {
-  note(path, DistancePath::kLoop);
-  if (!is_a_place(a_from_b)) return nothing_known();
-  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-  const double apart = a_from_b.translation.norm();
-  side_a.place_near(state.a, side_b, apart);
-  side_b.place_near(state.b, side_a, apart);
-  DistanceResult result = core_distance(side_a, side_b, a_from_b, path);
-  state = {side_a.tracked(), side_b.tracked()};
-  if (!(result.lower > 0.0)) {
-    if (depth) {
-      measure_overlap(a, b, a_from_b, state, result);
-    } else {
-      result.status = DistanceStatus::kIterationLimit;
-    }
-  }
-  finish(a, b, result);
-  return result;
-}
-
-DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state,
-                        DistancePath* path) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known();
-  DistanceResult result;
-  note(path, DistancePath::kOverlap);
-  if (!still_overlapping(a, b, a_from_b, state, result)) {
-    note(path, DistancePath::kWalk);
-    if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-      return by_search(a, b, a_from_b, state, true, path);
-    }
-  }
-  finish(a, b, result);
-  return result;
-}
-
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
-  note(options.path, DistancePath::kSpheres);
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
   if (state.a.deep && options.depth) {
-    note(options.path, DistancePath::kOverlap);
-    if (!walk_overlap(a, b, a_from_b, state, result)) {
-      return by_depth(a, b, a_from_b, state, options.path);
-    }
-  } else {
-    note(options.path, DistancePath::kWalk);
-    if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
-      return by_search(a, b, a_from_b, state, options.depth, options.path);
-    }
+    if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
+  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+    return by_search(a, b, a_from_b, state, options.depth);
   }
   finish(a, b, result);
   return result;

@@ -22,6 +22,15 @@ enum class DistanceStatus : std::uint8_t {
 
 [[nodiscard]] const char* name(DistanceStatus status) noexcept;
 
+// Which way an answer came: core/README.md, "What the iteration is".
+enum class DistancePath : std::uint8_t {
+  kWalk,     // step 1 proved it
+  kLoop,     // the loop, and of what touches or overlaps then the depth
+  kRobust,   // the loop and then the robust path
+  kOverlap,  // at once from where they overlapped last
+  kSpheres,  // see DistanceOptions::far_away
+};
+
 // Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'
 // doubles. The distance is signed: apart, that of the closest points; overlapping, minus the depth,
 // the length of the shortest translation after which the bodies only touch (core/depth.hpp). Either
@@ -45,6 +54,7 @@ struct DistanceResult {
   Vec3 normal = Vec3::Zero();  // unit, from A towards B; NaN when unknown
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // witness points, both in frame A
   DistanceStatus status = DistanceStatus::kIterationLimit;
+  DistancePath path = DistancePath::kWalk;
   std::uint16_t iterations = 0;
 };
 
@@ -68,15 +78,6 @@ struct alignas(64) TrackingState {
 };
 static_assert(sizeof(TrackingState) == 64, "a cache line a pair");
 
-// Which way an answer came: core/README.md, "What the iteration is".
-enum class DistancePath : std::uint8_t {
-  kWalk,     // step 1 proved it
-  kLoop,     // the loop, and of what touches or overlaps then the depth
-  kRobust,   // the loop and then the robust path
-  kOverlap,  // at once from where they overlapped last
-  kSpheres,  // see DistanceOptions::far_away
-};
-
 struct DistanceOptions {
   // m: where the spheres around both bodies prove as much, they are all that is asked. The status
   // is kFarAway then, and the distance the lower bound.
@@ -85,8 +86,6 @@ struct DistanceOptions {
   // Where they are not proved apart, the status is kIterationLimit then and the lower bound may be
   // -infinity.
   bool depth = true;
-  // Where to say which way the answer came; null: nowhere. It changes nothing else.
-  DistancePath* path = nullptr;
 };
 
 // noexcept, no heap, deterministic. Any state is accepted.

@@ -281,6 +281,7 @@ HWY_INLINE DistanceResult result_of(const Walk& w) {
   store4(w.point_a, numbers + 6);
   store4(w.point_b, numbers + 9);
   r.status = DistanceStatus::kConverged;
+  r.path = DistancePath::kWalk;
   r.iterations = static_cast<std::uint16_t>(w.steps);
   return r;
 }

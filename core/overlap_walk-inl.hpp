@@ -145,6 +145,7 @@ HWY_INLINE bool walk_overlap(Walk& w) {
 // Of a walk that has proved something.
 HWY_INLINE DistanceResult overlap_result_of(const Walk& w) {
   DistanceResult r = result_of(w);
+  r.path = DistancePath::kOverlap;
   if (w.apart > 0.0) return r;
   r.upper = (w.apart + w.beyond) + w.slack;
   r.status = DistanceStatus::kOverlapping;

@@ -39,7 +39,8 @@ inline bool same_bits(const DistanceResult& r, const DistanceResult& s) {
   const auto same = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
   return same(r.distance, s.distance) && same(r.lower, s.lower) && same(r.upper, s.upper) &&
          same(r.normal, s.normal) && same(r.point_on_a, s.point_on_a) &&
-         same(r.point_on_b, s.point_on_b) && r.status == s.status && r.iterations == s.iterations;
+         same(r.point_on_b, s.point_on_b) && r.status == s.status && r.path == s.path &&
+         r.iterations == s.iterations;
 }
 
 }  // namespace clearance

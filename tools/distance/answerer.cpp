@@ -105,23 +105,12 @@ void Answerer::print_paths() const {
             << paths_[DistancePath::kOverlap] << '\n';
 }
 
-void PathCount::add(DistancePath path, DistanceStatus status) {
-  ++by_path[static_cast<std::size_t>(path)];
-  const bool meets = status == DistanceStatus::kTouching || status == DistanceStatus::kOverlapping;
-  const bool searched = path == DistancePath::kLoop || path == DistancePath::kRobust;
+void PathCount::add(const DistanceResult& result) {
+  ++by_path[static_cast<std::size_t>(result.path)];
+  const bool meets =
+      result.status == DistanceStatus::kTouching || result.status == DistanceStatus::kOverlapping;
+  const bool searched = result.path == DistancePath::kLoop || result.path == DistancePath::kRobust;
   met += meets && searched ? 1 : 0;
-}
-
-// The same questions once more, off the clock: this entry is not the fastest.
-void Answerer::count_paths(const DistanceCase& question) {
-  TrackingState state;
-  for (const auto& [pose_a, pose_b] : question.poses) {
-    if (cold_) state = {};
-    DistancePath path{};
-    const DistanceResult r =
-        distance(question.a, question.b, relative_pose(pose_a, pose_b), state, {.path = &path});
-    paths_.add(path, r.status);
-  }
 }
 
 // One pass over the motion gives the answers; further ones are only for the clock.
@@ -139,8 +128,8 @@ std::vector<DistanceAnswer> Answerer::run(const DistanceCase& question) {
     time_ += Clock::now() - start;
     queries_ += poses.size();
   }
-  count_paths(question);
   for (const DistanceAnswer& answer : results) {
+    paths_.add(answer.result);
     not_converged_ += answer.result.status == DistanceStatus::kIterationLimit ? 1 : 0;
   }
   return results;

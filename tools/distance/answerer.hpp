@@ -27,7 +27,7 @@ struct PathCount {
   [[nodiscard]] std::size_t operator[](DistancePath path) const {
     return by_path[static_cast<std::size_t>(path)];
   }
-  void add(DistancePath path, DistanceStatus status);
+  void add(const DistanceResult& result);
 };
 
 class Answerer {
@@ -44,7 +44,6 @@ class Answerer {
 
  private:
   std::vector<DistanceAnswer> run(const DistanceCase& question);
-  void count_paths(const DistanceCase& question);
   void print_paths() const;
 
   bool cold_;
