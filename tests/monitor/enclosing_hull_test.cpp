@@ -26,8 +26,7 @@ TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets)
   Scene scene;
   const Part floor{"floor", test::half_space(Vec3::UnitZ(), 0.0), {}};
   scene.objects = {object_of({box_at(1.0, Vec3::Zero()), box_at(1.0, Vec3::UnitX())}),
-                   object_of({box_at(1.0, Vec3::Zero())}),
-                   object_of({}),
+                   object_of({box_at(1.0, Vec3::Zero())}), object_of({}),
                    object_of({box_at(1.0, Vec3::Zero()), floor}),
                    object_of({{"ball", test::made(hard::facet_ball(10)), {}}})};
   ASSERT_GT(scene.objects[4].parts[0].shape.facets.size(), kFineFacets);
