@@ -16,23 +16,6 @@
 #include "core/batch_tenure.hpp"
 
 namespace clearance {
-namespace {
-
-// A pair that has left its lane, the features that it has been walked to, by their dimensions, and
-// how far that was.
-struct Departed {
-  std::uint32_t pair;
-  std::uint8_t dimensions;
-  WalkStart start;
-};
-constexpr std::uint8_t kMostDimensions = 8;  // two facets
-
-std::uint8_t dimensions_of(const TrackingState& s) noexcept {
-  return static_cast<std::uint8_t>(3 * s.a.dimension + s.b.dimension);
-}
-
-}  // namespace
-
 class DistanceBatch::Rounds {
  public:
   Rounds(std::span<const ConvexPolyhedron* const> bodies, std::span<const BodyPair> pairs)
@@ -80,6 +63,19 @@ class DistanceBatch::Rounds {
   [[nodiscard]] std::size_t single_queries() const noexcept { return single_queries_; }
 
  private:
+  // A pair that has left its lane, the features that it has been walked to, by their dimensions,
+  // and how far that was.
+  struct Departed {
+    std::uint32_t pair;
+    std::uint8_t dimensions;
+    WalkStart start;
+  };
+  static constexpr std::uint8_t kMostDimensions = 8;  // two facets
+
+  static std::uint8_t dimensions_of(const TrackingState& s) noexcept {
+    return static_cast<std::uint8_t>(3 * s.a.dimension + s.b.dimension);
+  }
+
   static constexpr std::uint32_t kBits = 64;  // of a word of loose_
 
   [[nodiscard]] std::optional<FeatureKind> kind_of(std::uint32_t pair,

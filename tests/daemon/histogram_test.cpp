@@ -26,11 +26,11 @@ TEST(Histogram, IsExactBelow64Nanoseconds) {
 
 // Oracle: the sorted values.
 TEST(Histogram, PercentilesAreNeverBelowTheTruthAndAtMostOneBinAbove) {
-  test::Random random(11);
+  Random random(11);
   std::vector<std::int64_t> values;
   Histogram histogram;
   for (int i = 0; i < 20000; ++i) {
-    const auto ns = static_cast<std::int64_t>(std::exp2(random.in(0.0, 33.0)));
+    const auto ns = static_cast<std::int64_t>(std::exp2(random.uniform(0.0, 33.0)));
     values.push_back(ns);
     histogram.add(ns);
   }

@@ -13,7 +13,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 TEST(WorkerPool, DoesEachIndexOnceWhateverTheNumberOfWorkers) {
   for (const unsigned workers : {1u, 2u, 3u, 7u}) {
@@ -58,8 +57,8 @@ class Crowd {
     now_ns += kTick;
     std::vector<PoseSample> samples;
     for (std::uint32_t i = 0; i < poses_.size(); ++i) {
-      poses_[i].position += random_.vec(0.01);
-      if (random_.in(0, 1) < 0.01) poses_[i] = random_.pose(2.0);
+      poses_[i].position += random_.in_box(0.01);
+      if (random_.uniform(0, 1) < 0.01) poses_[i] = random_.pose(2.0);
       const bool silent = i < 4 && now_ns % (100 * kTick) > 40 * kTick;
       if (!silent) samples.push_back(test::sample(i, poses_[i], now_ns));
     }

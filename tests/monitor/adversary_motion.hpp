@@ -9,21 +9,21 @@
 namespace clearance::test {
 
 inline void turn(Random& random, double angle, Pose& pose) {
-  const Vec3 axis = random.vec(1.0).normalized();
-  pose.orientation = Eigen::AngleAxisd(random.in(-angle, angle), axis) * pose.orientation;
+  const Vec3 axis = random.in_box(1.0).normalized();
+  pose.orientation = Eigen::AngleAxisd(random.uniform(-angle, angle), axis) * pose.orientation;
   pose.orientation.normalize();
 }
 
 // At a millisecond a tick every point of a body of a metre keeps well below 3 m/s.
 inline void crawl(Random& random, Pose& pose) {
-  pose.position += random.vec(0.0005);
+  pose.position += random.in_box(0.0005);
   turn(random, 0.0005, pose);
 }
 
 // All crowd around one point, which wanders.
 inline void crowd(Random& random, int tick, Pose& pose) {
   const Vec3 centre(std::sin(0.01 * tick), std::cos(0.013 * tick), 0.0);
-  pose.position += 0.02 * (centre - pose.position) + random.vec(0.02);
+  pose.position += 0.02 * (centre - pose.position) + random.in_box(0.02);
 }
 
 // On the straight way with an even turn, s in [0, 1].

@@ -19,7 +19,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 // Two bodies, watched and published, tick by tick.
 class Watched {
@@ -75,10 +74,10 @@ TEST(BetweenEnds, NoInstantOfTheWayIsNearerThanReported) {
   int ways = 0, close = 0;
   for (int i = 0; i < 240; ++i) {
     Watched pair(any_body(random, i % 4), any_body(random, i / 4 % 4));
-    const double scale = std::pow(10.0, random.in(-3.5, -0.5));
+    const double scale = std::pow(10.0, random.uniform(-3.5, -0.5));
     std::array<Flight, 2> flights;
     for (Flight& flight : flights) {
-      flight = {random.pose(0.5), random.vec(scale), random.vec(i % 3 == 0 ? 0.0 : scale)};
+      flight = {random.pose(0.5), random.in_box(scale), random.in_box(i % 3 == 0 ? 0.0 : scale)};
     }
     double last = kInfinity;
     for (int t = 0; t < 12; ++t) {

@@ -15,7 +15,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 int ticks_of_a_run() {
   const char* asked = std::getenv("CLEARANCE_TICKS");
@@ -30,7 +29,7 @@ Scene bodies(Random& random) {
   std::vector<Object> objects;
   for (int i = 0; i < 22; ++i) {
     const Part part = i % 3 == 0 ? test::ball(0.05, random.pose(0.2))
-                                 : test::capsule(random.in(0.3, 1.5), 0.01, random.pose(0.2));
+                                 : test::capsule(random.uniform(0.3, 1.5), 0.01, random.pose(0.2));
     Object object =
         i < 16 ? test::moving("body", {part}) : test::fixed("post", {part}, random.pose(2.5));
     if (i % 2 == 0) object.max_speed = 3.0;
@@ -63,8 +62,8 @@ class Adversary {
     for (std::uint32_t i = 0; i < poses_.size(); ++i) {
       if (scene_.objects[i].fixed) continue;
       move(poses_[i]);
-      if (style_ == Style::kLate && silent_[i] == 0 && random_.in(0, 1) < 0.01) {
-        silent_[i] = static_cast<int>(random_.in(1, 80));
+      if (style_ == Style::kLate && silent_[i] == 0 && random_.uniform(0, 1) < 0.01) {
+        silent_[i] = static_cast<int>(random_.uniform(1, 80));
       }
       if (silent_[i] > 0 && --silent_[i] > 0) continue;
       sent_[i] = poses_[i];
@@ -94,18 +93,19 @@ class Adversary {
         test::turn(random_, 0.3, pose);
         return;
       case Style::kTeleport:
-        pose.position += random_.vec(1e-4);
-        if (random_.in(0, 1) < 0.01) pose = random_.pose(2.5);
+        pose.position += random_.in_box(1e-4);
+        if (random_.uniform(0, 1) < 0.01) pose = random_.pose(2.5);
         return;
       case Style::kDart:
-        if (tick_ % 60 > 56) pose.position += random_.vec(0.3);
+        if (tick_ % 60 > 56) pose.position += random_.in_box(0.3);
         return;
       case Style::kCrowd:
         test::crowd(random_, tick_, pose);
         return;
       case Style::kAway:  // farther than what is added up, and back
-        pose.position += random_.vec(0.001);
-        if (random_.in(0, 1) < 0.003) pose = random_.pose(random_.in(0, 1) < 0.3 ? 3e4 : 2.5);
+        pose.position += random_.in_box(0.001);
+        if (random_.uniform(0, 1) < 0.003)
+          pose = random_.pose(random_.uniform(0, 1) < 0.3 ? 3e4 : 2.5);
         return;
     }
   }

@@ -10,8 +10,6 @@
 namespace clearance {
 namespace {
 
-using test::Random;
-
 // Two parts that have been asked how far apart they are, and move on.
 class AskedOnce {
  public:
@@ -62,12 +60,12 @@ TEST(CarriedDirection, IsNeverAboveTheTruthHoweverBothMove) {
         i % 4 == 0 ? test::floor() : test::block({0.2, 0.1, 0.3}, random.pose(0.3));
     AskedOnce pair(floor_or_block, test::capsule(0.4, 0.02, random.pose(0.3)), random.pose(1.0),
                    random.pose(1.0));
-    const double scale = std::pow(10.0, random.in(-6.0, 0.0));
+    const double scale = std::pow(10.0, random.uniform(-6.0, 0.0));
     for (int k = 0; k < 20; ++k) {
       for (std::size_t object = 0; object < 2; ++object) {
         Pose to = pair.pose(object);
-        to.position += random.vec(scale);
-        const Vec3 axis = random.vec(1.0).normalized();
+        to.position += random.in_box(scale);
+        const Vec3 axis = random.in_box(1.0).normalized();
         if (i % 3 == 0) to.orientation = Eigen::AngleAxisd(scale, axis) * to.orientation;
         pair.move(object, to);
       }

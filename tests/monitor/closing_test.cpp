@@ -10,7 +10,6 @@
 namespace clearance {
 namespace {
 
-using test::Random;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Closing, SpinningPointMovesAcrossItsArm) {
@@ -48,7 +47,7 @@ TEST(Closing, ReportedSpeedIsTheRateAtWhichTheDistanceFalls) {
     std::array<Twist, 2> twist;
     std::vector<PoseSample> samples;
     for (std::uint32_t k = 0; k < 2; ++k) {
-      twist[k] = {.linear = random.vec(1.0), .angular = random.vec(2.0)};
+      twist[k] = {.linear = random.in_box(1.0), .angular = random.in_box(2.0)};
       samples.push_back(test::sample(k, pose[k], test::kStart));
       samples.back().twist = twist[k];
       samples.back().has_twist = true;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <random>
+
 #include "tests/monitor/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

@@ -12,7 +12,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 using test::tick_with;
 using test::two_balls;
 
@@ -136,7 +135,7 @@ TEST(MonitorInputs, StaleBoundsHoldWhereverTheObjectWentSince) {
     monitor.tick(samples, kStart);
     const PoseSample b_again = test::sample(1, b, kStart + 50 * kTick);
     monitor.tick(std::span(&b_again, 1), kStart + 50 * kTick);
-    a.position += 0.05 * 1.5 * random.vec(1.0).normalized();
+    a.position += 0.05 * 1.5 * random.in_box(1.0).normalized();
     const long double truth = test::true_distance(scene.objects[0], a, scene.objects[1], b);
     const PairReport pair = monitor.pair(0);
     ASSERT_EQ(pair.status, PairStatus::kStale);

@@ -14,7 +14,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 using test::tick_with;
 using test::two_balls;
 
@@ -22,7 +21,7 @@ TEST(Monitor, ReportsDistanceWitnessesAndNormalInTheWorld) {
   const Scene scene = two_balls();
   Monitor monitor(scene);
   Pose pose = test::at(1, 0.7, 0);
-  pose.orientation = Random(51).orientation();
+  pose.orientation = Random(51).rotation();
   const Report& report = tick_with(monitor, 0, pose, kStart);
   EXPECT_EQ(report.cycle, 1u);
   EXPECT_EQ(report.now_ns, kStart);
@@ -46,8 +45,8 @@ TEST(Monitor, ReportsDistanceWitnessesAndNormalInTheWorld) {
 TEST(Monitor, PutsTheWitnessPointOfABodyAKilometreAwayOnItToItsOwnRounding) {
   Random random(52);
   for (int k = 0; k < 50; ++k) {
-    const Pose far{1000.0 * random.vec(1.0).normalized(), random.orientation()};
-    const Pose here{Vec3::Zero(), random.orientation()};
+    const Pose far{1000.0 * random.in_box(1.0).normalized(), random.rotation()};
+    const Pose here{Vec3::Zero(), random.rotation()};
     std::vector<Part> parts = {test::block(Vec3(0.1, 0.2, 0.3))};
     if (k % 2 == 1) parts.push_back(test::ball(0.1));  // asked one by one, not in a batch
     Scene scene = test::cell_of(
@@ -152,15 +151,15 @@ class Trouble {
     samples_.clear();
     now_ns_ += kTick;
     for (std::uint32_t i = 0; i < poses_.size(); ++i) {
-      poses_[i].position += random_.vec(0.01);
+      poses_[i].position += random_.in_box(0.01);
       // Late for a while: 3, of which nobody states a speed, and 4.
       if ((i == 3 || i == 4) && now_ns_ % (100 * kTick) > 40 * kTick) continue;
-      if (random_.in(0, 1) < 0.3) continue;
+      if (random_.uniform(0, 1) < 0.3) continue;
       samples_.push_back(test::sample(i, poses_[i], now_ns_));
-      if (random_.in(0, 1) < 0.1) samples_.back().stamp_ns += 10 * kTick;
-      if (random_.in(0, 1) < 0.1) samples_.back().stamp_ns -= 10 * kTick;
-      if (random_.in(0, 1) < 0.1) samples_.back().object += 3;
-      if (random_.in(0, 1) < 0.1) samples_.back().world_from_object.orientation.w() = NAN;
+      if (random_.uniform(0, 1) < 0.1) samples_.back().stamp_ns += 10 * kTick;
+      if (random_.uniform(0, 1) < 0.1) samples_.back().stamp_ns -= 10 * kTick;
+      if (random_.uniform(0, 1) < 0.1) samples_.back().object += 3;
+      if (random_.uniform(0, 1) < 0.1) samples_.back().world_from_object.orientation.w() = NAN;
     }
     return samples_;
   }

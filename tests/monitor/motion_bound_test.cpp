@@ -8,8 +8,6 @@
 namespace clearance {
 namespace {
 
-using test::Random;
-
 Pose turned(const Pose& pose, const Vec3& axis, double angle) {
   Pose result = pose;
   result.orientation =
@@ -21,13 +19,13 @@ TEST(MotionBound, NoPointMovesFartherThanTheBound) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const Pose before = random.pose(5.0);
-    const double scale = std::pow(10.0, random.in(-15.0, 0.0));
-    Pose after = turned(before, random.vec(1.0), scale * random.in(-3.2, 3.2));
-    after.position += scale * random.vec(2.0);
-    after.orientation.coeffs() *= random.in(0.9991, 1.0009) * (i % 2 == 0 ? 1.0 : -1.0);
+    const double scale = std::pow(10.0, random.uniform(-15.0, 0.0));
+    Pose after = turned(before, random.in_box(1.0), scale * random.uniform(-3.2, 3.2));
+    after.position += scale * random.in_box(2.0);
+    after.orientation.coeffs() *= random.uniform(0.9991, 1.0009) * (i % 2 == 0 ? 1.0 : -1.0);
     const Motion motion = motion_between(before, after);
     for (int k = 0; k < 4; ++k) {
-      const Vec3 point = random.vec(2.0);
+      const Vec3 point = random.in_box(2.0);
       const test::LongVec exact = point.cast<long double>();
       const long double moved = (test::exactly(after, exact) - test::exactly(before, exact)).norm();
       const double reach = static_cast<double>(exact.norm());  // rounds either way: see the slack
@@ -41,12 +39,12 @@ TEST(MotionBound, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
   double tightest = 1.0;
   for (int i = 0; i < 5000; ++i) {
     const Pose before = random.pose(5.0);
-    const double scale = std::pow(10.0, random.in(-4.0, 0.0));
-    const Vec3 axis = random.vec(1.0);
-    Pose after = turned(before, axis, scale * random.in(-3.1, 3.1));
-    after.position += random.vec(scale);
+    const double scale = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const Vec3 axis = random.in_box(1.0);
+    Pose after = turned(before, axis, scale * random.uniform(-3.1, 3.1));
+    after.position += random.in_box(scale);
     const Vec3 across = before.orientation.conjugate() * axis.unitOrthogonal();
-    const Vec3 point = i % 2 == 0 ? across : random.vec(2.0);
+    const Vec3 point = i % 2 == 0 ? across : random.in_box(2.0);
     const double told = bend_at_most(motion_between(before, after), point.norm());
     double most = 0.0;
     for (int k = 0; k <= 10; ++k) {
@@ -78,12 +76,12 @@ TEST(MotionBound, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const Pose before = random.pose(5.0);
-    const Vec3 axis = random.vec(1.0), shift = random.vec(1.0);
-    const double angle = random.in(-3.14, 3.14), part = random.in(0.0, 1.0);
+    const Vec3 axis = random.in_box(1.0), shift = random.in_box(1.0);
+    const double angle = random.uniform(-3.14, 3.14), part = random.uniform(0.0, 1.0);
     Pose between = turned(before, axis, part * angle), after = turned(before, axis, angle);
     between.position += part * shift;
     after.position += shift;
-    const Vec3 x = random.vec(2.0);
+    const Vec3 x = random.in_box(2.0);
     const double there = (transform(between, x) - transform(before, x)).norm();
     const double on = (transform(after, x) - transform(between, x)).norm();
     ASSERT_LE(there + on, moved_at_most(motion_between(before, after), x.norm()) + 1e-13);

@@ -15,7 +15,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 struct Motion2 {
   std::array<Pose, 2> from, to;
@@ -71,25 +70,26 @@ class TwoOnTheirWay {
 };
 
 Part any_part(Random& random) {
-  const Pose offset = random.in(0, 1) < 0.5 ? Pose{} : random.pose(0.5);
-  const double kind = random.in(0, 4);
-  if (kind < 1) return test::capsule(random.in(0.2, 1.0), 0.02, offset);
+  const Pose offset = random.uniform(0, 1) < 0.5 ? Pose{} : random.pose(0.5);
+  const double kind = random.uniform(0, 4);
+  if (kind < 1) return test::capsule(random.uniform(0.2, 1.0), 0.02, offset);
   if (kind < 2) return test::block({0.4, 0.005, 0.005}, offset);
   if (kind < 3) return test::block({0.3, 0.2, 0.003}, offset);
-  return test::block({random.in(0.01, 0.3), random.in(0.01, 0.3), random.in(0.01, 0.3)}, offset);
+  return test::block(
+      {random.uniform(0.01, 0.3), random.uniform(0.01, 0.3), random.uniform(0.01, 0.3)}, offset);
 }
 
 Motion2 any_motion(Random& random) {
   Motion2 motion;
-  const double scale = std::pow(10.0, random.in(-4.0, 0.3));
-  const Eigen::Quaterniond common(Eigen::AngleAxisd(scale * random.in(-1, 1), Vec3::UnitZ()));
+  const double scale = std::pow(10.0, random.uniform(-4.0, 0.3));
+  const Eigen::Quaterniond common(Eigen::AngleAxisd(scale * random.uniform(-1, 1), Vec3::UnitZ()));
   for (std::size_t i = 0; i < 2; ++i) {
     motion.from[i] = random.pose(0.6);
     motion.to[i] = motion.from[i];
-    motion.to[i].position += random.vec(scale);
-    const Vec3 axis = random.vec(1.0).normalized();
-    const double kind = random.in(0, 3);
-    const Eigen::Quaterniond own(Eigen::AngleAxisd(scale * random.in(-1, 1), axis));
+    motion.to[i].position += random.in_box(scale);
+    const Vec3 axis = random.in_box(1.0).normalized();
+    const double kind = random.uniform(0, 3);
+    const Eigen::Quaterniond own(Eigen::AngleAxisd(scale * random.uniform(-1, 1), axis));
     if (kind < 1) motion.to[i].orientation = own * motion.from[i].orientation;
     if (kind > 2) motion.to[i].orientation = common * motion.from[i].orientation;
   }
@@ -101,7 +101,7 @@ TEST(Passage, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther) {
   int outside = 0, inside = 0;
   for (int i = 0; i < 1500; ++i) {
     TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));
-    const double level = random.in(-0.05, 0.6);
+    const double level = random.uniform(-0.05, 0.6);
     const PassageBounds bounds = pair.decide(level);
     double least = kInfinity;
     for (int k = 0; k <= 50; ++k) {

@@ -7,8 +7,6 @@
 namespace clearance {
 namespace {
 
-using test::Random;
-
 PlacedPart placed(const Scene& scene, const Pose& world_from_object) {
   PlacedPart part = parts_of(scene).front();
   ObjectState object;
@@ -21,7 +19,7 @@ PlacedPart placed(const Scene& scene, const Pose& world_from_object) {
 TEST(PlacedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
   Random random(11);
   for (int i = 0; i < 5000; ++i) {
-    const double scale = std::pow(10.0, random.in(-3.0, 4.0));
+    const double scale = std::pow(10.0, random.uniform(-3.0, 4.0));
     const Scene scene =
         test::cell_of({test::moving("arm", {test::capsule(1.0, 0.1, random.pose(scale))})});
     const Pose pose = random.pose(scale);

@@ -19,7 +19,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 constexpr double kRounding = 1e-11;  // of the oracle's own poses, m; 10 km from the origin 1e-8
 
@@ -43,14 +42,14 @@ enum class Style {
 
 Part hull(Random& random, double size, const Pose& offset) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 12; ++i) points.push_back(random.vec(size));
+  for (int i = 0; i < 12; ++i) points.push_back(random.in_box(size));
   return {"hull", test::made(polyhedron_from_vertices(points)), offset};
 }
 
 // Of more facets than anything that does not get an enclosing hull.
 Part pebble(Random& random, double size) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 60; ++i) points.push_back(size * random.vec(1.0).normalized());
+  for (int i = 0; i < 60; ++i) points.push_back(size * random.in_box(1.0).normalized());
   return {"pebble", test::made(polyhedron_from_vertices(points)), {}};
 }
 
@@ -90,7 +89,7 @@ class Adversary {
       Told& object = objects_[i];
       object.pose = scene.objects[i].fixed ? scene.objects[i].world_from_object : random_.pose(1.0);
       object.sent = object.now = object.before = object.pose;
-      object.velocity = random_.vec(0.3);
+      object.velocity = random_.in_box(0.3);
       object.known = scene.objects[i].fixed;
     }
   }
@@ -133,7 +132,7 @@ class Adversary {
            objects_[b].known;
   }
   [[nodiscard]] double rounding() const { return style_ == Style::kAway ? 1e-8 : kRounding; }
-  double anywhen() { return random_.in(0.0, 1.0); }
+  double anywhen() { return random_.uniform(0.0, 1.0); }
 
  private:
   struct Told {
@@ -146,11 +145,12 @@ class Adversary {
   };
 
   bool silent(Told& object) {
-    const double chance = random_.in(0, 1);
+    const double chance = random_.uniform(0, 1);
     if (style_ == Style::kLost) return chance < 0.3;
     if (style_ == Style::kAllLate) return tick_ % 90 > 30;
     if (style_ != Style::kLate) return false;
-    if (object.silence == 0 && chance < 0.01) object.silence = static_cast<int>(random_.in(1, 80));
+    if (object.silence == 0 && chance < 0.01)
+      object.silence = static_cast<int>(random_.uniform(1, 80));
     return object.silence > 0 && --object.silence > 0;
   }
 
@@ -166,12 +166,12 @@ class Adversary {
         test::turn(random_, 0.6, pose);
         return;
       case Style::kTeleport:
-        pose.position += random_.vec(1e-4);
-        if (random_.in(0, 1) < 0.03) pose = random_.pose(1.0);
+        pose.position += random_.in_box(1e-4);
+        if (random_.uniform(0, 1) < 0.03) pose = random_.pose(1.0);
         return;
       case Style::kLost:
       case Style::kDart:
-        if (tick_ % 20 > 16) pose.position += random_.vec(0.4);
+        if (tick_ % 20 > 16) pose.position += random_.in_box(0.4);
         keep_near(pose);
         return;
       case Style::kBullets:  // through everything, tumbling, and back
@@ -186,8 +186,9 @@ class Adversary {
         test::turn(random_, 0.01, pose);
         return;
       case Style::kAway:  // farther than what is added up, and back
-        pose.position += random_.vec(0.001);
-        if (random_.in(0, 1) < 0.01) pose = random_.pose(random_.in(0, 1) < 0.3 ? 3e4 : 1.0);
+        pose.position += random_.in_box(0.001);
+        if (random_.uniform(0, 1) < 0.01)
+          pose = random_.pose(random_.uniform(0, 1) < 0.3 ? 3e4 : 1.0);
         return;
     }
   }

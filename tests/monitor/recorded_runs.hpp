@@ -50,7 +50,7 @@ inline void record_run(const Scene& scene, const std::filesystem::path& file, co
     std::vector<PoseSample> samples;
     std::vector<SourceUse> uses;
     for (std::uint32_t source = 0; source < 2; ++source) {
-      const int batches = tick == 0 ? 1 : static_cast<int>(random.in(0.0, 3.0));
+      const int batches = tick == 0 ? 1 : static_cast<int>(random.uniform(0.0, 3.0));
       for (int i = 0; i < batches; ++i) {
         PoseBatch batch{
             SourceName(source == 0 ? "arm" : "cell"), ++sequence[source], scene.revision, {}};

@@ -13,7 +13,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 // As a tick leaves it that took it from one pose to another.
 ObjectState gone(const Pose& from, const Pose& to, double reach) {
@@ -57,21 +56,21 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
   Random random(91);
   int tighter = 0;
   for (int i = 0; i < 3000; ++i) {
-    const double reach_a = random.in(0.05, 2.0), reach_b = random.in(0.05, 2.0);
-    const double scale = std::pow(10.0, random.in(-6.0, 0.0));
+    const double reach_a = random.uniform(0.05, 2.0), reach_b = random.uniform(0.05, 2.0);
+    const double scale = std::pow(10.0, random.uniform(-6.0, 0.0));
     const Pose a = random.pose(3.0), b = random.pose(3.0);
     // Often nearly the same turn and shift: what cancels must not cancel too much.
-    const Vec3 turn = scale * random.vec(0.5), shift = scale * random.vec(1.0);
+    const Vec3 turn = scale * random.in_box(0.5), shift = scale * random.in_box(1.0);
     const double differ = i % 3 == 0 ? 1.0 : i % 3 == 1 ? 1e-4 : 0.0;
     const Pose a_to = after(a, shift, turn);
-    const Pose b_to =
-        after(b, shift + differ * scale * random.vec(1.0), turn + differ * scale * random.vec(0.5));
+    const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
+                            turn + differ * scale * random.in_box(0.5));
     const ObjectState of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
     const double told = relative_travel(of_a, of_b);
     ASSERT_EQ(told, relative_travel(of_a, of_b));
     const bool b_goes = reach_b <= reach_a;
     for (int k = 0; k < 4; ++k) {
-      const Vec3 point = random.vec(1.0).normalized() * (b_goes ? reach_b : reach_a);
+      const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? reach_b : reach_a);
       const double way =
           b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
       ASSERT_LE(way, told + 1e-13) << "case " << i;

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <random>
 #include <span>
 #include <string>
 #include <variant>
@@ -20,6 +19,7 @@
 #include "monitor/monitor.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
+#include "tests/shared/random.hpp"
 
 namespace clearance::test {
 
@@ -89,32 +89,6 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   s.world_from_object = pose;
   return s;
 }
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  // Uniform in [low, high); the same on every standard library.
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vec3 vec(double size) { return {in(-size, size), in(-size, size), in(-size, size)}; }
-  Eigen::Quaterniond orientation() {
-    Eigen::Quaterniond q;
-    do {
-      q.coeffs() << in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1);
-    } while (q.norm() < 0.1);
-    return q.normalized();
-  }
-  Pose pose(double size) {
-    Pose p;
-    p.position = vec(size);
-    p.orientation = orientation();
-    return p;
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 using LongVec = Eigen::Matrix<long double, 3, 1>;
 

@@ -13,7 +13,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 // How the moving objects go from one tick to the next.
 enum class Style { kCrawl, kSpin, kJitter, kTeleport };
@@ -21,24 +20,24 @@ enum class Style { kCrawl, kSpin, kJitter, kTeleport };
 Pose next_pose(const Pose& pose, Style style, Random& random) {
   Pose next = pose;
   const auto turn = [&](double angle) {
-    const Vec3 axis = random.vec(1.0).normalized();
+    const Vec3 axis = random.in_box(1.0).normalized();
     next.orientation =
-        Eigen::AngleAxisd(random.in(-angle, angle), axis) * pose.orientation.normalized();
-    next.orientation.coeffs() *= random.in(0.9995, 1.0005);
+        Eigen::AngleAxisd(random.uniform(-angle, angle), axis) * pose.orientation.normalized();
+    next.orientation.coeffs() *= random.uniform(0.9995, 1.0005);
   };
   switch (style) {
     case Style::kCrawl:
-      next.position += random.vec(0.002);
+      next.position += random.in_box(0.002);
       turn(0.001);
       break;
     case Style::kSpin:
       turn(0.1);
       break;
     case Style::kJitter:
-      next.position += random.vec(1e-9);
+      next.position += random.in_box(1e-9);
       break;
     case Style::kTeleport:
-      if (random.in(0.0, 1.0) < 0.1) next = random.pose(3.0);
+      if (random.uniform(0.0, 1.0) < 0.1) next = random.pose(3.0);
       break;
   }
   return next;

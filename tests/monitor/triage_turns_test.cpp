@@ -12,7 +12,6 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::Random;
 
 // A row of balls 10 m apart, the first two near each other: nobody else can be close.
 Scene far_apart(std::uint32_t count) {
@@ -108,7 +107,7 @@ TEST(Triage, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
   for (int t = 0; t < 1500; ++t) {
     std::vector<PoseSample> samples;
     for (std::uint32_t i = 0; i < 40; ++i) {
-      if (silent[i] == 0 && random.in(0, 1) < 0.002) silent[i] = 120;
+      if (silent[i] == 0 && random.uniform(0, 1) < 0.002) silent[i] = 120;
       if (silent[i] > 0) --silent[i];
       if (silent[i] == 0) {
         samples.push_back(test::sample(i, test::at(0, 0.2 * i, 0), kStart + t * kTick));

@@ -9,8 +9,6 @@
 namespace clearance {
 namespace {
 
-using test::Random;
-
 TEST(WakeWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
   constexpr std::uint32_t kPairs = 500;
   Random random(81);
@@ -19,14 +17,14 @@ TEST(WakeWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
   double travelled = 0.0;
   std::vector<std::uint32_t> pairs;
   const auto set = [&](std::uint32_t pair) {
-    const double travel = std::pow(10.0, random.in(-3.0, 2.5));
+    const double travel = std::pow(10.0, random.uniform(-3.0, 2.5));
     ASSERT_TRUE(wheels.set(2 * pair + 1, 1, travel));
     since[pair] = travelled;
     due[pair] = travelled + travel;
   };
   for (std::uint32_t p = 0; p < kPairs; ++p) set(p);
   for (int t = 0; t < 20'000; ++t) {
-    const double by = std::pow(10.0, random.in(-5.0, t % 100 == 0 ? 1.5 : -2.0));
+    const double by = std::pow(10.0, random.uniform(-5.0, t % 100 == 0 ? 1.5 : -2.0));
     wheels.advance(1, by);
     const double before = travelled;
     travelled += by;

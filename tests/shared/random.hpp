@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/vec.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
@@ -50,6 +50,11 @@ class Random {
                  b = uniform(0.0, 2.0 * std::numbers::pi);
     const double s = std::sqrt(1.0 - u), t = std::sqrt(u);
     return {t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b)};
+  }
+  // Within a box around the origin, turned anyhow.
+  Pose pose(double half) {
+    const Vec3 position = in_box(half);
+    return {position, rotation()};
   }
 
  private:
