@@ -105,14 +105,11 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b).rate,
                                least_within<true>(at, kSidesOfB, c.own_b).rate);
   c.next = all(kNextUnknown);
+  const Lanes size =
+      hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
+  const LaneMask on_facet = hn::Le(hn::Abs(height), hn::Mul(all(2.0), size));
   c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
-                    hn::Le(tilt2, all(kLevelTilt * kLevelTilt)));
-  // Of bounded bodies, a lane's own last points are never farther off.
-  if (HWY_UNLIKELY(!at.block.plain)) {
-    const Lanes size =
-        hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
-    c.holds = hn::And(c.holds, hn::Le(hn::Abs(height), hn::Mul(all(2.0), size)));
-  }
+                    hn::And(hn::Le(tilt2, all(kLevelTilt * kLevelTilt)), on_facet));
   return c;
 }
 

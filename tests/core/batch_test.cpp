@@ -284,6 +284,34 @@ TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
   }
 }
 
+// From far away rounding puts witness points off their facets, and the way back to a facet from
+// there is rounded as well: 1e-8 m beside boxes that have come back.
+TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOfWhatComesBackFromFarAway) {
+  Mat3 turn;  // thrice a rotation, exactly
+  turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  Motion motion;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    std::vector<Vec3> corners;
+    for (int k = 0; k < 8; ++k) {
+      corners.push_back(turn * Vec3(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5));
+    }
+    motion.bodies.push_back(test::made(polyhedron_from_vertices(corners)));
+  }
+  motion.watch_all_pairs();
+  Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    const Vec3 way = turn.col(round % 3);
+    const double far = random.log_uniform(1e12, 1e30);
+    for (const double apart : {2.0, 2.0, 2.0, 2.0, 2.0, far, 2.0}) {
+      motion.poses.push_back({Pose{}, {apart * way}});
+    }
+  }
+  for (const std::int64_t target : vector_widths()) {
+    const OnlyWith only(target);
+    follow(motion, "far away and back");
+  }
+}
+
 TEST(DistanceBatch, StartsColdAgainWhenItForgets) {
   const Motion motion = crowd(7);
   const auto shapes = motion.shapes();
