@@ -75,11 +75,6 @@ struct Span {
   std::int32_t beyond = kNone;
 };
 
-// In the order of the sums of Quads.
-HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
-  return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
-}
-
 inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index, const Vec3& start,
                                 const Vec3& direction, Span span) {
   const Facet& facet = body.facets[index];
@@ -152,8 +147,8 @@ HWY_INLINE Quad onto(const Facet& facet, Quad p) {
 }
 
 // Halfway between the last witness points, on B's facet, in frame B. False: these were another
-// pair's, or far out on a half-space, and as far off the facet's plane that rounding leaves `own`
-// beside it.
+// pair's, far out on a half-space, or of bodies far apart, and so far off the facet's plane that
+// rounding leaves `own` beside it.
 HWY_INLINE bool halfway_on_facet(const Walk& w, const Facet& of_b, Quad& own) {
   const Quad mine = load3(w.on_b.point), n = load3_of_4(of_b.normal);
   const Quad theirs = point_to_b(w.a_from_b, load3(w.on_a.point));

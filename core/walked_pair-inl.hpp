@@ -91,6 +91,11 @@ HWY_INLINE bool all_fall(const ConvexPolyhedron& body, const Vertex& vertex, Qua
   return rise == 0;
 }
 
+// In the order of the sums of Quads, and of a batch's lanes.
+HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
+  return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
+}
+
 // The steepest of a vertex's edges along g.
 struct Steepest {
   double rate = -kInfinity;
@@ -113,7 +118,7 @@ inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex
     if (n > 3) take(lane(rise, 3), 3);
     return best;
   }
-  for (std::int32_t i = 0; i < n; ++i) take(body.outgoing_of(vertex, i).dot(g), i);
+  for (std::int32_t i = 0; i < n; ++i) take(dot(body.outgoing_of(vertex, i), g), i);
   return best;
 }
 HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
