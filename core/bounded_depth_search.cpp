@@ -53,7 +53,8 @@ DeepestPoints::Shallow DepthSearch::narrow_down(const Facing& facing,
       if (!nearer) continue;
       points.add(facing.body_from_other(facing.other.anchors[anchor]));
     } else if (points.ball() == nullptr) {
-      points.add_ball(facing.body_from_other(facing.other.interior), facing.other.inner_radius);
+      points.add_ball(facing.body_from_other(facing.other.interior), facing.other.inner_radius,
+                      rounding_of_place());
       nearer = true;
     } else {
       break;
@@ -115,7 +116,7 @@ void DepthSearch::facets_of_y_bounded() noexcept {
     return take_least(facing, DeepestCorners(body_.y(), x.anchors, facing.body_from_other));
   }
   DeepestPoints of_x(body_.y());
-  of_x.add_ball(facing.body_from_other(x.interior), x.inner_radius);
+  of_x.add_ball(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
   if (best_.source != Source::kNothing) {
     of_x.add(facing.body_from_other(x.anchors[support(x, best_.n).anchor]));
   }
@@ -149,9 +150,10 @@ bool DepthSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, cons
   };
   const OnArc first = on_arc(at_l), last = on_arc(at_r);
   double bound = -kInfinity;
-  if (ball != nullptr) {
-    bound = least_with_ball(first, on_arc(ball->at), ball->radius, last,
-                            (l.normal - r.normal).squaredNorm(), best_.height + 0.5 * tight_);
+  const OnArc middle = ball != nullptr ? on_arc(ball->at) : OnArc{};
+  if (ball != nullptr && middle.least() >= ball->margin) {
+    bound = least_with_ball(first, middle, ball->radius, last, (l.normal - r.normal).squaredNorm(),
+                            best_.height + 0.5 * tight_);
   }
   if (bound < best_.height) bound = std::max(bound, least_of_two(first, last));
   if (!(bound >= goal())) return false;

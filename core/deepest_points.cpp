@@ -92,8 +92,8 @@ DeepestPoints::Shallow DeepestPoints::list_shallow(double enough) noexcept {
 std::span<const std::uint16_t> DeepestPoints::list_not_below(const Point& point,
                                                              double enough) noexcept {
   const std::size_t facets = body_.facets.size();
-  std::size_t size = HWY_DYNAMIC_DISPATCH(list_not_below)(
-      body_.planes.row(0), facets, &point, std::max(enough, point.radius), list_.data());
+  std::size_t size = HWY_DYNAMIC_DISPATCH(list_not_below)(body_.planes.row(0), facets, &point,
+                                                          point.for_arcs(enough), list_.data());
   while (size > 0 && list_[size - 1] >= facets) --size;
   listed_.reset();
   for (std::size_t k = 0; k < size; ++k) listed_[list_[k]] = true;

@@ -24,8 +24,15 @@ class DeepestPoints {
   struct Point {
     Vec3 at;        // the body's frame
     double radius;  // m
+    double margin;  // m: what rounding may hide of how far `at` is inside a facet
     [[nodiscard]] double below(const Facet& facet) const noexcept {
       return (facet.offset - facet.normal.dot(at)) + radius;
+    }
+    // How deep it must be below two facets that it is `enough` deep below all between them: a
+    // ball's middle must be inside both for certain. Beyond the edge of a body all but flat it may
+    // be outside both by less than rounding can tell, and along the arc by metres.
+    [[nodiscard]] double for_arcs(double enough) const noexcept {
+      return std::max(enough, radius + margin);
     }
   };
 
@@ -40,11 +47,11 @@ class DeepestPoints {
     return count_ + (ball() == nullptr) < kMostPoints;
   }
   // Only where there is room.
-  void add(const Vec3& at) noexcept { points_[count_++] = {at, 0.0}; }
+  void add(const Vec3& at) noexcept { points_[count_++] = {at, 0.0, 0.0}; }
   // Once.
-  void add_ball(const Vec3& middle, double radius) noexcept {
+  void add_ball(const Vec3& middle, double radius, double margin) noexcept {
     ball_ = count_;
-    points_[count_++] = {middle, radius};
+    points_[count_++] = {middle, radius, margin};
   }
   [[nodiscard]] const Point* ball() const noexcept {
     return ball_ < count_ ? &points_[ball_] : nullptr;
@@ -65,15 +72,14 @@ class DeepestPoints {
     std::int32_t where_least;               // the first facet of all with the least depth
   };
   [[nodiscard]] Shallow list_shallow(double enough) noexcept;
-  // Those that one point is not so deep below; for is_listed(), too.
+  // Those that one point is not so deep below that it is so along arcs; for is_listed(), too.
   [[nodiscard]] std::span<const std::uint16_t> list_not_below(const Point& point,
                                                               double enough) noexcept;
-  // Is one of the points that deep below both facets, and so below all between them? Of a ball that
-  // is so only where its middle is inside both.
+  // Is one of the points that deep below both facets, and so below all between them?
   [[nodiscard]] bool one_is_below(const Facet& facet, const Facet& other,
                                   double enough) const noexcept {
     return std::any_of(points().begin(), points().end(), [&](const Point& point) {
-      const double each = std::max(enough, point.radius);
+      const double each = point.for_arcs(enough);
       return point.below(facet) >= each && point.below(other) >= each;
     });
   }

@@ -75,6 +75,10 @@ class DepthSearch {
   }
   static constexpr double kSame = 0x1p-26;
 
+  // m: of how far a point of one body is inside a facet of the other, in roundings of both bodies'
+  // size: 6 for its place, 2 for the normal, 4 for the product and the difference. tight_ is 8.
+  [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * tight_; }
+
   [[nodiscard]] double goal() const noexcept { return best_.height - tight_; }
   void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
   void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
