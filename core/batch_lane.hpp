@@ -7,8 +7,8 @@
 
 namespace clearance {
 
-// Which kind the features of `state` are; none where only distance() can judge them: edge on facet,
-// overlapping, two unbounded bodies, too many neighbours.
+// Which kind the features of `state` are; none where only distance() can judge them: overlapping,
+// two unbounded bodies, an edge without end on an edge or facet, too many neighbours.
 [[nodiscard]] std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a,
                                                       const ConvexPolyhedron& b,
                                                       const TrackingState& state) noexcept;
