@@ -30,8 +30,7 @@ std::int32_t DepthSearch::look_up(const Facing& facing, std::int32_t facet) noex
   const Facet& f = facing.body.facets[facet];
   const Vec3 m = facing.against(f);
   const std::int32_t anchor = support(facing.other, m).anchor;
-  const double depth =
-      f.offset - f.normal.dot(facing.body_from_other(facing.other.anchors[anchor]));
+  const double depth = facing.below(f, anchor);
   lower_to(depth);
   improve(depth, facing.source == Source::kFacetOfX ? f.normal : m, facing.source, facet);
   return anchor;
