@@ -14,6 +14,7 @@
 #include "core/batch_lane.hpp"
 #include "core/batch_slots.hpp"
 #include "core/batch_tenure.hpp"
+#include "core/tracked_query.hpp"
 
 namespace clearance {
 class DistanceBatch::Rounds {

@@ -3,10 +3,10 @@
 #define HWY_TARGET_INCLUDE "core/distance.cpp"
 #include "core/vector_widths.hpp"
 // That comes first.
-#include "core/batch_departure.hpp"
 #include "core/overlap_walk-inl.hpp"
 #include "core/radii.hpp"
 #include "core/search.hpp"
+#include "core/tracked_query.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
