@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  the recording is complete
-  1  it is not, or nothing was heard; the message says why
+  1  it is not, or nothing was heard; the message says why. SIGINT and SIGTERM end a recording from DDS in order;
+     --from-csv they stop half way, and nothing is left of it
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
@@ -44,14 +45,14 @@ int run(int argc, char** argv, StopSignal& stop) {
     return kUsage;
   if (!may_write("clearance-record", arguments.out, arguments.force)) return kFailed;
   const bool from_csv = !arguments.from_csv.empty();
-  if (from_csv) stop.release();
   std::optional<Scene> scene;
   if (!arguments.cell.empty()) {
     scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
   }
   const Scene* const known = scene ? &*scene : nullptr;
-  return from_csv ? record_from_csv(arguments, known) : record_from_dds(arguments, known, stop);
+  return from_csv ? record_from_csv(arguments, known, stop)
+                  : record_from_dds(arguments, known, stop);
 }
 
 }  // namespace

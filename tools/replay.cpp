@@ -15,7 +15,8 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
-  5  the recording is damaged; what was read before the damage gave no reason for 1
+  5  the recording is damaged, or SIGINT or SIGTERM stopped the replay with --offline; what came before gave no
+     reason for 1
 
 Examples:
   clearance-replay run.mcap --rate 2 --start 10 --end 20
@@ -137,9 +138,7 @@ int run(int argc, char** argv, StopSignal& stop) {
                  arguments.end_s);
     return kUsage;
   }
-  if (!arguments.offline) return replay_over_dds(arguments, stop);
-  stop.release();
-  return replay_without_dds(arguments);
+  return arguments.offline ? replay_without_dds(arguments, stop) : replay_over_dds(arguments, stop);
 }
 
 }  // namespace

@@ -102,4 +102,13 @@ bool may_write(const char* program, const std::filesystem::path& file, bool forc
   return false;
 }
 
+void remove_unfinished(const char* program, const std::filesystem::path& file) {
+  std::error_code failed;
+  const bool regular =
+      std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failed));
+  const bool removed = regular && std::filesystem::remove(file, failed);
+  std::fprintf(stderr, "%s: %s was not finished%s\n", program, file.c_str(),
+               removed ? " and is removed" : "; what is in it is not all");
+}
+
 }  // namespace clearance

@@ -24,8 +24,7 @@ enum ExitCode : int {
 };
 
 // All that main() does: calls `body` and returns its exit code; what it throws goes to stderr as
-// "NAME: what". The signals that stop a program wait for `body` from the first moment on; what does
-// not look at them releases them.
+// "NAME: what". The signals that stop a program wait for `body` from the first moment on.
 [[nodiscard]] int run_program(const char* name, const std::function<int(StopSignal&)>& body);
 
 // Adds --version. The exit code when there is nothing more to do: --help, --version or wrong usage.
@@ -50,5 +49,9 @@ void add_force(CLI::App& app, bool& force);
 // False, after saying so on stderr, when the file is there and `force` is not given. An empty name
 // is no file.
 [[nodiscard]] bool may_write(const char* program, const std::filesystem::path& file, bool force);
+
+// What the program did not write to its end must not be taken for whole: removes the file, if it
+// is a regular one, and says on stderr what became of it.
+void remove_unfinished(const char* program, const std::filesystem::path& file);
 
 }  // namespace clearance

@@ -29,17 +29,13 @@ StopSignal::StopSignal() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-void StopSignal::release() {
-  std::signal(SIGPIPE, SIG_DFL);
-  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
-
 void StopSignal::end_with(int status, const char* last_words) {
   status_at_the_end = status;
   words_at_the_end = last_words;
   std::signal(SIGINT, end_now);
   std::signal(SIGTERM, end_now);
-  release();
+  std::signal(SIGPIPE, SIG_DFL);
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 bool StopSignal::wait(std::int64_t timeout_ms) {

@@ -14,11 +14,7 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  // For work that nobody has to end in order: gives the signals back to the system, also one that
-  // has come already.
-  void release();
-
-  // The same where the exit status tells something: a signal, also one that has come already, says
+  // For work that nobody has to end in order: a signal, also one that has come already, says
   // `last_words` on stderr and ends the program with `status`. The words must stay.
   void end_with(int status, const char* last_words);
 

@@ -51,11 +51,23 @@ class Ids {
   std::map<std::string, std::uint32_t> ids_;
 };
 
+// Whether to stop in front of this row, from 0.
+bool stops_at(std::size_t row, const std::function<bool()>& stop) {
+  constexpr std::size_t kRowsBetween = 1024;
+  return stop && row % kRowsBetween == 0 && stop();
+}
+
 // The first pass: everything that can be wrong with the log.
-void check(const std::filesystem::path& csv, Ids& ids, CsvRecordingResult& result) {
+void check(const std::filesystem::path& csv, Ids& ids, const std::function<bool()>& stop,
+           CsvRecordingResult& result) {
   CsvPoseLog log(csv);
   CsvPose pose;
   while (log.next(pose)) {
+    if (stops_at(result.rows, stop)) {
+      result.error = "stopped after " + std::to_string(result.rows) + " rows of " + csv.string() +
+                     " were checked: nothing was written";
+      return;
+    }
     if (!ids.know(pose.object)) {
       result.error = log.located("the cell has no object '" + pose.object + "'" +
                                  did_you_mean(pose.object, ids.names()));
@@ -129,25 +141,32 @@ bool CsvPoseLog::next(CsvPose& pose) {
 }
 
 CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::filesystem::path& out,
-                              const Scene* scene) {
+                              const Scene* scene, const std::function<bool()>& stop) {
   CsvRecordingResult result;
   Ids ids(scene);
-  check(csv, ids, result);
+  check(csv, ids, stop, result);
   if (!result.error.empty()) return result;
 
   const Scene made = scene == nullptr ? scene_of(csv, ids.names()) : Scene{};
   const Scene& named = scene == nullptr ? made : *scene;
   RecordingWriter writer(out, named.topics);
+  result.begun = writer.ok();
   writer.catalogue(*make_catalogue(named), result.first_ns);
   BatchWriter batches(writer, named.revision);
   CsvPoseLog log(csv);
   CsvPose pose;
-  while (log.next(pose)) {
+  std::size_t rows = 0;
+  for (; log.next(pose) && !stops_at(rows, stop); ++rows) {
     if (!ids.fixed(pose.object)) batches.add(ids.id(pose.object), pose);
   }
   batches.flush();
   result.samples = static_cast<std::size_t>(batches.written());
-  if (!writer.close()) result.error = writer.error();
+  if (!writer.close()) {
+    result.error = writer.error();
+  } else if (rows < result.rows) {
+    result.error = "stopped after " + std::to_string(rows) + " of " + std::to_string(result.rows) +
+                   " rows of " + csv.string();
+  }
   return result;
 }
 

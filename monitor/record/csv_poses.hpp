@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ class CsvPoseLog {
 };
 
 struct CsvRecordingResult {
-  std::string error;  // empty: the recording is complete
+  std::string error;   // empty: the recording is complete
+  bool begun = false;  // `out` was written to: where there is an error, it is not complete
   std::size_t rows = 0, samples = 0;
   std::vector<std::string> objects;        // in the order of their first row
   std::vector<std::string> fixed_objects;  // fixed in the cell: their rows were left out
@@ -47,8 +49,9 @@ struct CsvRecordingResult {
 
 // `scene`: its ids are used, and every object of the log must be in it. Without one, ids are given
 // in the order of appearance and the recording names them. The log is checked whole before `out` is
-// written.
+// written. `stop` is asked every 1,024 rows: true ends it, with an error that says how far it came.
 [[nodiscard]] CsvRecordingResult record_csv(const std::filesystem::path& csv,
-                                            const std::filesystem::path& out, const Scene* scene);
+                                            const std::filesystem::path& out, const Scene* scene,
+                                            const std::function<bool()>& stop = {});
 
 }  // namespace clearance

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
@@ -13,10 +12,6 @@
 
 namespace clearance {
 namespace {
-
-std::string counted(std::uint64_t count, const std::string& what) {
-  return std::to_string(count) + " " + what;
-}
 
 std::int64_t whole_ns(double seconds) {
   constexpr double kCentury = 3.2e9;  // s: fits
@@ -46,6 +41,8 @@ class Replay {
   OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
 
  private:
+  void run_ticks(const std::function<void(const ReplayedTick&)>& on_tick);
+  void judge_the_whole();
   [[nodiscard]] std::string refusal() const;
   void begin_tick(const TickInput& input);
   void end_tick(const TickInput& input, const Report& report,
@@ -104,28 +101,39 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   result_.error = refusal();
   if (!result_.error.empty()) return std::move(result_);
   result_.notes = feed_.objects().notes();
+  run_ticks(on_tick);
+  result_.damage = feed_.damage();
+  result_.batches = feed_.batches();
+  if (!result_.stopped) judge_the_whole();
+  note_counts();
+  return std::move(result_);
+}
+
+void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) {
   TickInput input;
   while (feed_.next(input)) {
+    result_.stopped = options_.stop && options_.stop();
+    if (result_.stopped) return;
     begin_tick(input);
     const Report& report = monitor_->tick(input.samples, input.now_ns);
     end_tick(input, report, on_tick);
     show_progress();
   }
   if (options_.progress) options_.progress(1.0);
-  result_.damage = feed_.damage();
-  result_.batches = feed_.batches();
+}
+
+// What can be said only after the last tick.
+void Replay::judge_the_whole() {
   compare_zones();
   if (in_window_ == 0) {
     result_.error = nothing_in_window();
-    return std::move(result_);
+    return;
   }
   if (options_.compare && result_.compared == 0) {
     fail(0, result_.last_ns, "no report could be compared");
   }
   finish_reference();
   if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
-  note_counts();
-  return std::move(result_);
 }
 
 void Replay::begin_tick(const TickInput& input) {
@@ -236,7 +244,7 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
 
 void Replay::note_counts() {
   const auto note = [this](std::uint64_t count, const std::string& what) {
-    if (count > 0) result_.notes.push_back(counted(count, what));
+    if (count > 0) result_.notes.push_back(std::to_string(count) + " " + what);
   };
   note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
   note(feed_.of_other_scenes(), "batches were made for another scene and left out");
@@ -255,26 +263,6 @@ void Replay::show_progress() {
 }
 
 }  // namespace
-
-std::string TickNumber::text() const {
-  const std::string name = "tick " + std::to_string(cycle);
-  if (recorded == cycle) return name;
-  return name + " of the replay, " + std::to_string(recorded) + " of the daemon";
-}
-
-std::string OfflineReplay::text() const {
-  std::string out;
-  const auto line = [&out](const std::string& what) { out.append(what).append("\n"); };
-  if (!error.empty()) line(error);
-  for (const ReplayFailure& failure : failures) {
-    std::array<char, 32> when;
-    std::snprintf(when.data(), when.size(), " (%.6f s): ", failure.time_s);
-    line(failure.tick.text() + when.data() + failure.what);
-  }
-  if (!damage.empty()) line(damage);
-  for (const std::string& note : notes) line(note);
-  return out;
-}
 
 OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
                              const OfflineReplayOptions& options,

@@ -47,6 +47,7 @@ struct OfflineReplayOptions {
   double tolerance = 1e-6;
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
+  std::function<bool()> stop = {};  // asked before every tick: true ends the replay there
 };
 
 // The tick that was just run.
@@ -75,6 +76,7 @@ struct ReplayFailure {
 struct OfflineReplay {
   std::string error;                    // not empty: it could not be run at all
   std::string damage;                   // not empty: the recording was read up to a damage
+  bool stopped = false;                 // options.stop ended it: nothing is known of what follows
   std::vector<std::string> notes;       // what a person should know, in sentences
   std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
 

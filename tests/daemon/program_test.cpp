@@ -16,18 +16,6 @@ TEST(RunProgram, KeepsASignalThatComesAtOnceUntilTheBodyAsks) {
   EXPECT_EXIT(std::_Exit(run_program("told-to-stop", body)), testing::ExitedWithCode(kOk), "");
 }
 
-TEST(RunProgram, EndsBySignalWhereTheBodyDoesNotWantToBeAsked) {
-  for (const bool early : {false, true}) {
-    const auto body = [early](StopSignal& signal) {
-      if (early) std::raise(SIGINT);
-      signal.release();
-      std::raise(SIGINT);
-      return kOk;
-    };
-    EXPECT_EXIT(std::_Exit(run_program("interrupted", body)), testing::KilledBySignal(SIGINT), "");
-  }
-}
-
 TEST(RunProgram, EndsWithAStatusOfItsOwnWhereThatTellsSomething) {
   for (const bool early : {false, true}) {
     const auto body = [early](StopSignal& signal) {

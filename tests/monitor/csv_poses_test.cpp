@@ -146,6 +146,23 @@ TEST_F(CsvPoses, WithoutACellObjectsAreNamedInTheOrderOfAppearance) {
   EXPECT_STREQ("hand", catalogue->objects._buffer[1].name);
 }
 
+TEST_F(CsvPoses, StoppedHalfWayItSaysHowFarItCame) {
+  std::string log = kHeader;
+  for (int row = 0; row < 3000; ++row) log += std::to_string(row) + ",tool,1,2,3,1,0,0,0\n";
+  write_text(folder / "log.csv", log);
+  const auto stopped_when_asked = [this](int times) {
+    return record_csv(folder / "log.csv", folder / "a.mcap", nullptr,
+                      [times]() mutable { return --times == 0; });
+  };
+  const CsvRecordingResult checking = stopped_when_asked(2);
+  EXPECT_THAT(checking.error, HasSubstr("stopped after 1024 rows of "));
+  EXPECT_FALSE(checking.begun);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
+  const CsvRecordingResult writing = stopped_when_asked(6);
+  EXPECT_THAT(writing.error, HasSubstr("stopped after 2048 of 3000 rows of "));
+  EXPECT_TRUE(writing.begun);
+}
+
 TEST_F(CsvPoses, ObjectThatTheCellLacksIsNamedWithItsLineAndNothingIsWritten) {
   const Scene scene = bench_cell();
   write_text(folder / "log.csv",

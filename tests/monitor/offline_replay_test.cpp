@@ -53,6 +53,27 @@ TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
             std::ranges::count(messages_of(folder / "a.mcap"), TopicKind::kDistances, &Kept::kind));
 }
 
+TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {
+  record_run(scene, run);
+  int ticks = 0;
+  const OfflineReplay result = replay_offline(
+      scene, run, {.expect_min_distance = 0.01, .stop = [&ticks] { return ticks == 50; }},
+      [&ticks](const ReplayedTick&) { ++ticks; });
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(50, ticks);
+  EXPECT_EQ(50u, result.ticks);
+  EXPECT_THAT(result.text(), HasSubstr("stopped after 50 ticks: nothing is known of the rest"));
+  EXPECT_TRUE(result.ok()) << result.text();
+}
+
+TEST_F(OfflineReplayTest, StoppedBeforeTheFirstTickItFindsNoFault) {
+  record_run(scene, run);
+  const OfflineReplay result =
+      replay({.start_s = 0.1, .compare = Comparison::kBits, .stop = [] { return true; }});
+  EXPECT_TRUE(result.stopped);
+  EXPECT_TRUE(result.ok()) << result.text();
+}
+
 TEST_F(OfflineReplayTest, NamesTheFirstTickAndFieldThatDiffers) {
   record_run(scene, run);
   rewrite([](std::vector<Kept>& messages) {

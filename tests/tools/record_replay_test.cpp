@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "monitor/record/csv_poses.hpp"
 #include "tests/monitor/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -52,6 +54,21 @@ class RecordReplay : public testing::Test {
   // Exit code; what it wrote goes to `output`.
   int run(const std::string& program, const std::vector<std::string>& arguments) {
     ChildProcess child(program, arguments);
+    const int status = child.wait();
+    output = child.output();
+    return status;
+  }
+  // The same with a signal that waits for the program before it has begun.
+  int run_stopped(int signal, const std::string& program,
+                  const std::vector<std::string>& arguments) {
+    sigset_t both, before;
+    sigemptyset(&both);
+    sigaddset(&both, SIGINT);
+    sigaddset(&both, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &both, &before);
+    ChildProcess child(program, arguments);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    child.signal(signal);
     const int status = child.wait();
     output = child.output();
     return status;
@@ -203,6 +220,24 @@ TEST_F(RecordReplay, NeverWritesOverAFileThatItReads) {
   const std::string log = read_text(folder / "log.csv");
   EXPECT_EQ(2, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("log.csv"), "--force"}));
   EXPECT_EQ(log, read_text(folder / "log.csv"));
+}
+
+TEST_F(RecordReplay, WhatASignalStopsEndsInOrderAndLeavesNothingHalf) {
+  const std::vector<std::string> from_csv = {"--from-csv", path("log.csv"), "-o", path("no.mcap")};
+  ASSERT_EQ(0, record_log()) << output;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EQ(1, run_stopped(signal, kRecord, from_csv));
+    EXPECT_THAT(output, HasSubstr("stopped after 0 rows of " + path("log.csv") + " were checked"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "no.mcap"));
+    write_text(folder / "old.mcap", "precious");
+    EXPECT_EQ(5, run_stopped(signal, kReplay,
+                             {"--offline", "--cell", path("cell.yaml"), path("run.mcap"), "--force",
+                              "-o", path("old.mcap"), "--csv", path("t.csv")}));
+    EXPECT_THAT(output, HasSubstr("stopped after 0 ticks"));
+    EXPECT_THAT(output, HasSubstr(path("t.csv") + " was not finished and is removed"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "t.csv"));
+    EXPECT_EQ("precious", read_text(folder / "old.mcap"));
+  }
 }
 
 TEST_F(RecordReplay, TwoOutputsAreTwoFiles) {

@@ -20,7 +20,8 @@ struct RecordArguments {
 
 // tools/record/from_csv.cpp, tools/record/subscribe.cpp. The exit code. `scene`: the cell; null:
 // none given.
-[[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene);
+[[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene,
+                                  StopSignal& stop);
 [[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene,
                                   StopSignal& stop);
 

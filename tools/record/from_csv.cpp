@@ -6,10 +6,12 @@
 
 namespace clearance {
 
-int record_from_csv(const RecordArguments& arguments, const Scene* scene) {
-  const CsvRecordingResult result = record_csv(arguments.from_csv, arguments.out, scene);
+int record_from_csv(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
+  const CsvRecordingResult result =
+      record_csv(arguments.from_csv, arguments.out, scene, [&stop] { return stop.wait(0); });
   if (!result.error.empty()) {
     std::fprintf(stderr, "clearance-record: %s\n", result.error.c_str());
+    if (result.begun) remove_unfinished("clearance-record", arguments.out);
     return kFailed;
   }
   for (const std::string& object : result.fixed_objects) {

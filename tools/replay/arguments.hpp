@@ -40,7 +40,7 @@ struct ReplayArguments {
 };
 
 // tools/replay/offline.cpp, tools/replay/publish.cpp. The exit code.
-[[nodiscard]] int replay_without_dds(const ReplayArguments& arguments);
+[[nodiscard]] int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop);
 [[nodiscard]] int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop);
 
 }  // namespace clearance

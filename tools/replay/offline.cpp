@@ -71,46 +71,83 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, double toler
   }
 }
 
-int replay_in(Scene& scene, const ReplayArguments& arguments) {
+// What was asked for of -o and --csv.
+class Outputs {
+ public:
+  Outputs(const ReplayArguments& arguments, const Scene& scene) : arguments_(arguments) {
+    if (!arguments.out.empty()) recording_.emplace(arguments.out, scene);
+    if (!arguments.csv.empty()) csv_.emplace(arguments.csv, scene, !arguments.published);
+  }
+  // False, after saying why, when a file cannot be made.
+  [[nodiscard]] bool ok() const { return !csv_ || said(csv_->error()); }
+
+  void add(const ReplayedTick& tick) {
+    begun_ = true;
+    if (recording_) recording_->add(tick);
+    if (csv_) csv_->add(tick);
+  }
+  // False, after saying why, when not all is written.
+  bool close() {
+    const bool recorded = !recording_ || recording_->close() || said(recording_->error());
+    const bool tabled = !csv_ || csv_->close() || said(csv_->error());
+    return recorded && tabled;
+  }
+  // A recording is made with its first tick only: before that the file is somebody else's.
+  void abandon() {
+    const bool recorded = recording_ && begun_, tabled = csv_.has_value();
+    recording_.reset();
+    csv_.reset();
+    if (recorded) remove_unfinished("clearance-replay", arguments_.out);
+    if (tabled) remove_unfinished("clearance-replay", arguments_.csv);
+  }
+
+ private:
+  // Whether there is nothing to say.
+  static bool said(const std::string& error) {
+    if (!error.empty()) say(error);
+    return error.empty();
+  }
+
+  const ReplayArguments& arguments_;
+  std::optional<ReportRecorder> recording_;
+  std::optional<ReportCsv> csv_;
+  bool begun_ = false;
+};
+
+// The exit code of a replay that was run, after its outputs are done with.
+int finish(const OfflineReplay& replay, Outputs& outputs) {
+  bool written = true;
+  if (replay.stopped) {
+    outputs.abandon();
+  } else {
+    written = outputs.close();
+  }
+  if (!replay.ok() || !written) return kFailed;
+  return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
+}
+
+int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) {
   if (arguments.evaluate_all || !arguments.reference.empty()) {
     scene.evaluate_all = true;
     scene.budget = std::numeric_limits<std::uint32_t>::max();
   }
-  std::optional<ReportRecorder> out;
-  std::optional<ReportCsv> csv;
-  if (!arguments.out.empty()) out.emplace(arguments.out, scene);
-  if (!arguments.csv.empty()) csv.emplace(arguments.csv, scene, !arguments.published);
-  if (csv && !csv->error().empty()) {
-    say(csv->error());
-    return kFailed;
-  }
+  Outputs outputs(arguments, scene);
+  if (!outputs.ok()) return kFailed;
 
   ProgressBar bar(arguments.progress);
   OfflineReplayOptions options = options_of(arguments);
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };
+  options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
   const OfflineReplay replay =
-      replay_offline(scene, arguments.recording, options, [&](const ReplayedTick& tick) {
-        if (out) out->add(tick);
-        if (csv) csv->add(tick);
-      });
+      replay_offline(scene, arguments.recording, options,
+                     [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
   std::fputs(replay.text().c_str(), stderr);
   if (!replay.error.empty()) return kFailed;
   print_summary(scene, replay, arguments.tolerance, elapsed.count());
-
-  bool written = true;
-  if (out && !out->close()) {
-    say(out->error());
-    written = false;
-  }
-  if (csv && !csv->close()) {
-    say(csv->error());
-    written = false;
-  }
-  if (!replay.ok() || !written) return kFailed;
-  return replay.damage.empty() ? kOk : kIncomplete;
+  return finish(replay, outputs);
 }
 
 bool are_one_file(const std::filesystem::path& first, const std::filesystem::path& second) {
@@ -121,7 +158,7 @@ bool are_one_file(const std::filesystem::path& first, const std::filesystem::pat
 
 }  // namespace
 
-int replay_without_dds(const ReplayArguments& arguments) {
+int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
   if (are_one_file(arguments.out, arguments.csv)) {
     say("-o and --csv name the same file; expected one for each");
     return kUsage;
@@ -142,7 +179,7 @@ int replay_without_dds(const ReplayArguments& arguments) {
           "with --cell");
     return kBadCell;
   }
-  return replay_in(*scene, arguments);
+  return replay_in(*scene, arguments, stop);
 }
 
 }  // namespace clearance
