@@ -17,8 +17,7 @@ bool same_parts(const Object& left, const Object& right) {
                     same);
 }
 
-// Whether a hull is much simpler than the object.
-bool is_fine(const Object& object) {
+bool would_be_simpler_as_hull(const Object& object) {
   return object.parts.size() > 1 ||
          (object.parts.size() == 1 && object.parts[0].shape.facets.size() > kFineFacets);
 }
@@ -41,7 +40,7 @@ std::vector<EnclosingHull> enclosing_hulls(const Scene& scene) {
   std::vector<std::size_t> originals;  // objects whose hull was made
   for (const Object& object : scene.objects) {
     EnclosingHull hull;
-    if (is_fine(object)) {
+    if (would_be_simpler_as_hull(object)) {
       const auto original = std::find_if(
           originals.begin(), originals.end(),
           [&](std::size_t earlier) { return same_parts(scene.objects[earlier], object); });

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
+#include <stdexcept>
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
@@ -104,20 +105,15 @@ constexpr OnceWrong kOnceWrong[] = {
 
 TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
   for (const OnceWrong& once : kOnceWrong) {
-    for (const hard::CaseFamily& family : hard::case_families()) {
-      if (std::string(family.name) != once.family) continue;
-      Random random(once.seed);
-      const hard::HardCase c = family.make(random);
-      DistanceJudge judge(c.a, c.b);
-      TrackingState state;
-      for (const char* how : {"cold", "tracked"}) {
-        SCOPED_TRACE(how);
-        const DistanceResult result = judge.ask(c.pose_a, c.pose_b, state);
-        const auto faults =
-            judge.faults(result, judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
-        EXPECT_TRUE(faults.empty())
-            << once.family << ' ' << once.seed << ": " << once.story << joined(faults);
-      }
+    const hard::HardCase c = hard::case_of(once.family, once.seed);
+    DistanceJudge judge(c.a, c.b);
+    TrackingState state;
+    for (const char* how : {"cold", "tracked"}) {
+      SCOPED_TRACE(how);
+      const DistanceResult result = judge.ask(c.pose_a, c.pose_b, state);
+      const auto faults = judge.faults(result, judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
+      EXPECT_TRUE(faults.empty()) << once.family << ' ' << once.seed << ": " << once.story
+                                  << joined(faults);
     }
   }
 }
@@ -126,19 +122,15 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
 // see them, the witness points would meet along the normal.
 TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {
   for (const std::uint64_t seed : {3102001, 1102104, 3702104}) {
-    for (const hard::CaseFamily& family : hard::case_families()) {
-      if (std::string(family.name) != "selfsame") continue;
-      Random random(seed);
-      const hard::HardCase c = family.make(random);
-      DistanceJudge judge(c.a, c.b);
-      const oracle::ExactDistance truth = judge.truth(c.pose_a, c.pose_b);
-      TrackingState state;
-      for (int k = 0; k < 3; ++k) {
-        const DistanceResult r = judge.ask(c.pose_a, c.pose_b, state);
-        EXPECT_GE(truth.compare(r.lower), 0) << seed;
-        EXPECT_LE(truth.compare(r.upper), 0) << seed;
-        EXPECT_LE(r.upper - r.lower, 1.5e-14 * judge.size(truth, c.pose_a, c.pose_b)) << seed;
-      }
+    const hard::HardCase c = hard::case_of("selfsame", seed);
+    DistanceJudge judge(c.a, c.b);
+    const oracle::ExactDistance truth = judge.truth(c.pose_a, c.pose_b);
+    TrackingState state;
+    for (int k = 0; k < 3; ++k) {
+      const DistanceResult r = judge.ask(c.pose_a, c.pose_b, state);
+      EXPECT_GE(truth.compare(r.lower), 0) << seed;
+      EXPECT_LE(truth.compare(r.upper), 0) << seed;
+      EXPECT_LE(r.upper - r.lower, 1.5e-14 * judge.size(truth, c.pose_a, c.pose_b)) << seed;
     }
   }
 }
@@ -146,21 +138,22 @@ TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {
 TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
   // On a wedge without end, 1e17 m out, rounding took the point 23 m off its facet: the box was
   // said to touch it.
-  Random random(141500011);
-  for (const hard::CaseFamily& family : hard::case_families()) {
-    if (std::string(family.name) != "without_end") continue;
-    const hard::HardCase c = family.make(random);
-    DistanceJudge judge(c.a, c.b);
-    const auto truth = judge.truth(c.pose_a, c.pose_b);
-    for (const bool deep : {false, true}) {
-      TrackingState state;
-      state.a = {2, deep, 0, Vec3(-1.53301e17, 3.15683e16, 0.0)};
-      state.b = {0, false, 3, Vec3(-1.85647e16, 2.07706e16, -7.44492e16)};
-      const auto faults =
-          judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
-      EXPECT_TRUE(faults.empty()) << joined(faults);
-    }
+  const hard::HardCase c = hard::case_of("without_end", 141500011);
+  DistanceJudge judge(c.a, c.b);
+  const auto truth = judge.truth(c.pose_a, c.pose_b);
+  for (const bool deep : {false, true}) {
+    TrackingState state;
+    state.a = {2, deep, 0, Vec3(-1.53301e17, 3.15683e16, 0.0)};
+    state.b = {0, false, 3, Vec3(-1.85647e16, 2.07706e16, -7.44492e16)};
+    const auto faults =
+        judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
+    EXPECT_TRUE(faults.empty()) << joined(faults);
   }
+}
+
+TEST(HardCases, OfAFamilyThatDoesNotExistAreAnError) {
+  EXPECT_NO_THROW((void)hard::case_of("slivers", 1));
+  EXPECT_THROW((void)hard::case_of("sliver", 1), std::invalid_argument);
 }
 
 class DistanceAlongMotions : public testing::TestWithParam<hard::MotionFamily> {};

@@ -1,6 +1,8 @@
 #include "tests/shared/hard_cases.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/exact_placement.hpp"
@@ -321,6 +323,13 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
 }  // namespace
 
 std::span<const CaseFamily> case_families() { return kCaseFamilies; }
+
+HardCase case_of(const std::string& family, std::uint64_t seed) {
+  const auto* const found = std::ranges::find(kCaseFamilies, family, &CaseFamily::name);
+  if (found == std::end(kCaseFamilies)) throw std::invalid_argument("no hard family " + family);
+  Random random(seed);
+  return found->make(random);
+}
 
 void move_together(HardCase& c, const Quat& turn, const Vec3& shift) {
   for (Pose* pose : {&c.pose_a, &c.pose_b}) {

@@ -41,6 +41,8 @@ struct MotionFamily {
 
 [[nodiscard]] std::span<const CaseFamily> case_families();
 [[nodiscard]] std::span<const MotionFamily> motion_families();
+// The case of this seed. Throws std::invalid_argument when there is no such family.
+[[nodiscard]] HardCase case_of(const std::string& family, std::uint64_t seed);
 
 // Moves B along the line between the closest points until the gap is about `gap` (negative:
 // overlapping by that much). The pair must be apart to begin with, else nothing is moved.
