@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Crowd {
   std::string name;
   Scene scene;
   std::vector<Orbit> orbits;
+  std::map<std::string, double> swept;  // what a sweep chose: a counter each
 
   // A sample for everything that moves at `t_s` seconds, stamped `stamp_ns`.
   void samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const;

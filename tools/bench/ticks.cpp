@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cmath>
 
 #include "tools/bench/cpu_clock.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -77,6 +78,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
   state.counters["start_ms"] = 1e-6 * construction;
   state.counters["start_tick_max_us"] = 1e-3 * std::ranges::max(start_up);
   state.counters["hash"] = hash.value();
+  for (const auto& [what, value] : crowd.swept) state.counters[what] = value;
   return times;
 }
 
@@ -145,12 +147,19 @@ void register_workers(const std::string& name, int ticks, const MakeCrowd& make)
   }
 }
 
+Crowd swept_crowd(const OrbitingOptions& options) {
+  Crowd crowd = orbiting_crowd(options);
+  crowd.swept = {{"objects", options.count},
+                 {"speed", options.speed},
+                 {"density", std::pow(options.spacing, -3.0)}};
+  return crowd;
+}
+
 // Cost against the number of pairs, speed and density.
 void register_sweeps() {
   const auto sweep = [](const std::string& name, const OrbitingOptions& options) {
     const int plain = options.count > 500 ? 10 : 50;
-    register_all("sweep/" + name, {1'000, plain, 100},
-                 [options] { return orbiting_crowd(options); });
+    register_all("sweep/" + name, {1'000, plain, 100}, [options] { return swept_crowd(options); });
   };
   for (const std::uint32_t count : {30u, 100u, 300u, 1000u}) {
     sweep("objects/" + std::to_string(count), {.count = count, .moving = count});

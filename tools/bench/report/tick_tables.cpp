@@ -72,31 +72,62 @@ std::vector<Row> sorted_rows(const Figures& figures, const std::string& prefix) 
   return rows;
 }
 
-void add_rows(const Figures& figures, const std::string& prefix, Table& table) {
-  for (const auto& [name, row] : sorted_rows(figures, prefix)) {
-    const Figure& ours = *row;
-    const Figure* fcl = figures.at(name + "/fcl");
-    table.row({name.substr(prefix.size()), print("%.0f", ours.counted("pairs")), three(ours),
-               own(ours), noise(ours), against(figures.at(name + "/plain"), ours),
-               against(fcl, ours), error(fcl), print("%.0f", ours.counted("queries")),
-               print("%.3g", ours.counted("proved")), print("%.0f", ours.counted("bytes_per_pair")),
-               print("%.1f", ours.counted("start_ms"))});
-  }
+// What every row tells of a tick, behind the columns that say which tick it is.
+constexpr const char* kOfATick[] = {"pairs",
+                                    "tick, median / p99.9 / max us",
+                                    "its own, p99.9 / max us (runs)",
+                                    "arithmetic of that median, p99.9 / max us",
+                                    "plain, median us",
+                                    "FCL's minimum alone, median us",
+                                    "its error, m (ticks)",
+                                    "queries",
+                                    "proved",
+                                    "bytes a pair",
+                                    "start-up ms"};
+
+Table head(Cells which) {
+  which.insert(which.end(), std::begin(kOfATick), std::end(kOfATick));
+  return Table(which);
 }
 
-Table head(const char* cell) {
-  return Table({cell, "pairs", "tick, median / p99.9 / max us", "its own, p99.9 / max us (runs)",
-                "arithmetic of that median, p99.9 / max us", "plain, median us",
-                "FCL's minimum alone, median us", "its error, m (ticks)", "queries", "proved",
-                "bytes a pair", "start-up ms"});
+void add_row(const Figures& figures, const Row& row, Cells which, Table& table) {
+  const Figure& ours = *row.ours;
+  const Figure* fcl = figures.at(row.name + "/fcl");
+  for (const std::string& cell :
+       {print("%.0f", ours.counted("pairs")), three(ours), own(ours), noise(ours),
+        against(figures.at(row.name + "/plain"), ours), against(fcl, ours), error(fcl),
+        print("%.0f", ours.counted("queries")), print("%.3g", ours.counted("proved")),
+        print("%.0f", ours.counted("bytes_per_pair")), print("%.1f", ours.counted("start_ms"))}) {
+    which.push_back(cell);
+  }
+  table.row(which);
+}
+
+std::string cells(const Figures& figures) {
+  const std::string prefix = "tick/";
+  Table table = head({"cell"});
+  for (const Row& row : sorted_rows(figures, prefix)) {
+    add_row(figures, row, {row.name.substr(prefix.size())}, table);
+  }
+  return table.text();
+}
+
+std::string sweeps(const Figures& figures) {
+  const std::string prefix = "sweep/";
+  Table table = head({"sweep", "objects", "speed, m/s", "objects a cubic metre"});
+  for (const Row& row : sorted_rows(figures, prefix)) {
+    const std::string name = row.name.substr(prefix.size());
+    add_row(figures, row,
+            {name.substr(0, name.find('/')), print("%.0f", row.ours->counted("objects")),
+             print("%g", row.ours->counted("speed")), print("%.3g", row.ours->counted("density"))},
+            table);
+  }
+  return table.text();
 }
 
 }  // namespace
 
 std::string tick_tables(const Figures& figures) {
-  Table cells = head("cell"), sweeps = head("sweep");
-  add_rows(figures, "tick/", cells);
-  add_rows(figures, "sweep/", sweeps);
   return "Thread CPU time of one tick; multiples are of our median in the same run. Its own: the "
          "same ticks run "
          "again, each with the least time that it took in any of the runs; what is slow in all of "
@@ -106,10 +137,10 @@ std::string tick_tables(const Figures& figures) {
          "pair evaluated in every tick; not run where that takes seconds. FCL: "
          "DynamicAABBTreeCollisionManager::distance, which gives the minimum over all pairs and "
          "nothing else; its error is against our proved minimum.\n\n" +
-         cells.text() +
-         "300 bodies, all moving at 1 m/s in a grid of 1 m, but for what the row says: the number "
-         "of objects, their speed in m/s, the grid's spacing in m.\n\n" +
-         sweeps.text();
+         cells(figures) +
+         "Bodies in a cubic grid, one in each of its cells, all moving: 300 at 1 m/s in a grid of "
+         "1 m, but for what is swept.\n\n" +
+         sweeps(figures);
 }
 
 }  // namespace clearance::bench
