@@ -10,6 +10,7 @@
 
 #include "monitor/daemon/dds.hpp"
 #include "monitor/daemon/recording.hpp"
+#include "monitor/record/build.hpp"
 
 namespace clearance {
 namespace {
@@ -44,7 +45,7 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body) {
 }
 
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-  app.set_version_flag("--version", "clearance " CLEARANCE_VERSION);
+  app.set_version_flag("--version", std::string("clearance ") + kBuild);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

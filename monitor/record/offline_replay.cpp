@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "monitor/record/build.hpp"
 #include "monitor/record/expectations.hpp"
 #include "monitor/record/tick_feed.hpp"
 #include "monitor/record/zone_difference.hpp"
@@ -24,6 +25,14 @@ std::optional<ReferenceCheck> reference_of(const Scene& scene,
   return ReferenceCheck(scene, options.reference, options.tolerance);
 }
 
+// Behind a difference: whether another build may be the reason.
+std::string other_build(const std::string& recorded) {
+  if (recorded == kBuild) return {};
+  const std::string by = recorded.empty() ? "by a build that the recording does not name"
+                                          : "by another build (" + recorded + ")";
+  return "; it was recorded " + by + ", which may be the reason: this is " + kBuild;
+}
+
 class Replay {
  public:
   Replay(const Scene& scene, const std::filesystem::path& recording,
@@ -31,6 +40,7 @@ class Replay {
       : scene_(scene),
         options_(options),
         has_reports_(outline.has_reports),
+        other_build_(other_build(outline.build)),
         feed_(recording, scene, outline),
         expectations_(scene, options.expect_min_distance, options.expect_no_zone),
         reference_(reference_of(scene, options)),
@@ -61,6 +71,7 @@ class Replay {
   const Scene& scene_;
   const OfflineReplayOptions& options_;
   bool has_reports_;
+  std::string other_build_;  // what to say of it where something differs
   TickFeed feed_;
   Expectations expectations_;
   std::optional<ReferenceCheck> reference_;
@@ -207,7 +218,7 @@ void Replay::compare(const TickInput& input, const Report& report) {
   const std::string what = "the replay differs in " + *difference;
   fail(report.cycle, report.now_ns,
        input.complete
-           ? what
+           ? what + other_build_
            : "poses that this tick used are not in the recording: it cannot be compared (" + what +
                  ")");
 }
@@ -218,7 +229,7 @@ void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
   if (const auto found = zones_.first(feed_.zones())) {
-    fail(found->cycle, found->now_ns, "the replay differs in " + found->what);
+    fail(found->cycle, found->now_ns, "the replay differs in " + found->what + other_build_);
   }
 }
 

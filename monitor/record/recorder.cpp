@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "monitor/record/build.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -27,7 +28,7 @@ Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::i
       zone_written_(scene.zones.size(), false),
       zone_active_(scene.zones.size(), false),
       last_ns_(now_ns) {
-  writer_.catalogue(*make_catalogue(scene), now_ns);
+  writer_.catalogue(*make_catalogue(scene), now_ns, kBuild);
 }
 
 void Recorder::poses(const PoseBatch& batch) {

@@ -1,5 +1,6 @@
 #include "monitor/record/recording_reader.hpp"
 
+#include "monitor/record/recording_writer.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
@@ -40,6 +41,13 @@ bool RecordingReader::next(RecordedMessage& message) {
   return false;
 }
 
+std::string RecordingReader::build() const {
+  const auto about = mcap_.metadata().find(std::string(kRecordingMetadata));
+  if (about == mcap_.metadata().end()) return {};
+  const auto build = about->second.find("build");
+  return build == about->second.end() ? std::string() : build->second;
+}
+
 RecordingOutline outline(const std::filesystem::path& file) {
   RecordingOutline found;
   RecordingReader reader(file);
@@ -50,7 +58,10 @@ RecordingOutline outline(const std::filesystem::path& file) {
   RecordedMessage message;
   CdrDecoder decoder;
   while (reader.next(message)) {
-    if (std::exchange(first, false)) found.first_ns = message.log_ns;
+    if (std::exchange(first, false)) {
+      found.first_ns = message.log_ns;
+      found.build = reader.build();  // stands in front
+    }
     if (message.kind == TopicKind::kDistances) found.has_reports = true;
     if (message.kind == TopicKind::kCatalogue && !found.catalogue) {
       Sample<clearance_msg_Catalogue> sample;

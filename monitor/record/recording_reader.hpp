@@ -35,6 +35,8 @@ class RecordingReader {
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
     return mcap_.summary();
   }
+  // Of the reports, as the metadata seen so far tell it; empty: they do not.
+  [[nodiscard]] std::string build() const;
 
  private:
   McapReader mcap_;
@@ -46,6 +48,7 @@ struct RecordingOutline {
   std::string error;  // not empty: the file cannot be read at all
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one
   bool has_reports = false;
+  std::string build;          // of the reports; empty: the recording does not say
   std::int64_t first_ns = 0;  // log time of the first message
 };
 

@@ -11,15 +11,18 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics
   }
 }
 
-void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue) {
-  mcap_.metadata(kRecordingMetadata, {{"version", CLEARANCE_VERSION},
-                                      {"scene", catalogue.scene},
-                                      {"scene_revision", std::to_string(catalogue.scene_revision)},
-                                      {"cell", catalogue.cell_yaml}});
+void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
+  McapMap about = {{"version", CLEARANCE_VERSION},
+                   {"scene", catalogue.scene},
+                   {"scene_revision", std::to_string(catalogue.scene_revision)},
+                   {"cell", catalogue.cell_yaml}};
+  if (!build.empty()) about["build"] = build;
+  mcap_.metadata(kRecordingMetadata, about);
 }
 
-void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns) {
-  describe(catalogue);
+void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
+                                const std::string& build) {
+  describe(catalogue, build);
   write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
 }
 

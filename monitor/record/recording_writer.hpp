@@ -14,7 +14,8 @@
 
 namespace clearance {
 
-// Name of the metadata record with version, scene, scene_revision and cell (the YAML text).
+// Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
+// build, the one that made the reports (monitor/record/build.hpp), where that is known.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Errors are kept, as McapWriter does. Not for several threads at once.
@@ -23,10 +24,12 @@ class RecordingWriter {
   RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                   const McapWriterOptions& options = {});
 
-  // Ids to names; also kept as metadata. Belongs in front of what uses the ids.
-  void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns);
+  // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
+  // that makes the reports; empty: nobody knows.
+  void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
+                 const std::string& build = {});
   // Only the metadata.
-  void describe(const clearance_msg_Catalogue& catalogue);
+  void describe(const clearance_msg_Catalogue& catalogue, const std::string& build = {});
 
   // `publish_ns`: the source's stamp where there is one.
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "monitor/record/build.hpp"
 #include "tests/monitor/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -75,7 +76,7 @@ TEST(Recorder, CrashCostsNoMoreThanTheLastFifthOfASecond) {
   EXPECT_THAT(reader.error(), HasSubstr("cut off"));
 }
 
-TEST(Recorder, KeepsTheCellAndTheVersionAsMetadata) {
+TEST(Recorder, KeepsTheCellAndTheBuildAsMetadata) {
   const ScratchFolder folder;
   Scene scene = bench_cell();
   scene.yaml = "name: bench\n";
@@ -87,6 +88,9 @@ TEST(Recorder, KeepsTheCellAndTheVersionAsMetadata) {
   EXPECT_EQ("41", about.at("scene_revision"));
   EXPECT_EQ("bench", about.at("scene"));
   EXPECT_FALSE(about.at("version").empty());
+  EXPECT_EQ(kBuild, about.at("build"));
+  EXPECT_THAT(kBuild, testing::StartsWith(about.at("version") + ", "));
+  EXPECT_THAT(kBuild, testing::Not(HasSubstr("/"))) << "a path";
 }
 
 TEST(Recorder, ExistingFileIsKept) {

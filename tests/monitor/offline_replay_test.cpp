@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "monitor/record/build.hpp"
 #include "monitor/record/csv_poses.hpp"
 #include "monitor/record/report_csv.hpp"
 #include "monitor/record/report_recorder.hpp"
@@ -11,6 +12,7 @@
 namespace clearance::test {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -51,6 +53,38 @@ TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
   EXPECT_EQ(read_text(folder / "a.mcap"), read_text(folder / "b.mcap"));
   EXPECT_EQ(200,
             std::ranges::count(messages_of(folder / "a.mcap"), TopicKind::kDistances, &Kept::kind));
+}
+
+TEST_F(OfflineReplayTest, ADifferenceNamesTheBuildsWhereTheyAreNotTheSame) {
+  record_run(scene, run);
+  EXPECT_EQ(kBuild, outline(run).build);
+  std::vector<Kept> messages = messages_of(run);
+  Kept& report = messages[report_of(messages, 5)];
+  const Kept untouched = report;
+  report = altered<clearance_msg_Distances>(
+      report, [](clearance_msg_Distances& content) { ++content.queries; });
+  const auto text_of_a_run_by = [&](const std::string& build) {
+    write_messages(run, messages, build);
+    return replay({.compare = Comparison::kBits}).text();
+  };
+  const std::string ours = std::string("which may be the reason: this is ") + kBuild;
+  EXPECT_THAT(text_of_a_run_by("0.0.1"),
+              HasSubstr("; it was recorded by another build (0.0.1), " + ours));
+  EXPECT_THAT(text_of_a_run_by(""),
+              HasSubstr("; it was recorded by a build that the recording does not name, " + ours));
+  EXPECT_THAT(text_of_a_run_by(kBuild),
+              AllOf(HasSubstr("differs in queries"), Not(HasSubstr("build"))));
+  report = untouched;
+  EXPECT_EQ("", text_of_a_run_by("0.0.1"));
+}
+
+TEST_F(OfflineReplayTest, AZoneThatDiffersNamesTheBuildsToo) {
+  record_run(scene, run);
+  std::vector<Kept> messages = messages_of(run);
+  std::erase_if(messages, [](const Kept& message) { return message.kind == TopicKind::kZones; });
+  write_messages(run, messages, "0.0.1");
+  EXPECT_THAT(replay({.compare = Comparison::kBits}).text(),
+              HasSubstr("recorded by another build (0.0.1)"));
 }
 
 TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {

@@ -87,15 +87,6 @@ inline std::vector<Kept> messages_of(const std::filesystem::path& file) {
   return all;
 }
 
-inline void write_messages(const std::filesystem::path& file, const std::vector<Kept>& messages) {
-  RecordingWriter writer(file, Topics{});
-  for (const Kept& message : messages) {
-    writer.write(message.kind, message.log_ns, message.publish_ns,
-                 std::span<const std::byte>(message.cdr));
-  }
-  EXPECT_TRUE(writer.close()) << writer.error();
-}
-
 // The message with its content changed.
 template <class T>
 Kept altered(const Kept& message, const std::function<void(T&)>& change) {
@@ -112,6 +103,19 @@ Sample<T> decoded(const Kept& message) {
   Sample<T> sample;
   EXPECT_TRUE(CdrDecoder().decode(message.cdr, sample));
   return sample;
+}
+
+// `build`: the one that is said to have made the reports; empty: none is named. The first
+// message is then a catalogue.
+inline void write_messages(const std::filesystem::path& file, const std::vector<Kept>& messages,
+                           const std::string& build = {}) {
+  RecordingWriter writer(file, Topics{});
+  if (!build.empty()) writer.describe(*decoded<clearance_msg_Catalogue>(messages.front()), build);
+  for (const Kept& message : messages) {
+    writer.write(message.kind, message.log_ns, message.publish_ns,
+                 std::span<const std::byte>(message.cdr));
+  }
+  EXPECT_TRUE(writer.close()) << writer.error();
 }
 
 }  // namespace clearance::test

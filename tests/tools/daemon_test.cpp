@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "monitor/monitor.hpp"
+#include "monitor/record/build.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -228,7 +229,7 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   EXPECT_TRUE(peer.wrote("'not an address'")) << peer.output();
   ChildProcess version(test::kDaemon, {"--version"});
   EXPECT_EQ(version.wait(), 0);
-  EXPECT_TRUE(version.wrote("clearance ")) << version.output();
+  EXPECT_TRUE(version.wrote(std::string("clearance ") + kBuild)) << version.output();
   const test::CellFile cell(test::small_cell("small"));
   ChildProcess interface(test::kDaemon, {cell.path(), "--interface", "nosuch0"});
   EXPECT_EQ(interface.wait(), 4);
