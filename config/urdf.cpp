@@ -27,7 +27,8 @@ class XmlReader {
   explicit XmlReader(const std::filesystem::path& file) : file_(file.string()) {
     if (document_.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS) {
       throw Refusal(file_ + ":" + std::to_string(std::max(1, document_.ErrorLineNum())) +
-                    ": not readable as XML: " + document_.ErrorName());
+                    ": not readable as XML: " + document_.ErrorName() +
+                    "; expected URDF or SRDF, with xacro expanded");
     }
   }
 

@@ -4,6 +4,9 @@
 // It is how anyone checks the core against anything: every figure the core gives is in the answer,
 // and doubles are printed so that they read back as the same doubles.
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,6 +14,7 @@
 #include <vector>
 
 #include "monitor/daemon/program.hpp"
+#include "monitor/record/unreadable.hpp"
 #include "tools/distance/answerer.hpp"
 #include "tools/distance/exact_check.hpp"
 
@@ -35,7 +39,8 @@ the bodies overlap a point of both; penetration, penetration_lower, penetration_
 translation that parts them (0 where they are apart); normal: its direction for b, as that from a to b otherwise;
 deepest_a, deepest_b: the points that meet when b has been moved by it; status, iterations. All in the world; for a
 motion each is a list with one entry a pose. Numbers read back as the same doubles; null is "unknown".
-A line that cannot be answered gets {"line": n, "error": "..."} and the rest goes on.)";
+A line that cannot be answered gets {"line": n, "error": "..."} and the rest goes on; the first such line is told
+on stderr as well.)";
 
 constexpr const char* kExample =
     R"(With --check, cases carry exact answers: "distance" as text ("distances": a list of them, for a motion), and if
@@ -85,7 +90,9 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
     } catch (const nlohmann::json::exception& error) {
       answer = {{"line", line_number}, {"error", std::string("not JSON: ") + error.what()}};
     }
-    bad += answer.contains("error") ? 1 : 0;
+    const bool is_bad = answer.contains("error");
+    if (is_bad && bad == 0) tell(options, line_number, {answer["error"].get<std::string>()});
+    bad += is_bad ? 1 : 0;
     out << answer.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) << '\n';
   }
   out.flush();
@@ -93,6 +100,11 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   if (options.check) check.print_summary();
   if (in.bad()) {
     std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
+    return kUsage;
+  }
+  if (lines == 0) {
+    std::cerr << "clearance-distance: " << options.cases
+              << " holds no case; expected a JSON object a line\n";
     return kUsage;
   }
   if (!out) {
@@ -108,15 +120,16 @@ int run(const Options& options) {
   std::ofstream file_out;
   if (options.cases != "-") {
     file_in.open(options.cases);
-    if (!file_in) {
-      std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
+    if (!file_in || std::filesystem::is_directory(options.cases)) {
+      std::cerr << "clearance-distance: " << unreadable(options.cases) << '\n';
       return kUsage;
     }
   }
   if (options.out != "-") {
     file_out.open(options.out);
     if (!file_out) {
-      std::cerr << "clearance-distance: cannot write " << options.out << '\n';
+      std::cerr << "clearance-distance: cannot write " << options.out << ": "
+                << std::strerror(errno) << '\n';
       return kUsage;
     }
   }

@@ -90,8 +90,14 @@ class LatencyMeter {
     thread_.join();
   }
 
-  void print() {
+  // `where`: the domain that reports were waited for in.
+  void print(const std::string& where) {
     const std::lock_guard lock(mutex_);
+    if (all_.count() == 0) {
+      std::printf("latency  not known: no report came on %s; does clearanced run there?\n",
+                  where.c_str());
+      return;
+    }
     std::printf("latency  %s  pose sent to report received, %llu poses\n",
                 percentiles(all_).c_str(), static_cast<unsigned long long>(all_.count()));
     std::printf("         %s  of which: pose sent to tick\n", percentiles(to_tick_).c_str());
@@ -225,7 +231,7 @@ int run_robot(const Scene& scene, const Arguments& arguments, StopSignal& signal
               static_cast<unsigned long long>(robot.sent()), robot.objects(),
               static_cast<unsigned long long>(robot.failed()));
   std::printf("wake-up  %s\n", percentiles(lateness).c_str());
-  if (latency) latency->print();
+  if (latency) latency->print(participant.where());
   return kOk;
 }
 

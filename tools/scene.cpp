@@ -1,7 +1,9 @@
 // clearance-scene: makes cell files, from a robot's URDF and SRDF or of a generated warehouse, and
 // tells what models a cell's objects have.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <variant>
@@ -47,7 +49,7 @@ int write(const std::string& yaml, const std::string& output) {
   stream << yaml;
   stream.close();
   if (!stream) {
-    std::fprintf(stderr, "%s: cannot be written\n", output.c_str());
+    std::fprintf(stderr, "%s: cannot be written: %s\n", output.c_str(), std::strerror(errno));
     return kFailed;
   }
   const auto scene = scene_or_errors(read_cell(output));

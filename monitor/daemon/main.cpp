@@ -37,13 +37,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--record", arguments.daemon.record_file,
                  "Record inputs and reports to this MCAP file");
   add_force(app, arguments.daemon.record_over);
-  app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks");
+  app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
+      ->check(whole_number(0, 1'000'000'000'000));
   app.add_option(
          "--priority", arguments.daemon.fifo_priority,
          "Run the tick thread under SCHED_FIFO and lock memory; without: ordinary scheduling")
       ->check(CLI::Range(1, 99));
   app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, 1023));
   app.add_option("--workers", arguments.daemon.workers,
                  "Threads that evaluate pairs, the tick thread included; results are the same bits")
       ->check(CLI::Range(1, 64));

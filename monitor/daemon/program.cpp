@@ -1,5 +1,6 @@
 #include "monitor/daemon/program.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -80,6 +81,19 @@ CLI::Validator number_from_zero() {
                 "a number, 0 or more");
 }
 
+CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
+  const auto fault = [=](const std::string& text) {
+    std::int64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, value);
+    const bool whole = read.ec == std::errc{} && read.ptr == end;
+    if (whole && value >= smallest && value <= largest) return std::string();
+    return "found '" + text + "'; expected a whole number from " + std::to_string(smallest) +
+           " to " + std::to_string(largest);
+  };
+  return {fault, ""};
+}
+
 bool spares_inputs(const char* program, const std::filesystem::path& output,
                    std::initializer_list<std::filesystem::path> inputs) {
   std::error_code not_there;
@@ -98,6 +112,11 @@ void add_force(CLI::App& app, bool& force) {
 
 bool may_write(const char* program, const std::filesystem::path& file, bool force) {
   std::error_code unknown;
+  if (file.has_parent_path() && !std::filesystem::exists(file.parent_path(), unknown)) {
+    std::fprintf(stderr, "%s: cannot create %s: there is no folder %s\n", program, file.c_str(),
+                 file.parent_path().c_str());
+    return false;
+  }
   if (force || file.empty() || !std::filesystem::exists(file, unknown)) return true;
   std::fprintf(stderr, "%s: %s is there already; --force writes over it\n", program, file.c_str());
   return false;

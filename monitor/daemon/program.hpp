@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -37,6 +38,8 @@ enum ExitCode : int {
 [[nodiscard]] CLI::Validator finite_number();
 [[nodiscard]] CLI::Validator positive_number();
 [[nodiscard]] CLI::Validator number_from_zero();
+// Of options: a whole number in this range, both included.
+[[nodiscard]] CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest);
 
 // False, after saying so on stderr, when `output` is one of the files that are read: it would be
 // destroyed.
@@ -46,8 +49,8 @@ enum ExitCode : int {
 // "--force", without which no program writes over a file.
 void add_force(CLI::App& app, bool& force);
 
-// False, after saying so on stderr, when the file is there and `force` is not given. An empty name
-// is no file.
+// False, after saying so on stderr, when the file is there and `force` is not given, or its folder
+// is not there. An empty name is no file.
 [[nodiscard]] bool may_write(const char* program, const std::filesystem::path& file, bool force);
 
 // What the program did not write to its end must not be taken for whole: removes the file, if it

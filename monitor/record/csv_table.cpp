@@ -8,6 +8,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "monitor/record/unreadable.hpp"
+
 namespace clearance {
 namespace {
 
@@ -42,7 +44,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::strin
       file_(gzopen(file.c_str(), "rb")),
       place_(columns.size()) {
   if (!file_) {
-    error_ = "cannot read " + file.string();
+    error_ = unreadable(file);
     return;
   }
   gzbuffer(static_cast<gzFile>(file_.get()), 1 << 18);

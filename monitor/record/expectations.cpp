@@ -19,7 +19,7 @@ std::string metres(double value) {
 std::string zone_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const Zone& zone : scene.zones) names.push_back(zone.name);
-  return names.empty() ? "none" : one_of(names);
+  return names.empty() ? "it has none" : "its zones are " + one_of(names);
 }
 
 std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& report) {
@@ -42,7 +42,7 @@ Expectations::Expectations(const Scene& scene, std::optional<double> min_distanc
   for (const std::string& name : no_zone) {
     const auto found = std::ranges::find(scene.zones, name, &Zone::name);
     if (found == scene.zones.end()) {
-      error_ = "the cell has no zone '" + name + "'; its zones are " + zone_names(scene);
+      error_ = "the cell has no zone '" + name + "'; " + zone_names(scene);
       return;
     }
     no_zone_.push_back({.zone = static_cast<std::uint32_t>(found - scene.zones.begin())});

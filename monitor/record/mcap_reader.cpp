@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "monitor/record/unreadable.hpp"
+
 namespace clearance {
 namespace {
 
@@ -43,7 +45,7 @@ bool McapReader::read_magic() {
   done_ = true;
   readable_ = false;
   if (!file_.open()) {
-    error_ = "cannot read " + path_.string() + ": no such file, or not a readable regular file";
+    error_ = unreadable(path_);
     return false;
   }
   if (file_.size() == 0) {

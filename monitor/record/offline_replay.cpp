@@ -28,9 +28,13 @@ std::optional<ReferenceCheck> reference_of(const Scene& scene,
 // Behind a difference: whether another build may be the reason.
 std::string other_build(const std::string& recorded) {
   if (recorded == kBuild) return {};
-  const std::string by = recorded.empty() ? "by a build that the recording does not name"
-                                          : "by another build (" + recorded + ")";
-  return "; it was recorded " + by + ", which may be the reason: this is " + kBuild;
+  const std::string ours = kBuild;
+  if (recorded.empty()) {
+    return "; the recording does not name its build: if that is not this one (" + ours +
+           "), it may be the reason";
+  }
+  return "; it was recorded by another build (" + recorded +
+         "), which may be the reason: this is " + ours;
 }
 
 class Replay {
@@ -234,7 +238,10 @@ void Replay::compare_zones() {
 }
 
 std::string Replay::nothing_in_window() const {
-  if (result_.ticks == 0) return "the recording holds neither reports nor poses";
+  if (result_.ticks == 0) {
+    return result_.damage.empty() ? "the recording holds neither reports nor poses"
+                                  : "nothing can be replayed: no tick is whole before the damage";
+  }
   return "no tick lies between the start and the end given: the recording lasts " +
          std::to_string(seconds(result_.last_ns)) + " s";
 }

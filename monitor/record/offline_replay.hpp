@@ -60,7 +60,7 @@ struct ReplayedTick {
 // How a person finds a tick: the replay counts its own from 1, and the daemon that was recorded may
 // have been further by then.
 struct TickNumber {
-  std::uint64_t cycle = 0;     // of the replay; 0: none
+  std::uint64_t cycle = 0;     // of the replay; 0: no tick, all of it
   std::uint64_t recorded = 0;  // of the daemon; as `cycle` where the recording holds no reports
   // "tick 12", or "tick 12 of the replay, 4012 of the daemon".
   [[nodiscard]] std::string text() const;

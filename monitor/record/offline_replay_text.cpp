@@ -16,6 +16,10 @@ std::string OfflineReplay::text() const {
   const auto line = [&out](const std::string& what) { out.append(what).append("\n"); };
   if (!error.empty()) line(error);
   for (const ReplayFailure& failure : failures) {
+    if (failure.tick.cycle == 0) {
+      line(failure.what);
+      continue;
+    }
     std::array<char, 32> when;
     std::snprintf(when.data(), when.size(), " (%.6f s): ", failure.time_s);
     line(failure.tick.text() + when.data() + failure.what);

@@ -353,7 +353,7 @@ TEST(Mcap, OtherFilesAreRefusedByName) {
   const ScratchFolder folder;
   write_text(folder / "cell.yaml", "name: a cell, not a recording\n");
   EXPECT_THAT(read_back(folder / "cell.yaml").error, HasSubstr("cell.yaml is not an MCAP file"));
-  EXPECT_THAT(read_back(folder / "none.mcap").error, HasSubstr("none.mcap: no such file"));
+  EXPECT_THAT(read_back(folder / "none.mcap").error, HasSubstr("none.mcap: No such file"));
   write_text(folder / "empty.mcap", "");
   EXPECT_THAT(read_back(folder / "empty.mcap").error, HasSubstr("is empty"));
 }

@@ -67,11 +67,14 @@ TEST_F(OfflineReplayTest, ADifferenceNamesTheBuildsWhereTheyAreNotTheSame) {
     write_messages(run, messages, build);
     return replay({.compare = Comparison::kBits}).text();
   };
-  const std::string ours = std::string("which may be the reason: this is ") + kBuild;
+  const std::string ours = kBuild;
   EXPECT_THAT(text_of_a_run_by("0.0.1"),
-              HasSubstr("; it was recorded by another build (0.0.1), " + ours));
+              HasSubstr("; it was recorded by another build (0.0.1), which may be the reason: this "
+                        "is " +
+                        ours));
   EXPECT_THAT(text_of_a_run_by(""),
-              HasSubstr("; it was recorded by a build that the recording does not name, " + ours));
+              HasSubstr("; the recording does not name its build: if that is not this one (" +
+                        ours + "), it may be the reason"));
   EXPECT_THAT(text_of_a_run_by(kBuild),
               AllOf(HasSubstr("differs in queries"), Not(HasSubstr("build"))));
   report = untouched;

@@ -227,6 +227,11 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   ChildProcess peer(test::kDaemon, {"cell.yaml", "--peer", "not an address"});
   EXPECT_EQ(peer.wait(), 2);
   EXPECT_TRUE(peer.wrote("'not an address'")) << peer.output();
+  for (const char* option : {"--ticks", "--cpu"}) {
+    ChildProcess negative(test::kDaemon, {"cell.yaml", option, "-5"});
+    EXPECT_EQ(negative.wait(), 2);
+    EXPECT_TRUE(negative.wrote("found '-5'; expected a whole number from 0 to ")) << option;
+  }
   ChildProcess version(test::kDaemon, {"--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_TRUE(version.wrote(std::string("clearance ") + kBuild)) << version.output();

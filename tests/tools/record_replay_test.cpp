@@ -193,13 +193,20 @@ TEST_F(RecordReplay, DamagedRecordingGivesStatusFiveAndSaysHowMuchWasRead) {
 
 TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_EQ(1, run(kReplay, {"--offline", path("none.mcap"), "--cell", path("cell.yaml")}));
-  EXPECT_THAT(output, HasSubstr("none.mcap"));
+  EXPECT_THAT(output, HasSubstr("cannot read " + path("none.mcap") + ": No such file"));
+  EXPECT_EQ(1, run(kReplay, {"--offline", path(""), "--cell", path("cell.yaml")}));
+  EXPECT_THAT(output, HasSubstr("it is a directory; expected a file"));
+  EXPECT_EQ(1, run(kRecord, {"--from-csv", path("none.csv"), "-o", path("never.mcap")}));
+  EXPECT_THAT(output, HasSubstr("cannot read " + path("none.csv") + ": No such file"));
   EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
   ASSERT_EQ(0, record_log());
   EXPECT_EQ(1, record_log());
   EXPECT_THAT(output, HasSubstr("run.mcap is there already; --force writes over it"));
   EXPECT_EQ(1, replay({"--csv", path("nowhere/table.csv"), "-o", path("again.mcap")}));
   EXPECT_THAT(output, HasSubstr("cannot create " + path("nowhere/table.csv")));
+  EXPECT_EQ(1, replay({"-o", path("nowhere/again.mcap")}));
+  EXPECT_THAT(output, HasSubstr("there is no folder " + path("nowhere")));
+  EXPECT_THAT(output, testing::Not(HasSubstr("ticks"))) << "replayed in vain";
   EXPECT_FALSE(std::filesystem::exists(folder / "again.mcap")) << "replayed in vain";
   write_text(folder / "cell.yaml", "nmae: x\n");
   EXPECT_EQ(3, replay({}));
@@ -326,6 +333,10 @@ TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {
   EXPECT_EQ(1, run(kReplay, with({path("run.mcap"), "--start", "10", "--wait", "0"},
                                  dds_arguments(own_dds()))));
   EXPECT_THAT(output, HasSubstr("no message of these topics lies between"));
+  EXPECT_THAT(output, HasSubstr("found there: none at all"));
+  EXPECT_EQ(1, run(kReplay, with({path("run.mcap"), "--only", "clearance/pose", "--wait", "0"},
+                                 dds_arguments(own_dds()))));
+  EXPECT_THAT(output, HasSubstr("found there: clearance/catalogue, clearance/poses"));
 }
 
 TEST_F(RecordReplay, ReportsWithoutTheirPosesCannotBeCompared) {

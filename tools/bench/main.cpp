@@ -123,11 +123,11 @@ int main(int argc, char** argv) {
   register_all();
   if (report) {
     clearance::bench::Collector collector;
-    benchmark::RunSpecifiedBenchmarks(&collector);
+    if (benchmark::RunSpecifiedBenchmarks(&collector) == 0) return 1;
     const auto write = ticks ? clearance::bench::write_tick_report : clearance::bench::write_report;
     if (!write(*report, collector.figures())) return 1;
-  } else {
-    benchmark::RunSpecifiedBenchmarks();
+  } else if (benchmark::RunSpecifiedBenchmarks() == 0) {
+    return 1;
   }
   benchmark::Shutdown();
   return 0;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <ctime>
 #include <map>
+#include <set>
 #include <variant>
 
 #include "monitor/daemon/dds.hpp"
@@ -141,7 +142,8 @@ class Publishing {
 
  private:
   [[nodiscard]] McapWindow window() const;
-  [[nodiscard]] bool wanted(const RecordedMessage& message) const {
+  bool wanted(const RecordedMessage& message) {
+    topics_.insert(message.channel->topic);
     return arguments_.only.empty() ||
            std::ranges::find(arguments_.only, message.channel->topic) != arguments_.only.end();
   }
@@ -160,6 +162,7 @@ class Publishing {
   std::int64_t began_log_ns_ = -1;  // log time of the first message published
   std::int64_t shown_ns_ = 0;
   std::uint64_t published_ = 0, undecodable_ = 0;
+  std::set<std::string> topics_;  // met between start and end
 };
 
 McapWindow Publishing::window() const {
@@ -244,8 +247,12 @@ int Publishing::finish(const RecordingReader& reader) {
                  static_cast<unsigned long long>(undecodable_));
   }
   if (published_ == 0 && !stop_.wait(0)) {
-    std::fputs("clearance-replay: no message of these topics lies between the start and the end\n",
-               stderr);
+    std::string met;
+    for (const std::string& topic : topics_) met += (met.empty() ? "" : ", ") + topic;
+    std::fprintf(stderr,
+                 "clearance-replay: no message of these topics lies between the start and the end; "
+                 "found there: %s\n",
+                 met.empty() ? "none at all" : met.c_str());
     return kFailed;
   }
   if (!reader.error().empty()) {
