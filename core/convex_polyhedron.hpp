@@ -13,6 +13,7 @@
 // exactly.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -126,6 +127,7 @@ struct ConvexPolyhedron {
   // The vertices at the far ends of `vertex_edges`, kNone where such an edge does not end; and the
   // facets on the far sides of `facet_edges`.
   std::vector<std::int32_t> neighbours, facets_beside;
+  std::array<std::uint32_t, 3> features{};  // how many vertices, edges, facets
   StartTable start;
 
   // A point well inside (in the relative interior of a point or segment).

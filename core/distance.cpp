@@ -32,10 +32,11 @@ inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
   return result;
 }
 
-HWY_INLINE DistanceResult walked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                          const Pose& world_from_a, const Pose& world_from_b,
-                                          TrackingState& state, WalkStart start) {
-  if (HWY_UNLIKELY(state.a.deep)) return tracked_overlap(a, b, world_from_a, world_from_b, state);
+// Of pairs that begin at no feature, or whose first step is not straight-line code.
+HWY_INLINE DistanceResult walked_anyhow(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                        const Pose& world_from_a, const Pose& world_from_b,
+                                        TrackingState& state, WalkStart start) {
+  if (state.a.deep) return tracked_overlap(a, b, world_from_a, world_from_b, state);
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
   w.steps = start.steps;
@@ -44,22 +45,83 @@ HWY_INLINE DistanceResult walked_distance(const ConvexPolyhedron& a, const Conve
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
-// Two of it: another argument costs a query that begins at the beginning 1 ns.
-DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+// After a first step that has ended so; with a walk of its own, as above.
+inline HWY_NOINLINE DistanceResult walked_on(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const Pose& world_from_a, const Pose& world_from_b,
+                                             const RelativeQuads& a_from_b, TrackingState& state,
+                                             WalkStart at, Step first) {
+  Walk w(a, b, a_from_b, state);
+  w.steps = at.steps;
+  w.levels = at.levels;
+  if (first == Step::kMoved && walk_on(w) == WalkEnd::kProved) return rounded_result_of(w);
+  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+}
+
+// A walk's first step where that is straight-line code: nothing here needs the walk in memory, so
+// that what the step finds stays in registers.
+HWY_INLINE Step first_step(Walk& w) {
+  switch (w.on_a.dimension * 3 + w.on_b.dimension) {
+    case 0:
+      return vertex_vertex(w);
+    case 1:
+      return edge_vertex(Owned<true>{w});
+    case 2:
+      return facet_vertex(Owned<true>{w});
+    case 3:
+      return edge_vertex(Owned<false>{w});
+    case 4:
+      return edge_edge<true>(w);
+    default:
+      return facet_vertex(Owned<false>{w});
+  }
+}
+
+HWY_INLINE DistanceResult walked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                          const Pose& world_from_a, const Pose& world_from_b,
+                                          TrackingState& state, WalkStart start) {
+  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
+  Walk w(a, b, a_from_b, state);
+  w.steps = start.steps + 1;
+  w.levels = start.levels;
+  const Step first = first_step(w);
+  if (HWY_LIKELY(first == Step::kHolds && conclude(w) == WalkEnd::kProved)) {
+    return rounded_result_of(w);
+  }
+  return walked_on(a, b, world_from_a, world_from_b, a_from_b, state, {w.steps, w.levels}, first);
+}
+
+// Two of each: another argument costs a query that begins at the beginning 1 ns.
+DistanceResult tracked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
-  return walked_distance(a, b, world_from_a, world_from_b, state, {});
+  return walked_straight(a, b, world_from_a, world_from_b, state, {});
+}
+DistanceResult tracked_anyhow(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                              const Pose& world_from_a, const Pose& world_from_b,
+                              TrackingState& state) {
+  return walked_anyhow(a, b, world_from_a, world_from_b, state, {});
+}
+inline HWY_NOINLINE DistanceResult departed_anyhow(const ConvexPolyhedron& a,
+                                                   const ConvexPolyhedron& b,
+                                                   const Pose& world_from_a,
+                                                   const Pose& world_from_b, TrackingState& state,
+                                                   WalkStart start) {
+  return walked_anyhow(a, b, world_from_a, world_from_b, state, start);
 }
 DistanceResult departed_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                  const Pose& world_from_a, const Pose& world_from_b,
                                  TrackingState& state, WalkStart start) {
-  return walked_distance(a, b, world_from_a, world_from_b, state, start);
+  if (!begins_straight(a, b, state)) {
+    return departed_anyhow(a, b, world_from_a, world_from_b, state, start);
+  }
+  return walked_straight(a, b, world_from_a, world_from_b, state, start);
 }
 
 }  // namespace clearance::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include <atomic>
 #include <optional>
 
 #include "core/feature_walk.hpp"
@@ -67,7 +129,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace clearance {
 
-HWY_EXPORT(tracked_distance);
+HWY_EXPORT(tracked_straight);
+HWY_EXPORT(tracked_anyhow);
 HWY_EXPORT(departed_distance);
 
 namespace {
@@ -126,11 +189,45 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return result;
 }
 
+#if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0
+
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const Pose& world_from_a, const Pose& world_from_b,
                         TrackingState& state) noexcept {
-  return HWY_DYNAMIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state);
+  return begins_straight(a, b, state)
+             ? HWY_STATIC_DISPATCH(tracked_straight)(a, b, world_from_a, world_from_b, state)
+             : HWY_STATIC_DISPATCH(tracked_anyhow)(a, b, world_from_a, world_from_b, state);
 }
+
+#else
+namespace {
+
+// Where Highway keeps which vectors it has chosen. Looked up once: that is a call of another
+// library, for which all arguments are put aside.
+std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
+
+HWY_NOINLINE DistanceResult first_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                           const Pose& world_from_a, const Pose& world_from_b,
+                                           TrackingState& state) noexcept {
+  chosen_vectors.store(&hwy::GetChosenTarget(), std::memory_order_relaxed);
+  return distance(a, b, world_from_a, world_from_b, state);
+}
+
+}  // namespace
+
+DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const Pose& world_from_a, const Pose& world_from_b,
+                        TrackingState& state) noexcept {
+  const hwy::ChosenTarget* const chosen = chosen_vectors.load(std::memory_order_relaxed);
+  if (HWY_UNLIKELY(chosen == nullptr)) {
+    return first_distance(a, b, world_from_a, world_from_b, state);
+  }
+  const auto& queries = begins_straight(a, b, state) ? HWY_DISPATCH_TABLE(tracked_straight)
+                                                     : HWY_DISPATCH_TABLE(tracked_anyhow);
+  return queries[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
+}
+
+#endif
 
 TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(departed_distance); }
 

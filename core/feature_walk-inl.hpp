@@ -31,14 +31,18 @@ inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepes
   return to_edge(side, use.edge);
 }
 
-inline HWY_NOINLINE Step leave_either(Walk& w, const Vertex& of_a, const Vertex& of_b, Quad g,
-                                      Quad back, double limit) {
-  const Steepest on_a = steepest(w.a, of_a, g), on_b = steepest(w.b, of_b, back);
-  if (on_a.rate > -limit && on_a.rate >= on_b.rate) return leave_vertex(w.a, w.on_a, on_a);
-  if (on_b.rate > -limit) return leave_vertex(w.b, w.on_b, on_b);
-  to_level(w.a, w.on_a, vec3(g), limit);
-  to_level(w.b, w.on_b, vec3(back), limit);
-  return w.levelled();
+// False: none approaches for certain, and both sides come to what is level.
+inline HWY_NOINLINE bool leave_either(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                      const Vertex& of_a, const Vertex& of_b, Side& on_a,
+                                      Side& on_b, Quad g, Quad back, double limit) {
+  const Steepest from_a = steepest(a, of_a, g), from_b = steepest(b, of_b, back);
+  if (from_a.rate > -limit && from_a.rate >= from_b.rate) {
+    return leave_vertex(a, on_a, from_a) == Step::kMoved;
+  }
+  if (from_b.rate > -limit) return leave_vertex(b, on_b, from_b) == Step::kMoved;
+  to_level(a, on_a, vec3(g), limit);
+  to_level(b, on_b, vec3(back), limit);
+  return false;
 }
 
 HWY_INLINE Step vertex_vertex(Walk& w) {
@@ -50,7 +54,8 @@ HWY_INLINE Step vertex_vertex(Walk& w) {
   const Quad g = w.point_b - w.point_a, back = -direction_to_b(w.a_from_b, g);
   const double apart = norm(g), limit = -kCertainRate * apart;
   if (!all_fall(w.a, of_a, g, limit) || !all_fall(w.b, of_b, back, limit)) {
-    return leave_either(w, of_a, of_b, g, back, limit);
+    return leave_either(w.a, w.b, of_a, of_b, w.on_a, w.on_b, g, back, limit) ? Step::kMoved
+                                                                              : w.levelled();
   }
   w.apart = w.proved = apart;
   w.normal = g / spread(apart);
@@ -173,10 +178,15 @@ struct EdgeLines {
   double sine2, s = 0.0, t = 0.0;
 };
 
+template <bool kFirst = false>
 HWY_INLINE Step edge_edge(Walk& w) {
   if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
   EdgeLines lines(w);
   if (!(lines.sine2 > kCrossingSine2)) {
+    if constexpr (kFirst) {
+      --w.steps;  // it is done once more, with the pair in memory
+      return Step::kMoved;
+    }
     return lines.sine2 <= kLevelTilt * kLevelTilt ? parallel_edges(w, lines.start_b, lines.f)
                                                   : Step::kLost;
   }
@@ -224,14 +234,6 @@ HWY_INLINE Step step(Walk& w) {
   }
 }
 
-HWY_INLINE bool exists(const ConvexPolyhedron& body, const Side& side) {
-  const std::size_t count = side.dimension == 0   ? body.vertices.size()
-                            : side.dimension == 1 ? body.edges.size()
-                            : side.dimension == 2 ? body.facets.size()
-                                                  : 0;
-  return static_cast<std::size_t>(static_cast<std::uint32_t>(side.feature)) < count;
-}
-
 // A vertex that is far out along `towards`; a body without vertices is one facet, or the loop's.
 HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
   if (body.vertices.empty()) {
@@ -252,13 +254,8 @@ HWY_INLINE WalkEnd conclude(Walk& w) {
   return proved ? WalkEnd::kProved : WalkEnd::kSettled;
 }
 
-HWY_INLINE WalkEnd walk(Walk& w) {
-  if (!w.a.bounded() && !w.b.bounded()) return WalkEnd::kLost;
-  if (!exists(w.a, w.on_a) || !exists(w.b, w.on_b)) {
-    const Quad towards = point_to_a(w.a_from_b, load3(w.b.interior)) - load3(w.a.interior);
-    start(w.a, towards, w.on_a);
-    start(w.b, -direction_to_b(w.a_from_b, towards), w.on_b);
-  }
+// From features that there are.
+HWY_INLINE WalkEnd walk_on(Walk& w) {
   while (w.steps < kSteps) {
     ++w.steps;
     const Step result = step(w);
@@ -266,6 +263,19 @@ HWY_INLINE WalkEnd walk(Walk& w) {
     if (result == Step::kLost) return WalkEnd::kLost;
   }
   return WalkEnd::kLost;
+}
+
+HWY_INLINE void begin(Walk& w) {
+  if (exists(w.a, w.on_a) && exists(w.b, w.on_b)) return;
+  const Quad towards = point_to_a(w.a_from_b, load3(w.b.interior)) - load3(w.a.interior);
+  start(w.a, towards, w.on_a);
+  start(w.b, -direction_to_b(w.a_from_b, towards), w.on_b);
+}
+
+HWY_INLINE WalkEnd walk(Walk& w) {
+  if (!w.a.bounded() && !w.b.bounded()) return WalkEnd::kLost;
+  begin(w);
+  return walk_on(w);
 }
 
 // Of a walk that is not lost. A result begins with twelve numbers; fours of them are stored one

@@ -24,6 +24,19 @@ enum class WalkEnd : std::uint8_t {
   kProved,   // the bodies are apart, and the bounds as close as rounding lets them be
 };
 
+[[nodiscard]] inline bool exists(const ConvexPolyhedron& body,
+                                 const TrackingState::Side& side) noexcept {
+  return side.dimension <= 2 &&
+         static_cast<std::uint32_t>(side.feature) < body.features[side.dimension];
+}
+
+// Are there such features, of bodies that are apart, and does straight-line code judge them?
+[[nodiscard]] inline bool begins_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                          const TrackingState& state) noexcept {
+  return !state.a.deep && state.a.dimension + state.b.dimension <= 2 &&
+         (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
+}
+
 // Moves the features of `state` as far as it gets. Unless it is lost, `result` (of the cores,
 // without radii) and the points of `state` are those of the features it ends at.
 [[nodiscard]] WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

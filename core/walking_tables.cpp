@@ -90,6 +90,8 @@ void add_walking_tables(ConvexPolyhedron& body) {
   body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
   body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   body.inner_radius = inner_radius(body);
+  const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
+  body.features = {count(body.vertices), count(body.edges), count(body.facets)};
   add_outgoing(body);
   add_neighbours(body);
   add_facet_sides(body);
