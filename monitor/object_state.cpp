@@ -9,7 +9,8 @@
 namespace clearance {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3;
+// A unit quaternion's norm is within a thousandth of 1; here squared.
+constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
 constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
 // A jump beyond any cell. Adding it to what was travelled would cost digits for good: after 1e4 km
 // of travel, 1 m/s for four months, they still tell 1e-8 m apart.
@@ -19,9 +20,9 @@ bool usable(const Vec3& v) noexcept {
   return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
 }
 
+// All but the orientation.
 bool usable(const PoseSample& sample) noexcept {
   return usable(sample.world_from_object.position) &&
-         sample.world_from_object.orientation.coeffs().allFinite() &&
          (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
 }
 
@@ -64,8 +65,11 @@ ObjectState initial_state(const Object& object) noexcept {
 std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
                               std::int64_t now_ns, std::int64_t future_limit_ns) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
-  const double norm = sample.world_from_object.orientation.norm();
-  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) return Reject::kNotUnit;
+  const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
+  const double squared = orientation.squaredNorm();
+  if (!(squared >= kLeastUnit && squared <= kMostUnit)) {
+    return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
+  }
   if (elapsed(now_ns, sample.stamp_ns) > future_limit_ns) return Reject::kFuture;
   if (state.seen && sample.stamp_ns < state.stamp_ns) return Reject::kBackwards;
   return std::nullopt;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/batch.hpp"
-#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 
 namespace clearance::bench {
@@ -105,7 +105,7 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
   }
   const auto queries = static_cast<double>(kPairs * fleet.steps());
   verdict.iterations /= queries;
-  const double clock_cost = cpu_clock_cost();
+  const double clock_cost = cost_of(cpu_ns);
   double spent_ns = 0.0;
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(queries))) {
     for (std::size_t step = 0; step < fleet.steps(); ++step) {

@@ -20,7 +20,8 @@
 namespace {
 
 constexpr const char* kHelp =
-    "clearance-bench: times the core and the tick. All times are thread CPU time.\n"
+    "clearance-bench: times the core and the tick. Queries are timed in thread CPU time, ticks on "
+    "the wall.\n"
     "\n"
     "  tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order;\n"
     "                     also boxes, parallel-boxes and links\n"

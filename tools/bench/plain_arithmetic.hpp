@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/clocks.hpp"
 
 namespace clearance::bench {
 
@@ -21,16 +21,16 @@ class PlainArithmetic {
 
   // Once more; ns.
   double time() {
-    const double start = cpu_ns();
+    const double start = wall_ns();
     for (int i = 0; i < rounds_; ++i) value_ = value_ * 0.999 + 1.0;
     benchmark::DoNotOptimize(value_);
-    return std::max(0.0, cpu_ns() - start - clock_cost_);
+    return std::max(0.0, wall_ns() - start - clock_cost_);
   }
 
  private:
   static constexpr int kSample = 2'000;
 
-  const double clock_cost_ = cpu_clock_cost();
+  const double clock_cost_ = cost_of(wall_ns);
   double value_ = 0.0;
   int rounds_ = kSample;
 };

@@ -36,9 +36,9 @@ void TickRun::prepare() {
 }
 
 double TickRun::tick() {
-  const double start = cpu_ns();
+  const double start = wall_ns();
   report_ = &monitor_.tick(samples_, now_ns_);
-  return std::max(0.0, cpu_ns() - start - clock_cost_);
+  return std::max(0.0, wall_ns() - start - clock_cost_);
 }
 
 std::vector<double> proved_minima(const Crowd& crowd, int ticks) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "monitor/monitor.hpp"
-#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/crowd.hpp"
 
 namespace clearance::bench {
@@ -21,13 +21,13 @@ class TickRun {
   // Until everything has been looked at once; returns what each tick took, ns.
   std::vector<double> start_up();
   void prepare();
-  // Thread CPU time of one tick, ns.
+  // What one tick takes on the wall, ns.
   double tick();
   [[nodiscard]] const Report& report() const { return *report_; }
 
  private:
   const Crowd& crowd_;
-  const double clock_cost_ = cpu_clock_cost();
+  const double clock_cost_ = cost_of(wall_ns);
   Monitor monitor_;
   std::vector<PoseSample> samples_;
   int tick_ = 0;

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 
-#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/plain_arithmetic.hpp"
 #include "tools/bench/tick_run.hpp"
@@ -46,9 +45,9 @@ class Hash {
 
 // Times a run and counts what it did; returns what each tick took, ns.
 std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
-  const double bytes_before = allocated_bytes(), start = cpu_ns();
+  const double bytes_before = allocated_bytes(), start = wall_ns();
   TickRun run(crowd);
-  const double construction = cpu_ns() - start;
+  const double construction = wall_ns() - start;
   const double bytes = allocated_bytes() - bytes_before;
   const std::vector<double> start_up = run.start_up();
   PlainArithmetic control(median({start_up.begin() + start_up.size() / 2, start_up.end()}));
@@ -109,18 +108,14 @@ void register_plain(const std::string& name, int ticks, const MakeCrowd& make) {
   register_crowd(name + "/plain", ticks, 1, [make] { return all_evaluated(make()); });
 }
 
-// The time on the wall, since the work is on several threads: to be read on an idle machine.
 void time_workers(benchmark::State& state, const Crowd& crowd, unsigned workers) {
   TickRun run(crowd, workers);
   run.start_up();
   std::vector<double> times;
   for (auto _ : state) {
     run.prepare();
-    const auto start = std::chrono::steady_clock::now();
-    run.tick();
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    state.SetIterationTime(elapsed.count());
-    times.push_back(1e9 * elapsed.count());
+    times.push_back(run.tick());
+    state.SetIterationTime(1e-9 * times.back());
   }
   state.counters["least_us"] = 1e-3 * *std::min_element(times.begin(), times.end());
   count_times(times, state);

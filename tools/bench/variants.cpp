@@ -1,6 +1,6 @@
 #include "tools/bench/variants.hpp"
 
-#include "tools/bench/cpu_clock.hpp"
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/moved_body.hpp"
 #include "tools/bench/variant_loop.hpp"

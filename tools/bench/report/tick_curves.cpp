@@ -134,7 +134,7 @@ std::string legend() {
 }  // namespace
 
 std::string tick_curves(const Figures& figures) {
-  std::string out = svg_text(kWidth / 2, 32, "CPU time of one tick", "middle", 19);
+  std::string out = svg_text(kWidth / 2, 32, "Time of one tick", "middle", 19);
   double left = kLeft;
   for (const Axis& axis : kAxes) {
     const Panel panel(axis, left);

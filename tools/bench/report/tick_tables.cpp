@@ -128,9 +128,9 @@ std::string sweeps(const Figures& figures) {
 }  // namespace
 
 std::string tick_tables(const Figures& figures) {
-  return "Thread CPU time of one tick; multiples are of our median in the same run. Its own: the "
-         "same ticks run "
-         "again, each with the least time that it took in any of the runs; what is slow in all of "
+  return "Time of one tick on the wall; multiples are of our median in the same run. Its own: the "
+         "same ticks run again, each with the least time that it took in any of the runs; what is "
+         "slow in all of "
          "them is the tick. Arithmetic: "
          "multiplications in registers that take as long as the median tick, timed as often "
          "right after the ticks; what is slow there is the machine. Plain: every "
