@@ -12,12 +12,6 @@ constexpr std::size_t kWaiting = 48;
 // Samples of one arc; more than the vertices on the outline of any body of some thousand facets.
 constexpr int kSamples = 1024;
 
-// Of a product of two unit vectors, both rounded.
-constexpr double kArcError = 0x1p-50;
-
-// An edge's direction and a ray's, both rounded.
-constexpr double kSameRay = 0x1p-50;
-
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
@@ -82,10 +76,23 @@ bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
   return at.y() > 0.0 && at.x() * end.y() > at.y() * end.x();
 }
 
+bool DepthSearch::goes_on_along(const ConvexPolyhedron& body, const Vec3& n,
+                                const Vec3& exact_normal) const noexcept {
+  if (rises(body, n, level_)) return true;
+  if (!lean_ || exact_normal.isZero(0.0)) return false;
+  return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
+    if (n.dot(ray.direction) < -level_ * ray.direction.norm()) return false;
+    return rises_exactly(ray, &body == &body_.y(), exact_normal);
+  });
+}
+
 void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
   const Facet& facet = body_.x().facets[index];
   const Vec3& n = facet.normal;
-  if (!body_.y().bounded() && rises(body_.y(), -body_.direction_to_y(n), level_)) return;
+  if (!body_.y().bounded() &&
+      goes_on_along(body_.y(), -body_.direction_to_y(n), body_.x().exact_normals[index])) {
+    return;
+  }
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
   corners_[slot] = body_.corner(facet.point, n);
@@ -98,7 +105,10 @@ void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
 void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
   const Facet& facet = body_.y().facets[index];
   const Vec3 n = -body_.direction_from_y(facet.normal);
-  if (rises(body_.x(), n, level_)) return;
+  if (lean_ ? goes_on_along(body_.x(), n, body_.y().exact_normals[index])
+            : rises(body_.x(), n, level_)) {
+    return;
+  }
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
   corners_[slot] = body_.corner_on_x(facet.point, n);
@@ -129,32 +139,18 @@ DepthSearch::Sample DepthSearch::sample(const Arc& arc, const Vec2& at) noexcept
   return found;
 }
 
-// A ray that all but runs along the arc's edge is level at directions of the arc that its last
-// digits decide. An edge without end is one of X's rays, and two rays are known precisely enough:
-// off by less than what is allowed for directions beside their arc.
-DepthSearch::Rise DepthSearch::rise(const Arc& arc, const Ray& ray) const noexcept {
-  const WideVec g = wide_ * (wide(ray.direction) + wide(ray.rest));
-  for (const Ray& own : body_.x().rays) {
-    if (arc.edge.end < kInfinity) break;
-    if (!((own.direction.normalized() - arc.edge.direction).norm() < kSameRay)) continue;
-    const WideVec e = wide(own.direction) + wide(own.rest);
-    return {-arc.project(narrow(g - (dot(g, e) / dot(e, e)) * e)), 0.0};
-  }
-  const Vec3 unit = narrow(g).normalized();
-  return {-arc.project(unit), kArcError + wide_.error};
-}
-
-DepthSearch::Vec2 DepthSearch::Rise::level(const Vec2& side) const noexcept {
-  const Vec2 up = rate.stableNormalized(), across(-up.y(), up.x());
-  const double off = error > 0.0 ? error / rate.norm() : 0.0;
-  return ((across.dot(side) < 0.0 ? -across : across) + off * up).normalized();
-}
-
 bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
+  const Vec2 first = l, last = r;
   for (const Ray& ray : body_.y().rays) {
     const Rise over = rise(arc, ray);
     const double certain = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
-    const bool l_rises = over.rate.dot(l) > certain, r_rises = over.rate.dot(r) > certain;
+    const auto rises_at = [&](const Vec2& at, std::int32_t end) {
+      const double rate = over.rate.dot(at);
+      if (rate > certain || rate < -certain || end == kNone) return rate > certain;
+      return rises_exactly(ray, true, body_.x().exact_normals[arc.edge.facet[end]]);
+    };
+    const bool l_rises = rises_at(l, l == first ? 0 : kNone),
+               r_rises = rises_at(r, r == last ? 1 : kNone);
     if (l_rises && r_rises) return false;
     if (!l_rises && !r_rises) continue;
     // Of the two directions across the ray, the one on the arc: less than a quarter turn from its

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/deepest_corners.hpp"
 #include "core/deepest_points.hpp"
 #include "core/difference_body.hpp"
+#include "core/lean.hpp"
 
 namespace clearance {
 
@@ -25,7 +27,10 @@ class DepthSearch {
   // turned into the other body's frame.
   DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
       : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {
-    if (!body.y().bounded()) wide_ = body.wide_x_from_y();
+    if (!body.y().bounded()) {
+      wide_ = body.wide_x_from_y();
+      if (wide_.of_quaternions) lean_.emplace(body.a_from_b());
+    }
   }
 
   // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
@@ -146,6 +151,15 @@ class DepthSearch {
     [[nodiscard]] Vec2 level(const Vec2& side) const noexcept;
   };
   [[nodiscard]] Rise rise(const Arc& arc, const Ray& ray) const noexcept;
+  // The same of a ray of Y that leans from one of X by next to nothing; nothing: not known.
+  [[nodiscard]] std::optional<Rise> rise_of_leaning(const Arc& arc, const Ray& of_x,
+                                                    const Ray& of_y) const noexcept;
+  // Does a body go on for ever along a facet of the other one, which looks along n in the body's
+  // frame? For certain.
+  [[nodiscard]] bool goes_on_along(const ConvexPolyhedron& body, const Vec3& n,
+                                   const Vec3& exact_normal) const noexcept;
+  [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
+                                   const Vec3& exact_normal) const noexcept;
   // False: nothing is left of it, because Y is unbounded along all of it.
   [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
   void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
@@ -154,6 +168,7 @@ class DepthSearch {
   const DifferenceBody& body_;
   double tight_, level_;
   WideRotation wide_;         // from Y's frame, where both are unbounded
+  std::optional<Lean> lean_;  // there, where the quaternions say more
   Vec3 held_ = Vec3::Zero();  // the direction guessed
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;

@@ -38,6 +38,7 @@ class DifferenceBody {
   [[nodiscard]] const ConvexPolyhedron& x() const noexcept { return x_; }
   [[nodiscard]] const ConvexPolyhedron& y() const noexcept { return y_; }
   [[nodiscard]] bool x_is_b() const noexcept { return x_is_b_; }
+  [[nodiscard]] const RelativePose& a_from_b() const noexcept { return a_from_b_; }
 
   [[nodiscard]] Vec3 direction_from_y(const Vec3& v) const noexcept { return x_from_y_ * v; }
   [[nodiscard]] Vec3 direction_to_y(const Vec3& v) const noexcept {

@@ -8,6 +8,7 @@
 #include "core/dqp3.hpp"
 #include "core/feature_walk.hpp"
 #include "core/precision.hpp"
+#include "core/support.hpp"
 
 namespace clearance {
 namespace {
@@ -89,6 +90,46 @@ double take_points(const RelativePose& a_from_b, const TrackingState& state,
   return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
 }
 
+// An anchor is as far along a direction as another one, and a ray is level, if they rise by no more
+// than this, per unit length.
+constexpr double kLevelTop = 0x1p-40;
+
+// Where the body reaches farthest along m: of the points between anchors and along level rays,
+// about the nearest.
+Vec3 farthest_near(const ConvexPolyhedron& body, const Vec3& m, const Vec3& point) noexcept {
+  const Vec3& top = body.anchors[support(body, m).anchor];
+  Vec3 at = top;
+  const auto step = [&](const Vec3& way, double most) {
+    const double square = way.squaredNorm();
+    if (!(std::abs(m.dot(way)) <= kLevelTop * std::sqrt(square)) || !(square > 0.0)) return;
+    at += std::clamp((point - at).dot(way) / square, 0.0, most) * way;
+  };
+  for (const Vec3& anchor : body.anchors) {
+    if (m.dot(top - anchor) <= kLevelTop * (top - anchor).norm()) step(anchor - at, 1.0);
+  }
+  for (const Ray& ray : body.rays) step(ray.direction, kInfinity);
+  return at;
+}
+
+// Points that are less than this part of the size off along the normal stay where they are.
+constexpr double kLevelPoints = 0x1p-30;
+
+// Lines that all but run along each other meet, the bodies being parted, so far away that no points
+// there can be told: at least they are as far apart along the normal as they should be.
+void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, double size, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const Vec3 way = r.distance * r.normal;
+  const double off = (r.point_on_b - r.point_on_a - way).dot(r.normal);
+  if (!(std::abs(off) > kLevelPoints * size)) return;
+  const Mat3 b_from_a = a_from_b.rotation.transpose();
+  const Vec3 near = b_from_a * (r.point_on_a + way - a_from_b.translation);
+  state.b.point = farthest_near(b, -(b_from_a * r.normal), near);
+  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+  state.a.point = farthest_near(a, r.normal, r.point_on_b - way);
+  r.point_on_a = state.a.point;
+}
+
 // The points that meet when B has been moved clear of A.
 void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                      const RelativePose& a_from_b, const Depth& found, TrackingState& state,
@@ -109,6 +150,7 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   const DistanceResult before = r;
   r.iterations += settle_apart(a, b, moved, state);
   if (!(take_points(a_from_b, state, r) < beside)) r = before;
+  if (!a.bounded() && !b.bounded()) level_witnesses(a, b, a_from_b, size, state, r);
 }
 
 void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -100,6 +100,11 @@ PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b)
 
 // Of frames that all but coincide the way from one ray to the other is known better than both.
 PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const noexcept {
+  if (const Lean::Apart lean = apart(of_a, of_b); lean.known) {
+    const Vec3 n = narrow(cross(of_ray(of_a, false), lean.way));
+    if (n.isZero(0.0)) return {Vec3::Zero(), kInfinity};
+    return {n.normalized(), 2.0 * kUnitError};
+  }
   const WideVec e = of_ray(of_a, false), f = of_ray(of_b, true);
   const double lengths = narrow(e).norm() * narrow(f).norm();
   WideVec n = cross(e, f);
@@ -152,6 +157,7 @@ bool PolarCone::collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
     c.own = ray.direction;
     c.rest = ray.rest;
     c.of_b = of_b;
+    c.exact = ray.exact;
     c.known = ray.exact && (!of_b || rotation_.keeps_bits_of(c.own));
     c.two_way = false;
   }
@@ -182,6 +188,7 @@ void PolarCone::prepare(const Vec3& n, Level& level) const noexcept {
       c.two_way = level.items[k].two_way = true;
     }
   }
+  find_leaning(n, level);
 }
 
 // Is n itself, or the facet's exact normal that it was rounded from, in the cone?
@@ -200,6 +207,7 @@ bool PolarCone::holds_as_it_is(const Separator& s, const Vec3& n,
   return std::all_of(level.items.begin(), level.items.begin() + level.size, [&](const auto& c) {
     const bool of_facets_body = facet && c.of_b == (s.facet_of_b != kNone);
     if (of_facets_body || c.slope < -margin) return true;
+    if (facet && stands_across(s, c)) return true;
     if (exact_n.isZero(0.0)) return false;
     if (c.of_b && axis_of_b >= 0) {
       return c.slope < 0.0 || (c.own[axis_of_b] == 0.0 && c.rest[axis_of_b] == 0.0);
@@ -218,6 +226,7 @@ void PolarCone::try_move(const Level& level, std::size_t i, std::size_t j, const
     const Constraint& c = level.items[k];
     if (k == i || k == j) continue;
     if (c.two_way && (same_line(c, level.items[i]) || same_line(c, level.items[j]))) continue;
+    if (falls_from(level, i, k, x, y, error) || falls_from(level, j, k, x, y, error)) continue;
     const double rise = value(c.at_n + x * c.along_t + y * c.along_u);
     if (!(rise < -4.0 * (error + error_))) return;
   }
@@ -236,15 +245,22 @@ PolarCone::Move PolarCone::shortest_move(const Level& level) const noexcept {
     if (!(square.high > 0.5)) continue;  // rays are of unit length or longer
     const DoubleDouble by = -rise_wanted(c) / square;
     try_move(level, i, i, by * c.along_t, by * c.along_u, 2.0 * error_, best);
-    for (std::size_t j = 0; j < i; ++j) {
-      const Constraint& d = level.items[j];
+    const auto try_both_level = [&](std::size_t j, const auto& d, const DoubleDouble& rise_d) {
       const DoubleDouble area = c.along_t * d.along_u - c.along_u * d.along_t;
       const double size = std::abs(value(area));
-      if (!(size > 64.0 * error_)) continue;
-      const DoubleDouble rise_c = rise_wanted(c), rise_d = rise_wanted(d);
+      if (!(size > 64.0 * error_)) return;
+      const DoubleDouble rise_c = rise_wanted(c);
       const DoubleDouble x = (c.along_u * rise_d - d.along_u * rise_c) / area;
       const DoubleDouble y = (d.along_t * rise_c - c.along_t * rise_d) / area;
       try_move(level, i, j, x, y, 16.0 * error_ / size, best);
+    };
+    for (std::size_t j = 0; j < i; ++j) {
+      const Leaning* const pair = c.two_way ? leaning(level, i, j) : nullptr;
+      if (pair != nullptr) {
+        try_both_level(j, *pair, pair->at_n);
+      } else {
+        try_both_level(j, level.items[j], rise_wanted(level.items[j]));
+      }
     }
   }
   return best;

@@ -7,12 +7,15 @@
 // level to rounding leaves a half-plane for the end of the move, and the nearest point that all of
 // them have in common is where one or two of them are exactly level. All in twice double precision,
 // as are the rays and the rotation between the bodies: it costs a direction no more than the
-// rounding of its own doubles, at whatever angle the rays cross.
+// rounding of its own doubles, at whatever angle the rays cross. Of rays that are parallel but for
+// an angle that only the quaternions' own digits say, one is put in the other's place: the way in
+// which it leans (core/lean.hpp).
 #pragma once
 
 #include <array>
 
 #include "core/certificate.hpp"
+#include "core/lean.hpp"
 #include "core/wide_rotation.hpp"
 
 namespace clearance {
@@ -49,15 +52,13 @@ class PolarCone {
   void across_near_parallels(const Take& take) const noexcept {
     if (a_.body().rays.size() * b_.body().rays.size() > kMostPairs) return;
     for (const Ray& of_b : b_.body().rays) {
-      const WideVec g = of_ray(of_b, true);
+      const Vec3 g = narrow(of_ray(of_b, true));
       for (const Ray& of_a : a_.body().rays) {
-        if (!(of_a.direction.cross(narrow(g)).norm() < kNearlyParallel)) continue;
-        const WideVec n = cross(of_ray(of_a, false), g);
-        const double sine = narrow(n).stableNorm();
-        if (!(sine > kParallel)) continue;
-        const Vec3 unit = narrow(DoubleDouble(1.0 / sine) * n).normalized();
-        take(Separator{unit});
-        take(Separator{Vec3(-unit)});
+        if (!(of_a.direction.cross(g).norm() < kNearlyParallel)) continue;
+        const Direction d = across(of_a, of_b);
+        if (!(d.off < kInfinity)) continue;
+        take(Separator{d.n});
+        take(Separator{Vec3(-d.n)});
       }
     }
   }
@@ -73,15 +74,28 @@ class PolarCone {
     Vec3 own;   // the ray in its body's frame, and
     Vec3 rest;  // what that leaves of it
     bool of_b;
+    bool exact;  // `own` is the ray's direction up to a factor, and
     bool known;  // g is exactly three doubles
+    // Held exactly level: its opposite is another one, or all but is.
     bool two_way = false;
     double slope;  // at_n, in a double
     DoubleDouble at_n, along_t, along_u;
   };
+  // Two of these, of A and of B, that lean apart: the second one is a multiple of the first and,
+  // times `of_a` seen from B's, times `of_b` seen from A's, the way.
+  struct Leaning {
+    std::size_t a, b;
+    double of_a, of_b;
+    bool parallel;
+    DoubleDouble at_n, along_t, along_u;
+  };
+  static constexpr std::size_t kMostLeaning = 64;
   // Of the rays that are level to rounding. Of more, nothing is known.
   struct Level {
     std::array<Constraint, 64> items;
     std::size_t size = 0;
+    std::array<Leaning, kMostLeaning> leaning;
+    std::size_t leaning_size = 0;
     Vec3 t, u;
   };
   struct Move {
@@ -99,6 +113,14 @@ class PolarCone {
   [[nodiscard]] bool opposite(const Constraint& c, const Constraint& d) const noexcept;
   [[nodiscard]] bool same_line(const Constraint& c, const Constraint& d) const noexcept;
   void prepare(const Vec3& n, Level& level) const noexcept;
+  void find_leaning(const Vec3& n, Level& level) const noexcept;
+  [[nodiscard]] static const Leaning* leaning(const Level& level, std::size_t i,
+                                              std::size_t k) noexcept;
+  [[nodiscard]] bool falls_from(const Level& level, std::size_t i, std::size_t k,
+                                const DoubleDouble& x, const DoubleDouble& y,
+                                double error) const noexcept;
+  [[nodiscard]] Lean::Apart apart(const Ray& of_a, const Ray& of_b) const noexcept;
+  [[nodiscard]] bool stands_across(const Separator& s, const Constraint& c) const noexcept;
   [[nodiscard]] bool holds_as_it_is(const Separator& s, const Vec3& n,
                                     const Level& level) const noexcept;
   void try_move(const Level& level, std::size_t i, std::size_t j, const DoubleDouble& x,

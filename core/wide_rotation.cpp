@@ -201,6 +201,7 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   const std::array<FourProducts, 4> of = relative(a, b);
   WideRotation out;
   out.rows = matrix(of);
+  out.of_quaternions = true;
   out.error = kWideError;
   set_axes(of, out);
   set_small_turn(of, out);

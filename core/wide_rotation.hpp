@@ -11,7 +11,8 @@ namespace clearance {
 
 struct WideRotation {
   std::array<WideVec, 3> rows;
-  double error = 0.0;  // in the 2-norm
+  double error = 0.0;           // in the 2-norm
+  bool of_quaternions = false;  // they say more of it than the pose's matrix
   // The axis of A (0, 1, 2) that B's x, y and z lie along for certain, either way: what lies along
   // such an axis is turned to the bit, and what stands across it stays across. -1: none.
   std::array<int, 3> lands_on{-1, -1, -1};
@@ -38,6 +39,7 @@ struct WideRotation {
   [[nodiscard]] WideRotation transposed() const noexcept {
     WideRotation out;
     out.error = error;
+    out.of_quaternions = of_quaternions;
     out.small_turn = small_turn;
     out.vector = WideVec{} - vector;
     out.scalar = scalar;

@@ -100,6 +100,11 @@ constexpr OnceWrong kOnceWrong[] = {
     {"selfsame", 514300007, "the same, swapped"},
     {"leaning", 562700007, "a depth bounded to 11 m: between lines at 1e-15"},
     {"leaning", 603100007, "the same, to 44 m"},
+    {"leaning", 1240400013,
+     "a depth of 242 m bounded to 212: a facet along which a line leans away by 1e-14 counted"},
+    {"leaning", 1254900013, "the same, of 254 m to 87"},
+    {"selfsame", 3102001, "points 0.05 m off along the normal: the lines meet 1e15 m away"},
+    {"selfsame", 1102104, "the same, 0.02 m"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 

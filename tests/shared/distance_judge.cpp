@@ -107,8 +107,9 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
   faults.unless(gap <= narrow, text("%s with a gap of %.3g, more than %.3g", status, gap, narrow));
 }
 
-// Are the points where distance and normal say? `placed`: what rounding may do to a point.
-void look_at_witnesses(const DistanceResult& r, double placed, Faults& faults) {
+// Are the points where distance and normal say? `placed`: what rounding may do to a point;
+// `beside`: and to where the bodies meet across the normal.
+void look_at_witnesses(const DistanceResult& r, double placed, double beside, Faults& faults) {
   const Vec3 between = r.point_on_b - r.point_on_a;
   if (r.normal.allFinite()) {
     faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
@@ -119,10 +120,12 @@ void look_at_witnesses(const DistanceResult& r, double placed, Faults& faults) {
                   text("touching, but the witness points are %.3g apart", between.norm()));
     return;
   }
-  const double off = (between - r.distance * r.normal).norm();
-  faults.unless(off <= placed, text("%s, but from one witness point to the other it is not the "
-                                    "distance along the normal: off by %.3g, tolerance %.3g",
-                                    name(r.status), off, placed));
+  const Vec3 off = between - r.distance * r.normal;
+  const double along = std::abs(off.dot(r.normal)), across = off.norm();
+  faults.unless(along <= placed && across <= beside,
+                text("%s, but from one witness point to the other it is not the distance along the "
+                     "normal: off by %.3g, tolerance %.3g; along it by %.3g, tolerance %.3g",
+                     name(r.status), across, beside, along, placed));
 }
 
 }  // namespace
@@ -197,6 +200,17 @@ bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pos
   }
 }
 
+double DistanceJudge::where_they_part(const DistanceResult& r, const ExactDistance& truth,
+                                      const Pose& pose_a, const Pose& pose_b) {
+  const auto out_there = [&](const ExactDistance& d) {
+    return (oracle::to_vec(d.point_on_a) - pose_a.position).norm();
+  };
+  if (a_.bounded() || b_.bounded() || !truth.cores_meet()) return out_there(truth);
+  Pose parted = pose_b;
+  parted.position += 2.0 * std::abs(r.distance) * (pose_a.orientation.normalized() * r.normal);
+  return out_there(oracle::exact_distance(exact_a_, pose_a, exact_b_, parted));
+}
+
 std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const ExactDistance& truth,
                                                const Pose& pose_a, const Pose& pose_b) {
   Faults faults;
@@ -212,7 +226,7 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
   const double tolerance = kTolerance * size(truth, pose_a, pose_b) + 4.0 * kUnderflow;
   // Lines of two unbounded bodies that all but run along each other: the closest points are so far
   // away that doubles cannot say where, let alone to the tolerance.
-  const double closest_at = (oracle::to_vec(truth.point_on_a) - pose_a.position).norm();
+  const double closest_at = where_they_part(r, truth, pose_a, pose_b);
   const bool out_of_sight = !a_.bounded() && !b_.bounded() && kUlp * closest_at > tolerance;
   // Floors and wedges through both origins have no size that a rounding error could be relative to.
   const bool no_size = size(truth, pose_a, pose_b) == 0.0;
@@ -234,7 +248,9 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
                 text("witness on A is %.3g outside, tolerance %.3g", off_a, placed));
   faults.unless(off_b <= placed,
                 text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
-  look_at_witnesses(r, placed, faults);
+  const double beside =
+      a_.bounded() || b_.bounded() ? placed : std::max(placed, kTolerance * closest_at);
+  look_at_witnesses(r, placed, beside, faults);
   return faults.all;
 }
 

@@ -34,7 +34,8 @@ class DistanceJudge {
   //  - the status: converged within 1e-14 of size(), overlapping, touching and two unbounded bodies
   //    within 1.5e-14; overlapping and touching only where it is so; at the iteration limit only
   //    where two unbounded bodies are closest beyond what doubles can say
-  //  - the witness points: on their bodies, and `distance` apart along the normal; the normal: unit
+  //  - the witness points: on their bodies, and `distance` apart along the normal; of two unbounded
+  //    bodies that meet where doubles cannot say, beside each other by no more; the normal: unit
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,
                                                 const Pose& pose_a, const Pose& pose_b);
@@ -49,6 +50,11 @@ class DistanceJudge {
   // A ball of this radius fits into both (of a point or segment: around one of its points). Says no
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
+
+  // How far from A's origin the closest points are (m); of two unbounded bodies that overlap, of B
+  // moved out along the normal: there they would meet.
+  [[nodiscard]] double where_they_part(const DistanceResult& r, const oracle::ExactDistance& truth,
+                                       const Pose& pose_a, const Pose& pose_b);
 
   oracle::Body body_a_, body_b_;
   oracle::ExactBody exact_a_, exact_b_;

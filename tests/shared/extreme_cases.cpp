@@ -1,6 +1,7 @@
 #include "tests/shared/extreme_cases.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/shared/poses.hpp"
@@ -71,6 +72,25 @@ HardCase leaning(Random& random) {
   }
   const double away = random.log_uniform(1.0, 1e3);
   c.pose_b.position = away * random.direction();
+  return c;
+}
+
+HardCase hairs_breadth(Random& random) {
+  Body a = column(random, true), b = column(random, true);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  const Quat turns[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {1, 0, 0, 1}};
+  Quat turn = turns[random.integer(0, 4)];
+  if (random.chance(0.3)) turn = test::turned(Vec3::UnitZ(), random.uniform(-3.0, 3.0));
+  if (random.chance(0.3)) c.pose_a.orientation = turn;
+  for (int k = 0; k < 4; ++k) {
+    double& x = turn.coeffs()[k];
+    if (x != 0.0 || random.chance(0.4)) continue;
+    const double least = std::numeric_limits<double>::denorm_min();
+    x = random.sign() * (random.chance(0.5) ? least : random.log_uniform(1e-320, 1e-100));
+  }
+  c.pose_b.orientation = turn;
+  c.pose_b.position = random.log_uniform(0.3, 1e3) * random.direction();
+  if (random.chance(0.3)) move_together(c, Quat(0, 1, 0, 0));
   return c;
 }
 

@@ -13,6 +13,9 @@ namespace clearance::hard {
 // The same, leaning against each other by 1e-14 to 1 rad: closest, or meeting, up to 1e17 m away.
 [[nodiscard]] HardCase leaning(Random& random);
 
+// The same, leaning by 5e-324 to 1e-100 rad: what only components of a quaternion can say.
+[[nodiscard]] HardCase hairs_breadth(Random& random);
+
 // Bodies of 1e-120 to 1e80 m, one or both.
 [[nodiscard]] HardCase scales(Random& random);
 

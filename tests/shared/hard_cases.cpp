@@ -318,7 +318,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"far_poses", far_poses},
                                         {"selfsame", selfsame},
                                         {"razors", razors},
-                                        {"leaning", leaning}};
+                                        {"leaning", leaning},
+                                        {"hairs_breadth", hairs_breadth}};
 
 }  // namespace
 

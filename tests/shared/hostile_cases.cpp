@@ -1,5 +1,6 @@
 #include "tests/shared/hostile_cases.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -75,10 +76,12 @@ HardCase ulp_quads(Random& random) {
 HardCase dust(Random& random) {
   const double size =
       random.chance(0.5) ? random.log_uniform(1e-320, 1e-140) : random.log_uniform(1e80, 1e99);
+  // So that underflow makes no box flat.
+  const double thinnest = 4.0 * std::numeric_limits<double>::denorm_min() / size;
   const auto body = [&] {
     switch (random.integer(0, 3)) {
       case 0:
-        return scaled(box({1.0, random.log_uniform(1e-6, 1.0), 1.0}), size);
+        return scaled(box({1.0, std::max(thinnest, random.log_uniform(1e-6, 1.0)), 1.0}), size);
       case 1:
         return scaled(random_hull(random, 8), size);
       case 2:
