@@ -11,9 +11,10 @@
 
 namespace clearance {
 
-// Of a turn between two orientations, rad. Four squares, a root, a quotient and a product leave
-// each of the two unit quaternions within 5/4 * 2^-51 of the exact one; their difference within 5/4
-// * 2^-50, and twice that within 5/4 * 2^-49; nor is their product farther off.
+// Of a turn between two orientations, rad. Four squares, a root, a quotient and a product, or where
+// the norm is nearly 1 a term of a series in place of root and quotient, leave each of the two unit
+// quaternions within 5/4 * 2^-51 of the exact one; their difference within 5/4 * 2^-50, and twice
+// that within 5/4 * 2^-49; nor is their product farther off.
 inline constexpr double kTurnRounding = 0x1p-48;
 // Squares of differences below 1e-154 underflow; their norm is then below this, m.
 inline constexpr double kShiftUnderflow = 1e-150;

@@ -59,6 +59,11 @@ inline void put(const Mat3& turn, const Vec3& point, const Vec3& origin, Vec3& p
   }
 }
 
+// So for the length of a place that was just written.
+inline double length_of(const Vec3& v) noexcept {
+  return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
+}
+
 inline double sum_of_sizes(const Vec3& v) noexcept {
   return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z());
 }
@@ -86,7 +91,7 @@ Mat3 compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcep
     part.world_from_part.orientation = world_from_object.orientation * offset.orientation;
   }
   part.turn_error = offset_turns && object_turns ? kPlacingError : 0.0;
-  part.shift_error = kPlacingError * (world_from_object.position.norm() + part.offset_length);
+  part.shift_error = kPlacingError * (length_of(world_from_object.position) + part.offset_length);
   return offset_turns ? rotation_matrix(part.world_from_part.orientation) : turn;
 }
 
@@ -94,7 +99,7 @@ void place_ball(const Mat3& turn, PlacedPart& part) noexcept {
   const Vec3& position = part.world_from_part.position;
   Ball& ball = part.ball_in_world;
   put(turn, part.ball_in_part.centre, position, ball.centre);
-  const double error = kPlacingError * (part.ball_offset + position.norm()) + part.shift_error +
+  const double error = kPlacingError * (part.ball_offset + length_of(position)) + part.shift_error +
                        swept(part.turn_error, part.ball_offset);
   ball.radius = rounded_up(part.ball_in_part.radius + error);
   part.coordinates = sum_of_sizes(ball.centre) + sum_of_sizes(position);

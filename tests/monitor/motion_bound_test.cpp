@@ -100,6 +100,26 @@ TEST(MotionBound, TheOppositeQuaternionIsTheSameOrientation) {
   EXPECT_LT(moved_at_most(motion_between(pose, opposite), 1.0), 1e-14);
 }
 
+TEST(MotionBound, ANormThatIsOffCountsAsWhatItIsScaledFrom) {
+  Random random(5);
+  for (int i = 0; i < 20'000; ++i) {
+    Pose before = random.pose(1.0), after = turned(before, random.in_box(1.0), 1e-14 * (i % 7));
+    for (Pose* pose : {&before, &after}) {
+      pose->orientation.coeffs() *=
+          1.0 + std::pow(2.0, random.uniform(-53.0, -9.0)) * (i % 2 - 0.5);
+    }
+    using Exact = Eigen::Matrix<long double, 4, 1>;
+    const Exact from = before.orientation.coeffs().cast<long double>().normalized();
+    const Exact to = after.orientation.coeffs().cast<long double>().normalized();
+    const auto turn = static_cast<double>(2.0L * (to - from).norm());
+    const double told =
+        motion_between({.orientation = before.orientation}, {.orientation = after.orientation})
+            .turn;
+    ASSERT_LE(turn, told) << "case " << i;
+    ASSERT_LE(told, turn + 2.0 * kTurnRounding) << "case " << i;
+  }
+}
+
 TEST(MotionBound, ShiftsTooSmallToSquareStillCount) {
   EXPECT_GE(motion_between(test::at(0, 0, 0), test::at(1e-200, 0, 0)).shift, 1e-200);
 }
