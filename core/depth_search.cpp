@@ -76,13 +76,13 @@ bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
   return at.y() > 0.0 && at.x() * end.y() > at.y() * end.x();
 }
 
-bool DepthSearch::goes_on_along(const ConvexPolyhedron& body, const Vec3& n,
-                                const Vec3& exact_normal) const noexcept {
+bool DepthSearch::goes_on_along(bool is_y, const Vec3& n, const Vec3& exact_normal) const noexcept {
+  const ConvexPolyhedron& body = is_y ? body_.y() : body_.x();
   if (rises(body, n, level_)) return true;
   if (!lean_ || exact_normal.isZero(0.0)) return false;
   return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
     if (n.dot(ray.direction) < -level_ * ray.direction.norm()) return false;
-    return rises_exactly(ray, &body == &body_.y(), exact_normal);
+    return rises_exactly(ray, is_y, exact_normal);
   });
 }
 
@@ -90,7 +90,7 @@ void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
   const Facet& facet = body_.x().facets[index];
   const Vec3& n = facet.normal;
   if (!body_.y().bounded() &&
-      goes_on_along(body_.y(), -body_.direction_to_y(n), body_.x().exact_normals[index])) {
+      goes_on_along(true, -body_.direction_to_y(n), body_.x().exact_normals[index])) {
     return;
   }
   const std::size_t slot = cell(n);
@@ -105,7 +105,7 @@ void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
 void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
   const Facet& facet = body_.y().facets[index];
   const Vec3 n = -body_.direction_from_y(facet.normal);
-  if (lean_ ? goes_on_along(body_.x(), n, body_.y().exact_normals[index])
+  if (lean_ ? goes_on_along(false, n, body_.y().exact_normals[index])
             : rises(body_.x(), n, level_)) {
     return;
   }

@@ -154,9 +154,9 @@ class DepthSearch {
   // The same of a ray of Y that leans from one of X by next to nothing; nothing: not known.
   [[nodiscard]] std::optional<Rise> rise_of_leaning(const Arc& arc, const Ray& of_x,
                                                     const Ray& of_y) const noexcept;
-  // Does a body go on for ever along a facet of the other one, which looks along n in the body's
-  // frame? For certain.
-  [[nodiscard]] bool goes_on_along(const ConvexPolyhedron& body, const Vec3& n,
+  // Does X, or Y, go on for ever along a facet of the other one, which looks along n in its frame?
+  // For certain. Which of them it is must be told: both may be the same object.
+  [[nodiscard]] bool goes_on_along(bool is_y, const Vec3& n,
                                    const Vec3& exact_normal) const noexcept;
   [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
                                    const Vec3& exact_normal) const noexcept;

@@ -63,8 +63,7 @@ void for_terms_of_product(const Take& take) noexcept {
   take(w, w, w, 1.0);
 }
 
-// Of a rotation by 90, 120 or 180 degrees that leads axes to axes, or of none. First where there is
-// none.
+// Of the rotations that lead axes to axes: by 90, 120 or 180 degrees, and by none.
 constexpr std::size_t kTurns = 24;
 constexpr std::array<Numbers, kTurns> all_turns() noexcept {
   std::array<Numbers, kTurns> out{};
@@ -91,6 +90,7 @@ int exponent_of(const ExactSum* first, std::size_t count) noexcept {
 }  // namespace
 
 void ExactSum::add(double x) noexcept {
+  if (size_ == parts_.size()) spread();
   std::size_t kept = 0;
   double high = x;
   for (std::size_t i = 0; i < size_; ++i) {
@@ -102,10 +102,28 @@ void ExactSum::add(double x) noexcept {
   size_ = kept;
 }
 
+// Compress, from the largest down: Shewchuk, Adaptive precision floating-point arithmetic, 1997,
+// §2.8.
+void ExactSum::spread() noexcept {
+  if (size_ == 0) return;
+  std::size_t first = size_ - 1;
+  double high = parts_[first];
+  for (std::size_t i = size_ - 1; i-- > 0;) {
+    const DoubleDouble s = exact::sum(high, parts_[i]);
+    if (s.low != 0.0) parts_[first--] = s.high;
+    high = s.low != 0.0 ? s.low : s.high;
+  }
+  parts_[first] = high;
+  std::copy(parts_.begin() + first, parts_.begin() + size_, parts_.begin());
+  size_ -= first;
+}
+
 DoubleDouble ExactSum::scaled(int exponent) const noexcept {
+  ExactSum all = *this;
+  all.spread();
   DoubleDouble out;
-  for (std::size_t i = size_ > 3 ? size_ - 3 : 0; i < size_; ++i) {
-    out = out + DoubleDouble(std::ldexp(parts_[i], exponent));
+  for (std::size_t i = all.size_ > 3 ? all.size_ - 3 : 0; i < all.size_; ++i) {
+    out = out + DoubleDouble(std::ldexp(all.parts_[i], exponent));
   }
   return out;
 }

@@ -37,7 +37,11 @@ class ExactSum {
   [[nodiscard]] DoubleDouble scaled(int exponent) const noexcept;
 
  private:
-  std::array<double, 48> parts_;  // the doubles' range has room for 40
+  // Sums that cancel leave parts of few bits, and there may be any number of these; so that the
+  // same sum has parts of 53 bits each.
+  void spread() noexcept;
+
+  std::array<double, 48> parts_;  // once spread, the doubles' range has room for 40
   std::size_t size_ = 0;
 };
 

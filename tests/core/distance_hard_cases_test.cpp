@@ -3,6 +3,7 @@
 
 #include <ostream>
 #include <stdexcept>
+#include <variant>
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
@@ -153,6 +154,21 @@ TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
     const auto faults =
         judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
     EXPECT_TRUE(faults.empty()) << joined(faults);
+  }
+}
+
+// One shape may stand in two places: which of the two bodies is meant is no question of the
+// address.
+TEST(Distance, OfOneObjectTwiceIsThatOfTwoEqualOnes) {
+  for (const std::uint64_t seed : {54, 108, 263, 1118, 1639}) {
+    const hard::HardCase c = hard::case_of("hairs_breadth", seed);
+    const auto body = std::get<ConvexPolyhedron>(model(c.a)), equal = body;
+    const RelativePose pose = relative_pose(c.pose_a, c.pose_b);
+    TrackingState of_one, of_two;
+    const DistanceResult one = distance(body, body, pose, of_one);
+    const DistanceResult two = distance(body, equal, pose, of_two);
+    EXPECT_EQ(one.lower, two.lower) << seed;
+    EXPECT_EQ(one.upper, two.upper) << seed;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace clearance {
@@ -13,6 +14,32 @@ constexpr double kLeast = std::numeric_limits<double>::denorm_min();
 
 Lean lean(const Quat& a, const Quat& b) {
   return Lean(relative_pose({Vec3::Zero(), a}, {Vec3::Zero(), b}));
+}
+
+// Each two of these leave a part of one bit, two bits above the last one.
+ExactSum of_single_bits(int count) {
+  ExactSum sum;
+  sum.add(1.0);
+  for (int k = 0; k < count; ++k) {
+    const double far = std::ldexp(1.0, 54 + 2 * k);
+    sum.add(far + std::ldexp(1.0, 2 * k + 2));
+    sum.add(-far);
+  }
+  return sum;
+}
+
+TEST(ExactSum, OfPartsOfSingleBitsIsScaledToTwiceTheDigits) {
+  const DoubleDouble sum = of_single_bits(10).scaled(-20);
+  EXPECT_EQ(sum.high, 1398101.0 / 1048576.0);  // 1 + 4 + 16 + ... + 4^10
+  EXPECT_EQ(sum.low, 0.0);
+}
+
+TEST(ExactSum, HoldsAnyNumberOfParts) {
+  ExactSum sum = of_single_bits(400);
+  EXPECT_LE(sum.end() - sum.begin(), 48);
+  for (int k = 400; k > 0; --k) sum.add(-std::ldexp(1.0, 2 * k));
+  EXPECT_EQ(sum.rounded(), 1.0);
+  EXPECT_EQ(sum.end() - sum.begin(), 1);
 }
 
 TEST(Lean, OfALineTurnedByASubnormalIsAcrossTheTurn) {
