@@ -216,6 +216,9 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
   Faults faults;
   if (!a_.bounded() && !b_.bounded() && r.lower == -kInfinity) {
     faults.unless(truth.cores_meet(), "no lower bound, but they are apart");
+    faults.unless(truth.squared_depth == 0,
+                  text("no lower bound and an upper one of %.17g, but the truth is %.17g", r.upper,
+                       truth.lower));
     faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
                   text("status %s without a lower bound", name(r.status)));
     return faults.all;
@@ -230,7 +233,8 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
   const bool out_of_sight = !a_.bounded() && !b_.bounded() && kUlp * closest_at > tolerance;
   // Floors and wedges through both origins have no size that a rounding error could be relative to.
   const bool no_size = size(truth, pose_a, pose_b) == 0.0;
-  if ((out_of_sight || no_size) && r.status == DistanceStatus::kIterationLimit) return faults.all;
+  const bool may_give_up = no_size || (out_of_sight && truth.squared_depth == 0);
+  if (may_give_up && r.status == DistanceStatus::kIterationLimit) return faults.all;
   look_at_status(r, truth, tolerance, faults);
   if (r.status == DistanceStatus::kTouching && tolerance > 0.0 && truth.cores_meet()) {
     faults.unless(!overlap_by(tolerance, pose_a, pose_b),
@@ -248,9 +252,10 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
                 text("witness on A is %.3g outside, tolerance %.3g", off_a, placed));
   faults.unless(off_b <= placed,
                 text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
-  const double beside =
-      a_.bounded() || b_.bounded() ? placed : std::max(placed, kTolerance * closest_at);
-  look_at_witnesses(r, placed, beside, faults);
+  // The normal, a rounded one, leads to where they part but for its rounding; no point there can be
+  // told, and those that are told stay near the bodies.
+  const double led = std::min(kTolerance * closest_at, size(truth, pose_a, pose_b));
+  look_at_witnesses(r, placed, out_of_sight ? std::max(placed, led) : placed, faults);
   return faults.all;
 }
 
