@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "tests/shared/exact_depth.hpp"
+#include "tests/shared/exact_features.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/poses.hpp"
 
@@ -97,6 +100,56 @@ TEST(ExactOracle, RowsAndCornersOfTheSameBodyGiveTheSameNumber) {
     EXPECT_EQ(exact_distance(corners(a), pose_a, b, pose_b).squared, by_rows);
     EXPECT_EQ(exact_distance(corners(a), pose_a, corners(b), pose_b).squared, by_rows);
     EXPECT_EQ(exact_distance(b, pose_b, a, pose_a).squared, by_rows);
+  }
+}
+
+// The same body with its axis along x: no features that are plain.
+Body lying(Body body) {
+  for (HalfSpace& row : body.rows)
+    row.normal = Vec3(row.normal.z(), row.normal.x(), row.normal.y());
+  for (Vec3& point : body.points) point = Vec3(point.z(), point.x(), point.y());
+  return body;
+}
+
+// Six corners of a ring and two tips, or twice the ring: as points, and the prism by its sides.
+std::array<Body, 3> plain_bodies(Random& random) {
+  std::array<Body, 3> out;
+  auto& [lens, prism, by_rows] = out;
+  const double height = random.uniform(0.1, 0.5);
+  const Vec3 up = height * Vec3::UnitZ();
+  lens.points = {up, -0.5 * up};
+  for (int k = 0; k < 6; ++k) {
+    const double azimuth = 1.0 * k + random.uniform(0.0, 0.8);
+    const Vec3 at(std::cos(azimuth), std::sin(azimuth), 0.0);
+    lens.points.push_back(at);
+    prism.points.insert(prism.points.end(), {at + up, at - up});
+    by_rows.rows.push_back({at, 0.7});
+  }
+  by_rows.rows.push_back({Vec3::UnitZ(), height});
+  by_rows.rows.push_back({-Vec3::UnitZ(), 0.3});
+  return out;
+}
+
+TEST(ExactOracle, KnowsPrismsAndLensesByTheirOutlineAsByAllThatThereMayBe) {
+  Random random(5);
+  const Eigen::Quaterniond upright(1, -1, -1, -1);  // takes x to z
+  const auto turn = [&] {                           // of small integers, so that products are exact
+    const int x = random.integer(-9, 9), y = random.integer(-9, 9), z = random.integer(-9, 9);
+    return Eigen::Quaterniond(1, x, y, z);
+  };
+  for (int k = 0; k < 4; ++k) {
+    const auto of_a = plain_bodies(random), of_b = plain_bodies(random);
+    for (const Body& a : of_a) {
+      const Body& b = of_b[static_cast<std::size_t>(random.integer(0, 2))];
+      const Pose pose_a{Vec3::Zero(), turn()}, pose_b{random.in_box(0.2), turn()};
+      const Pose lying_a{pose_a.position, pose_a.orientation * upright};
+      const Pose lying_b{pose_b.position, pose_b.orientation * upright};
+      ASSERT_TRUE(oracle::features_are_plain(a) && !oracle::features_are_plain(lying(a)));
+      const auto depth = oracle::exact_squared_depth(a, pose_a, b, pose_b);
+      ASSERT_TRUE(depth.has_value());
+      EXPECT_GT(*depth, 0);
+      EXPECT_EQ(oracle::exact_squared_depth(lying(a), lying_a, lying(b), lying_b), depth);
+    }
   }
 }
 

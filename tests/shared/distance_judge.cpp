@@ -8,6 +8,7 @@
 
 #include "core/rounding.hpp"
 #include "tests/shared/exact_depth.hpp"
+#include "tests/shared/exact_features.hpp"
 #include "tests/shared/exact_placement.hpp"
 
 namespace clearance {
@@ -26,7 +27,7 @@ constexpr double kTolerance = 1.5e-14;
 // unbounded.
 constexpr double kConvergedTolerance = 1e-14;
 
-// Rows or points; the exact depth takes the square of it.
+// Rows or points; where their features are not plain, the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
 
 template <class... Values>
@@ -175,7 +176,8 @@ ExactDistance DistanceJudge::truth(const Pose& pose_a, const Pose& pose_b) {
 
 bool DistanceJudge::depth_is_asked_for() const {
   const auto small = [](const Body& body) {
-    return body.rows.size() <= kDepthOf && body.points.size() <= kDepthOf;
+    return (body.rows.size() <= kDepthOf && body.points.size() <= kDepthOf) ||
+           oracle::features_are_plain(body);
   };
   return small(body_a_) && small(body_b_);
 }

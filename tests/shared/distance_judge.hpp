@@ -24,8 +24,8 @@ class DistanceJudge {
 
   [[nodiscard]] DistanceResult ask(const Pose& pose_a, const Pose& pose_b,
                                    TrackingState& state) const;
-  // The signed distance; of bodies that overlap and have more than 16 rows or points, or that no
-  // translation parts, without the depth.
+  // The signed distance; of bodies that overlap and have more than 16 rows or points and are no
+  // prisms or lenses (exact_features.hpp), or that no translation parts, without the depth.
   [[nodiscard]] oracle::ExactDistance truth(const Pose& pose_a, const Pose& pose_b);
 
   // What the result gets wrong; empty when nothing:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "tests/shared/exact_features.hpp"
 #include "tests/shared/exact_placement.hpp"
 
 namespace clearance::oracle {
@@ -11,6 +12,8 @@ namespace {
 
 // Directions whose sine is above this are good to 1e-10 in doubles.
 constexpr double kCrossing = 1e-5;
+
+constexpr std::size_t kCornersAsked = 8;
 
 Vec3 rounded(const RationalVec& v) {
   const IntegerVec p = primitive(v);
@@ -25,57 +28,6 @@ Vec3 rounded(const RationalVec& v) {
     out[k] = std::ldexp(mantissa, static_cast<int>(e - exponent));
   }
   return out.normalized();
-}
-
-// One body's facet normals and edge directions in frame A, with repetitions.
-struct Features {
-  std::vector<RationalVec> normals, edges;
-};
-
-// Does the line where rows i and j meet run along the body? Clips it by all other rows.
-bool is_edge(const std::vector<HalfSpace>& rows, std::size_t i, std::size_t j) {
-  const RationalVec n = exact(rows[i].normal), m = exact(rows[j].normal);
-  const RationalVec along = cross(n, m);
-  if (is_zero(along)) return false;
-  const Rational length2 = dot(along, along);
-  const RationalVec on_line = (Rational(rows[i].offset) / length2) * cross(m, along) +
-                              (Rational(rows[j].offset) / length2) * cross(along, n);
-  std::optional<Rational> begin, end;
-  for (const HalfSpace& row : rows) {
-    const RationalVec k = exact(row.normal);
-    const Rational slope = dot(k, along), room = Rational(row.offset) - dot(k, on_line);
-    if (slope == 0) {
-      if (room < 0) return false;
-      continue;
-    }
-    const Rational at = room / slope;
-    std::optional<Rational>& limit = slope > 0 ? end : begin;
-    if (!limit || (slope > 0 ? at < *limit : at > *limit)) limit = at;
-  }
-  return !begin || !end || *begin < *end;
-}
-
-Features features_of(const Body& body) {
-  Features out;
-  for (std::size_t i = 0; i < body.rows.size(); ++i) {
-    out.normals.push_back(exact(body.rows[i].normal));
-    for (std::size_t j = 0; j < i; ++j) {
-      if (!is_edge(body.rows, i, j)) continue;
-      out.edges.push_back(cross(exact(body.rows[i].normal), exact(body.rows[j].normal)));
-    }
-  }
-  if (!body.rows.empty()) return out;
-  for (std::size_t i = 0; i < body.points.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      out.edges.push_back(exact(body.points[i]) - exact(body.points[j]));
-      for (std::size_t k = 0; k < j; ++k) {
-        const RationalVec other = exact(body.points[k]) - exact(body.points[j]);
-        out.normals.push_back(cross(out.edges.back(), other));
-        out.normals.push_back(Rational(-1) * out.normals.back());
-      }
-    }
-  }
-  return out;
 }
 
 // The same direction once, whatever its length and sign.
@@ -94,22 +46,13 @@ class Search {
   Search(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b)
       : a_(a), b_(b), place_(pose_a, pose_b) {}
 
-  // Along n (frame A, any length): the exact square of how far B must go; nothing if for ever.
+  // Along n (frame A, any length), exactly: how far must B go, if less than is known?
   void look(const RationalVec& n) {
-    if (is_zero(n)) return;
-    const Support of_a = a_.support(primitive(n));
-    if (of_a.is_ray) return;
-    const RationalVec m = Rational(-1) * place_.b_direction(n);
-    const Support of_b = b_.support(primitive(m));
-    if (of_b.is_ray) return;
-    const Rational reach =
-        dot(n, of_a.vector) + dot(m, of_b.vector) - dot(n, place_.a_from_b_translation);
-    if (reach <= 0) {
-      best_ = 0;
-      root_ = 0.0;
-      return;
-    }
-    const Rational squared = reach * reach / dot(n, n);
+    if (is_zero(n) || a_corner_is_as_far(n)) return;
+    const std::optional<RationalVec> corner = remember_corner(n);
+    if (!corner) return;
+    const Rational reach = dot(n, *corner);
+    const Rational squared = reach <= 0 ? Rational(0) : Rational(reach * reach / dot(n, n));
     if (!best_ || squared < *best_) best_ = squared;
     root_ = std::sqrt(best_->get_d());
   }
@@ -118,26 +61,42 @@ class Search {
   [[nodiscard]] bool hopeless(const Vec3& n) {
     if (!best_) return false;
     double least = -1e300;
-    for (const Vec3& corner : corners_) least = std::max(least, corner.dot(n));
+    for (const Vec3& corner : rounded_corners_) least = std::max(least, corner.dot(n));
     return least > root_ + 1e-9 * (root_ + size_);
   }
-  void remember_corner(const RationalVec& n) {
+  // The corner of {a - b} that is farthest along n, if there is one.
+  std::optional<RationalVec> remember_corner(const RationalVec& n) {
     const Support of_a = a_.support(primitive(n));
+    if (of_a.is_ray) return {};
     const Support of_b = b_.support(primitive(Rational(-1) * place_.b_direction(n)));
-    if (of_a.is_ray || of_b.is_ray) return;
-    const RationalVec c =
-        of_a.vector - (place_.a_from_b_rotation * of_b.vector + place_.a_from_b_translation);
-    corners_.emplace_back(c[0].get_d(), c[1].get_d(), c[2].get_d());
-    size_ = std::max(size_, corners_.back().norm());
+    if (of_b.is_ray) return {};
+    corners_.push_back(of_a.vector -
+                       (place_.a_from_b_rotation * of_b.vector + place_.a_from_b_translation));
+    rounded_corners_.push_back(to_vec(corners_.back()));
+    size_ = std::max(size_, rounded_corners_.back().norm());
+    return corners_.back();
   }
 
   [[nodiscard]] const Placement& place() const { return place_; }
   [[nodiscard]] const std::optional<Rational>& best() const { return best_; }
 
  private:
+  // Of neighbouring directions it is mostly one of the last.
+  [[nodiscard]] bool a_corner_is_as_far(const RationalVec& n) const {
+    if (!best_) return false;
+    const Rational enough = *best_ * dot(n, n);
+    const std::size_t count = std::min(corners_.size(), kCornersAsked);
+    return std::any_of(corners_.end() - static_cast<std::ptrdiff_t>(count), corners_.end(),
+                       [&](const RationalVec& corner) {
+                         const Rational reach = dot(n, corner);
+                         return reach >= 0 && reach * reach >= enough;
+                       });
+  }
+
   ExactBody a_, b_;
   Placement place_;
-  std::vector<Vec3> corners_;
+  std::vector<RationalVec> corners_;
+  std::vector<Vec3> rounded_corners_;
   double size_ = 0.0, root_ = 0.0;
   std::optional<Rational> best_;
 };

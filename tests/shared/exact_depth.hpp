@@ -3,8 +3,8 @@
 // The shortest translation that parts two convex bodies is along the normal of a facet of either,
 // or across an edge of each (S. Gottschalk, M. Lin, D. Manocha, "OBBTree", 1996, for the separating
 // axis theorem). Along any other direction it is longer, so more directions do no harm: all rows
-// count as facets, and of bodies given by points all triples and pairs. Doubles decide which
-// directions are out of the question by far; rationals do the rest.
+// count as facets, and of bodies given by points all triples and pairs (see exact_features.hpp).
+// Doubles decide which directions are out of the question by far; rationals do the rest.
 #pragma once
 
 #include <optional>

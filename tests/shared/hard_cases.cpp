@@ -7,6 +7,7 @@
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/exact_placement.hpp"
 #include "tests/shared/extreme_cases.hpp"
+#include "tests/shared/foil_cases.hpp"
 #include "tests/shared/hostile_cases.hpp"
 #include "tests/shared/tied_cases.hpp"
 
@@ -319,7 +320,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"selfsame", selfsame},
                                         {"razors", razors},
                                         {"leaning", leaning},
-                                        {"hairs_breadth", hairs_breadth}};
+                                        {"hairs_breadth", hairs_breadth},
+                                        {"foils", foils}};
 
 }  // namespace
 
