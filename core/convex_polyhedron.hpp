@@ -26,6 +26,10 @@ namespace clearance {
 inline constexpr std::int32_t kNone = -1;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Beyond this, products of the queries' lengths could overflow: no coordinate of an anchor and no
+// radius is larger, m.
+inline constexpr double kLargestCoordinate = 1e100;
+
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
 struct Facet {
   Vec3 point;     // a point of the facet (for a facet without edges: any point of its plane)
@@ -141,7 +145,8 @@ struct ConvexPolyhedron {
   // What is certain of Precision::slack whatever the pose, as A of a pair and as B, m; of an
   // unbounded body without its reach. Made by add_walking_tables().
   double slack_as_a = 0.0, slack_as_b = 0.0;
-  double radius = 0.0;  // the body is the polyhedron plus a ball of this radius, m (exact)
+  // The body is the polyhedron plus a ball of this radius, m (exact); 0 to kLargestCoordinate.
+  double radius = 0.0;
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
 

@@ -23,7 +23,7 @@ namespace clearance {
 inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
                       const ConvexPolyhedron& b) noexcept {
   const double sum = radii(a, b);
-  if (sum == 0.0) return;
+  if (sum == 0.0 || r.upper == -kInfinity) return;  // what no translation parts stays so
   const double rounding = kRadiusRounding * (sum + std::abs(r.upper - sum));
   r.distance -= sum;
   r.lower -= sum + rounding;

@@ -10,9 +10,6 @@
 namespace clearance::exact {
 namespace {
 
-// Beyond this, squares and products of the queries could overflow.
-constexpr double kLargestCoordinate = 1e100;
-
 // Rounds the solid's numbers and keeps the largest error made.
 class Rounder {
  public:

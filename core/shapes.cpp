@@ -25,9 +25,13 @@ ShapeError bad_row(std::size_t row, const std::string& what) {
 
 // Nothing when the radius can be used.
 std::string radius_fault(double radius) {
-  if (std::isfinite(radius) && radius >= 0.0) return {};
-  return "the radius is not a finite number of at least 0";
+  if (!std::isfinite(radius) || !(radius >= 0.0)) {
+    return "the radius is not a finite number of at least 0";
+  }
+  return radius <= kLargestCoordinate ? "" : "the radius is more than 1e100 m";
 }
+
+bool is_too_far(const Vec3& point) { return !(point.cwiseAbs().maxCoeff() <= kLargestCoordinate); }
 
 struct SegmentLine {
   Vec3 direction;
@@ -114,6 +118,7 @@ ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_
 
 ShapeResult point(const Vec3& position, double radius) {
   if (!position.allFinite()) return ShapeError{"the point has a coordinate that is not finite"};
+  if (is_too_far(position)) return ShapeError{"the point lies more than 1e100 m from the origin"};
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
   ConvexPolyhedron body;
   body.vertices.push_back({position, 0, 0});
@@ -128,6 +133,9 @@ ShapeResult point(const Vec3& position, double radius) {
 ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   if (!start.allFinite() || !end.allFinite()) {
     return ShapeError{"the segment has a coordinate that is not finite"};
+  }
+  if (is_too_far(start) || is_too_far(end)) {
+    return ShapeError{"an end of the segment lies more than 1e100 m from the origin"};
   }
   if (start == end) return ShapeError{"the segment's two ends are the same point"};
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};

@@ -2,8 +2,8 @@
 //
 // Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
 // rounded once at the end. What is not a solid closed convex body is refused with a reason a person
-// can act on. Redundant half-spaces disappear. Load time only: allocates, may take milliseconds,
-// never throws.
+// can act on, and so are lengths beyond 1e100 m. Redundant half-spaces disappear. Load time only:
+// allocates, may take milliseconds, never throws.
 #pragma once
 
 #include <span>

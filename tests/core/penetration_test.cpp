@@ -166,15 +166,18 @@ TEST(Penetration, OfFacingHalfSpacesIsHowFarTheyReachIntoEachOther) {
 }
 
 TEST(Penetration, IsUnknownWhereNoTranslationParts) {
-  const ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
+  ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
   const ConvexPolyhedron wall = test::half_space({1, 0, 0}, 0.0);
-  const DistanceResult r = cold(floor, wall, at(0, 0, 0));
-  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
-  EXPECT_TRUE(std::isnan(r.distance));
-  EXPECT_EQ(r.lower, -kInfinity);
-  EXPECT_LT(r.upper, 0.0);
-  EXPECT_FALSE(r.normal.allFinite());
-  EXPECT_TRUE(r.point_on_a.allFinite());
+  for (const double radius : {0.0, 0.25}) {
+    floor.radius = radius;
+    const DistanceResult r = cold(floor, wall, at(0, 0, 0));
+    EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+    EXPECT_TRUE(std::isnan(r.distance));
+    EXPECT_EQ(r.lower, -kInfinity);
+    EXPECT_LT(r.upper, 0.0);
+    EXPECT_FALSE(r.normal.allFinite());
+    EXPECT_TRUE(r.point_on_a.allFinite());
+  }
 }
 
 TEST(Penetration, OfSegmentsThatCrossIsNothingButTheirRadii) {

@@ -22,6 +22,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMost = std::numeric_limits<double>::max();
 
 TEST(Shapes, BoxIsExactInEveryNumber) {
   const ConvexPolyhedron body = made(box({0.1, 0.2, 0.3}));
@@ -110,6 +111,11 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
   EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, 3}, 0.1)), HasSubstr("the same point"));
   EXPECT_THAT(refusal(point({1, 2, kNan}, 0.1)), HasSubstr("not finite"));
   EXPECT_THAT(refusal(point({1, 2, 3}, -0.1)), HasSubstr("radius"));
+  EXPECT_THAT(refusal(point({1, 2, 3}, 2e100)), HasSubstr("the radius is more than 1e100 m"));
+  EXPECT_THAT(refusal(point({1, -2e100, 3}, 0.1)), HasSubstr("more than 1e100 m from the origin"));
+  EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, kMost}, 0.1)), HasSubstr("an end of the segment"));
+  EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, 4}, kMost)), HasSubstr("1e100 m"));
+  EXPECT_THAT(refusal(box({1, kMost, 1})), HasSubstr("1e100 m"));
   const std::vector<Eigen::Vector2d> line = {{0, 0}, {1, 1}, {2, 2}};
   EXPECT_THAT(refusal(prism(line, 0, 1)), HasSubstr("no area"));
   const std::vector<Eigen::Vector2d> triangle = {{0, 0}, {1, 0}, {0, 1}};

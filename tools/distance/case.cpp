@@ -37,8 +37,7 @@ std::array<double, N> numbers(const Json& list, const std::string& where, const 
   return out;
 }
 
-// As far as the core's shapes may reach: squares of such lengths are far from overflowing.
-constexpr double kFarthest = 1e100;  // m
+constexpr double kFarthest = kLargestCoordinate;  // m
 
 Pose read_pose(const Json& list, const std::string& where) {
   const auto v = numbers<7>(list, where, "[x, y, z, qw, qx, qy, qz]");
