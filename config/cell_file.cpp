@@ -11,6 +11,7 @@
 #include "config/object_reader.hpp"
 #include "config/pair_reader.hpp"
 #include "config/quantities.hpp"
+#include "config/refresh_share.hpp"
 #include "config/revision.hpp"
 #include "config/scalar.hpp"
 #include "config/shape_reader.hpp"
@@ -41,10 +42,12 @@ class CellReader {
   void read_dds(const YamlNode& node, Scene& scene);
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
+  void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
   Complaints& complaints_;
   Revision& revision_;
+  const YamlNode* budget_ = nullptr;  // where the cell gives it
 };
 
 std::optional<Units> CellReader::read_units(const YamlNode& node) {
@@ -65,9 +68,10 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
     scene.rate_hz =
         read_number(*rate, kRates, "the rate in Hz", complaints_).value_or(scene.rate_hz);
   }
-  if (const YamlNode* budget = map.optional("budget")) {
+  budget_ = map.optional("budget");
+  if (budget_ != nullptr) {
     const auto queries =
-        read_integer(*budget, 1, kMaxBudget, "distance queries a tick", complaints_);
+        read_integer(*budget_, 1, kMaxBudget, "distance queries a tick", complaints_);
     if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
   }
   if (const YamlNode* refresh = map.optional("refresh_s")) {
@@ -177,6 +181,18 @@ void CellReader::read(const YamlNode& root, Scene& scene) {
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
   read_objects_and_pairs(map, quantities, scene);
   map.refuse_unknown_keys();
+  if (complaints_.empty()) refuse_small_budget(root, scene);
+}
+
+void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
+  const RefreshShare share = refresh_share(scene);
+  if (share.queries() <= scene.budget) return;
+  complaints_.add(
+      budget_ != nullptr ? *budget_ : root,
+      "found a budget of " + std::to_string(scene.budget) + "; expected at least " +
+          std::to_string(share.queries()) +
+          " queries a tick, which refreshing every pair within refresh_s takes (ticks: " +
+          std::to_string(share.ticks) + "): raise budget or refresh_s");
 }
 
 }  // namespace

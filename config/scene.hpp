@@ -64,7 +64,7 @@ struct Scene {
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;  // every pair is refreshed this often, even if nothing moves and nobody
-                            // asks; as far as the budget allows
+                            // asks, whatever is urgent: a cell's budget covers it (RefreshShare)
   bool evaluate_all = false;  // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "config/refresh_share.hpp"
 #include "monitor/evaluation_batch.hpp"
 
 namespace clearance {
@@ -19,7 +20,7 @@ bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
 AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
                        const PairTable& table) {
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (!scene.pairs[p].publish && !scene.evaluate_all) continue;
+    if (!is_asked(scene.pairs[p], scene)) continue;
     pairs_.push_back(p);
     rows_ += table.rows_of(p);
   }

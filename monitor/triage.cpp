@@ -24,14 +24,18 @@ constexpr std::uint32_t kCatchUp = 4;
 constexpr std::uint64_t kRestlessTicks = 16;
 constexpr std::uint32_t kMostRestless = 256;  // a tick
 
-std::uint64_t ticks_of_refresh(const Scene& scene) {
-  return static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
-}
-
-std::uint32_t refreshed_per_tick(const Scene& scene) {
-  const std::uint64_t ticks = ticks_of_refresh(scene);
+std::uint32_t refreshed_per_tick(const Scene& scene, std::uint64_t ticks) {
   const std::uint64_t pairs = (scene.pairs.size() + ticks - 1) / ticks;
   return std::max(kLeastRefreshed, static_cast<std::uint32_t>(pairs));
+}
+
+// Takes a step with so many queries fewer.
+template <class Step>
+void sparing(std::uint32_t queries, Evaluation& evaluation, const Step& step) noexcept {
+  const std::uint32_t spared = std::min(queries, evaluation.queries_left);
+  evaluation.queries_left -= spared;
+  step();
+  evaluation.queries_left += spared;
 }
 
 std::uint32_t rows_of(std::span<const std::uint32_t> pairs, const PairTable& table) noexcept {
@@ -44,8 +48,10 @@ std::uint32_t rows_of(std::span<const std::uint32_t> pairs, const PairTable& tab
 Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
                WorkerPool& pool)
     : budget_(scene.budget),
-      refresh_ticks_(ticks_of_refresh(scene)),
-      per_tick_(refreshed_per_tick(scene)),
+      share_(refresh_share(scene)),
+      asked_pace_(share_.asked, share_.ticks, share_.queries() <= scene.budget),
+      others_pace_(share_.others, share_.ticks, share_.queries() <= scene.budget),
+      per_tick_(refreshed_per_tick(scene, share_.ticks)),
       asked_(scene, parts, table),
       counts_(scene),
       urgency_(scene, parts),
@@ -66,7 +72,22 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
                                    const ZoneRound& zones, PairTable& table) noexcept {
   Evaluation evaluation{objects, parts, cycle, table, budget_};
   begin(stirred, evaluation);
+  asked_pace_.begin_tick();
+  others_pace_.begin_tick();
   asked_done_ = asked_.every_tick() && has_room(table);
+  const std::uint32_t kept = others_pace_.kept() + (asked_done_ ? 0 : asked_pace_.kept());
+  sparing(kept, evaluation, [&] { evaluate_first(zones, evaluation); });
+  evaluate_in_turn(evaluation);
+  evaluate_restless(evaluation);
+  decide_passages(zones, evaluation);
+  passages_.finish();
+  put_to_sleep(evaluation);
+  find_oldest(evaluation);
+  return budget_ - evaluation.queries_left;
+}
+
+// What must not wait.
+void Triage::evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noexcept {
   if (asked_.every_tick()) look_at_asked(evaluation);
   look_at_awake(evaluation);
   find_horizon();
@@ -75,17 +96,15 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
   evaluate_minimum(evaluation);
   evaluate_urgent(evaluation);
   decide_passages(zones, evaluation);
-  // Pairs asked for that outnumber the budget must not starve the rest.
+}
+
+// Pairs asked for that outnumber the budget must not starve the rest, nor these those.
+void Triage::evaluate_in_turn(Evaluation& evaluation) noexcept {
   const bool covered = asked_.pairs().size() <= evaluation.queries_left;
-  if (covered) evaluate_asked(evaluation);
-  refresh_stalest(evaluation);
+  if (covered) sparing(others_pace_.kept(), evaluation, [&] { evaluate_asked(evaluation); });
+  const std::uint32_t kept = covered ? 0 : asked_pace_.kept();
+  sparing(kept, evaluation, [&] { refresh_stalest(evaluation); });
   if (!covered) evaluate_asked(evaluation);
-  evaluate_restless(evaluation);
-  decide_passages(zones, evaluation);
-  passages_.finish();
-  put_to_sleep(evaluation);
-  find_oldest(evaluation);
-  return budget_ - evaluation.queries_left;
 }
 
 void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept {
@@ -102,7 +121,9 @@ void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluatio
 
 // Whatever is urgent can be evaluated besides, so that it need not come first.
 bool Triage::has_room(const PairTable& table) const noexcept {
-  return rows_of(awake_, table) + rows_of(broad_phase_.woken(), table) <= budget_ - asked_.rows();
+  const std::uint32_t others = rows_of(awake_, table) + rows_of(broad_phase_.woken(), table);
+  return asked_.rows() + others_pace_.kept() <= budget_ &&
+         others <= budget_ - asked_.rows() - others_pace_.kept();
 }
 
 void Triage::look_at_asked(Evaluation& evaluation) noexcept {
@@ -132,13 +153,14 @@ void Triage::look_at_awake(Evaluation& evaluation) noexcept {
 
 // Whether a lower bound of a known pair is `enough`: by its models from coarse to fine, short of
 // the parts. What proves pairs far may not starve those that are near: half of the budget is
-// theirs.
+// theirs; nor those whose turn it is.
 template <class Enough>
 bool Triage::by_models(std::uint32_t pair, Evaluation& evaluation, const Enough& enough) noexcept {
   const RowBounds balls = broad_phase_.by_balls(pair);
   if (enough(balls.lower)) return true;
   const bool hopeless = balls.upper <= broad_phase_.horizon();
-  if (hopeless || evaluation.queries_left <= (budget_ + 1) / 2) return false;
+  const std::uint32_t spared = std::max((budget_ + 1) / 2, others_pace_.kept());
+  if (hopeless || evaluation.queries_left <= spared) return false;
   if (!hulls_.possible(evaluation.table.entries[pair])) return false;
   const double lower = hulls_.lower(pair, evaluation);
   if (!enough(lower)) return false;
@@ -217,36 +239,48 @@ void Triage::decide_passages(const ZoneRound& zones, Evaluation& evaluation) noe
 
 // As far as the budget goes; where that was in the last tick, it begins in this one.
 void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
-  if (asked_done_) return;
+  if (asked_done_) return asked_pace_.through_with_all();
+  std::uint32_t rows = 0;
   const auto pairs = asked_.pairs();
-  for (std::size_t i = 0; i < pairs.size() && evaluation.queries_left > 0; ++i) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (next_asked_ >= pairs.size()) next_asked_ = 0;
-    const std::uint32_t pair = pairs[next_asked_++];
-    if (is_evaluated(pair, evaluation) || !is_known(pair, evaluation)) continue;
-    evaluate_these({&pair, 1}, evaluation);
+    const std::uint32_t pair = pairs[next_asked_];
+    if (!is_evaluated(pair, evaluation) && is_known(pair, evaluation)) {
+      evaluate_these({&pair, 1}, evaluation);
+      if (!is_evaluated(pair, evaluation)) return asked_pace_.end_tick(rows);
+      rows += evaluation.table.rows_of(pair);
+    }
+    ++next_asked_;
   }
+  asked_pace_.through_with_all();
 }
 
 void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
   // Pairs that are set aside do not count; still, there may be millions of them.
-  const std::uint32_t most = kCatchUp * per_tick_;
-  std::uint32_t refreshed = 0;
+  const std::uint32_t most = kCatchUp * std::max(per_tick_, others_pace_.due());
+  std::uint32_t refreshed = 0, rows = 0;
   for (std::uint32_t turn = 0; turn < most; ++turn) {
     const std::uint32_t pair = queue_.stalest();
-    if (pair == RefreshQueue::kNobody) return;
-    const std::uint64_t last = queue_.refreshed_cycle(pair);
-    if (last == evaluation.cycle) return;
+    const bool left = pair != RefreshQueue::kNobody;
+    const std::uint64_t last = left ? queue_.refreshed_cycle(pair) : evaluation.cycle;
+    if (last == evaluation.cycle) return others_pace_.through_with_all();
     if (!is_known(pair, evaluation)) {
-      const std::uint32_t a = evaluation.table.entries[pair].object_a;
-      queue_.set_aside(pair,
-                       evaluation.objects[a].known() ? evaluation.table.entries[pair].object_b : a);
+      set_aside(pair, evaluation);
       continue;
     }
-    const bool overdue = evaluation.cycle - last >= refresh_ticks_;
-    if (refreshed >= per_tick_ && !overdue) return;
-    if (!refresh(pair, evaluation)) return;
+    const bool overdue = evaluation.cycle - last >= share_.ticks;
+    if (refreshed >= per_tick_ && rows >= others_pace_.due() && !overdue) break;
+    if (!refresh(pair, evaluation)) break;
     ++refreshed;
+    rows += evaluation.table.rows_of(pair);
   }
+  others_pace_.end_tick(rows);
+}
+
+void Triage::set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+  const PairEntry& entry = evaluation.table.entries[pair];
+  const bool a_is_known = evaluation.objects[entry.object_a].known();
+  queue_.set_aside(pair, a_is_known ? entry.object_b : entry.object_a);
 }
 
 // False: the budget is used up.

@@ -12,7 +12,8 @@
 //  4. published pairs, if the budget covers them after all;
 //  5. a share of all pairs, asleep or not, the stalest first, so that each is refreshed in time: by
 //     the balls around its objects where these prove it far, else by an evaluation; then published
-//     pairs in turn, where the budget does not cover them;
+//     pairs in turn, where the budget does not cover them. What that takes (RefreshPace) is kept
+//     back from 1 to 4;
 //  6. pairs that a tighter bound may put to sleep.
 // Order and outcome depend on the inputs only: no clock, no addresses, no number of workers.
 #pragma once
@@ -21,12 +22,14 @@
 #include <span>
 #include <vector>
 
+#include "config/refresh_share.hpp"
 #include "monitor/asked_pairs.hpp"
 #include "monitor/broad_phase.hpp"
 #include "monitor/evaluation.hpp"
 #include "monitor/hull_query.hpp"
 #include "monitor/pair_counts.hpp"
 #include "monitor/passage_round.hpp"
+#include "monitor/refresh_pace.hpp"
 #include "monitor/refresh_queue.hpp"
 #include "monitor/urgency.hpp"
 #include "monitor/worker_pool.hpp"
@@ -82,8 +85,11 @@ class Triage {
   void evaluate_closest(Evaluation& evaluation) noexcept;
   void evaluate_urgent(Evaluation& evaluation) noexcept;
   void decide_passages(const ZoneRound& zones, Evaluation& evaluation) noexcept;
+  void evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noexcept;
   void evaluate_asked(Evaluation& evaluation) noexcept;
+  void evaluate_in_turn(Evaluation& evaluation) noexcept;
   void refresh_stalest(Evaluation& evaluation) noexcept;
+  void set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept;
   template <class Enough>
   [[nodiscard]] bool by_models(std::uint32_t pair, Evaluation& evaluation,
                                const Enough& enough) noexcept;
@@ -98,8 +104,9 @@ class Triage {
   [[nodiscard]] bool has_room(const PairTable& table) const noexcept;
 
   const std::uint32_t budget_;
-  const std::uint64_t refresh_ticks_;  // within which every pair is to be refreshed
-  const std::uint32_t per_tick_;       // pairs to be refreshed a tick
+  const RefreshShare share_;
+  RefreshPace asked_pace_, others_pace_;
+  const std::uint32_t per_tick_;  // pairs to be refreshed a tick
   AskedPairs asked_;
   bool asked_done_ = false;     // those that are known were all evaluated
   std::size_t next_asked_ = 0;  // whose turn it is

@@ -8,6 +8,7 @@
 
 #include <cstdlib>
 
+#include "config/refresh_share.hpp"
 #include "core/distance.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/adversary_motion.hpp"
@@ -254,6 +255,9 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
   Random random(171);
   Scene scene = polyhedra(random);
   scene.budget = budget;
+  scene.refresh_s = 0.2;
+  const RefreshShare share = refresh_share(scene);
+  ASSERT_EQ(share.queries() <= budget, budget > 0) << share.queries();
   Monitor monitor(scene);
   Adversary adversary(scene, style, 172 + budget);
   const int ticks = ticks_of_a_run();
@@ -290,6 +294,10 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
     }
     // 16 pairs a tick have their turn, and nobody was out of sight.
     const bool all_seen = style != Style::kLate && style != Style::kAllLate;
+    // Each of all has its turn in time whatever else is urgent, but with no budget at all.
+    if (budget > 0 && all_seen && t > 30 + static_cast<int>(share.ticks)) {
+      ASSERT_LE(report.oldest_evaluation_cycles, share.ticks) << "tick " << t;
+    }
     if (budget == 400 && all_seen && t > 30) {
       ASSERT_LE(report.oldest_evaluation_cycles, 16u) << "tick " << t;
       // Leagues away, rounding is wider than what tells two pairs apart.

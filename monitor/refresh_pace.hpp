@@ -1,0 +1,41 @@
+// How many queries of a tick are kept back so that pairs that take turns have theirs in time.
+//
+// Each tick owes (rows + 1) / ticks of a query; what a whole number of them has come to is due. Who
+// may spend due + most - 1 queries, `most` being what one pair can take, spends what is due or is
+// through with all. So over any `ticks` ticks at least `rows` are spent, and everybody has had a
+// turn. Counted in whole numbers: nothing drifts.
+#pragma once
+
+#include <cstdint>
+
+#include "config/refresh_share.hpp"
+
+namespace clearance {
+
+class RefreshPace {
+ public:
+  // Keeps nothing back of a budget that is too small for it.
+  RefreshPace(const TakingTurns& pairs, std::uint64_t ticks, bool affordable) noexcept
+      : rows_(affordable ? pairs.rows : 0), most_(pairs.most), ticks_(ticks) {}
+
+  void begin_tick() noexcept { owed_ += rows_ == 0 ? 0 : rows_ + 1; }
+  // In this tick, of the queries that pairs take at most.
+  [[nodiscard]] std::uint32_t due() const noexcept {
+    return static_cast<std::uint32_t>(owed_ / ticks_);
+  }
+  [[nodiscard]] std::uint32_t kept() const noexcept {
+    return due() == 0 ? 0 : static_cast<std::uint32_t>(due() + most_ - 1);
+  }
+  // Ends the tick: pairs that take so many at most have had their turn, or all have.
+  void end_tick(std::uint32_t spent) noexcept {
+    if (spent > due()) return through_with_all();
+    owed_ %= ticks_;
+  }
+  void through_with_all() noexcept { owed_ = 0; }
+
+ private:
+  const std::uint64_t rows_, most_, ticks_;
+  std::uint64_t owed_ = 0;  // in parts of a query, `ticks` to the whole
+};
+
+}  // namespace clearance
