@@ -111,8 +111,9 @@ Vec3 farthest_near(const ConvexPolyhedron& body, const Vec3& m, const Vec3& poin
   return at;
 }
 
-// Points that are less than this part of the size off along the normal stay where they are.
-constexpr double kLevelPoints = 0x1p-30;
+// Points that are less than this part of the size off along the normal stay where they are, and
+// far away less than this part of how far: rounding does as much to what lies there.
+constexpr double kLevelPoints = 0x1p-30, kLevelThere = 0x1p-47;
 
 // Lines that all but run along each other meet, the bodies being parted, so far away that no points
 // there can be told: at least they are as far apart along the normal as they should be.
@@ -121,7 +122,8 @@ void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                      DistanceResult& r) noexcept {
   const Vec3 way = r.distance * r.normal;
   const double off = (r.point_on_b - r.point_on_a - way).dot(r.normal);
-  if (!(std::abs(off) > kLevelPoints * size)) return;
+  const double there = std::max(r.point_on_a.norm(), r.point_on_b.norm());
+  if (!(std::abs(off) > std::max(kLevelPoints * size, kLevelThere * there))) return;
   const Mat3 b_from_a = a_from_b.rotation.transpose();
   const Vec3 near = b_from_a * (r.point_on_a + way - a_from_b.translation);
   state.b.point = farthest_near(b, -(b_from_a * r.normal), near);

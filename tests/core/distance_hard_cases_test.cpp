@@ -106,6 +106,8 @@ constexpr OnceWrong kOnceWrong[] = {
     {"leaning", 1254900013, "the same, of 254 m to 87"},
     {"selfsame", 3102001, "points 0.05 m off along the normal: the lines meet 1e15 m away"},
     {"selfsame", 1102104, "the same, 0.02 m"},
+    {"leaning", 35500003, "points 0.7 m beside each other where the lines meet, 1e9 m away"},
+    {"leaning", 42700003, "the same, 0.5 m"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
