@@ -21,7 +21,7 @@ struct DistanceAnswer {
 // How many answers came each way, by DistancePath; and how many of those that left the walk touch
 // or overlap.
 struct PathCount {
-  std::array<std::size_t, 5> by_path{};
+  std::array<std::size_t, static_cast<std::size_t>(DistancePath::kSpheres) + 1> by_path{};
   std::size_t met = 0;
 
   [[nodiscard]] std::size_t operator[](DistancePath path) const {

@@ -1,0 +1,12 @@
+// A point well inside a ConvexPolyhedron, for queries to set out from.
+#pragma once
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance::exact {
+
+// The centre, unless the body is so thin that doubles lose it; `known` is inside but may be far off
+// centre. Of an unbounded body, from its anchors as far along its rays as they are spread.
+[[nodiscard]] Vec3 well_inside(const ConvexPolyhedron& body, const Vec3& known);
+
+}  // namespace clearance::exact
