@@ -10,22 +10,25 @@ void TakingTurns::add(std::uint64_t rows_of_one) noexcept {
 }
 
 std::uint64_t TakingTurns::queries(std::uint64_t ticks) const noexcept {
-  return rows == 0 ? 0 : rows / ticks + most;
+  return std::min(rows, rows / ticks + most);
 }
 
 RefreshShare refresh_share(const Scene& scene) {
-  RefreshShare share;
-  share.ticks = static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
-  TakingTurns all;
+  const auto ticks =
+      static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
+  TakingTurns asked, others, all;
   for (const ObjectPair& pair : scene.pairs) {
     const std::uint64_t rows =
         scene.objects[pair.first].parts.size() * scene.objects[pair.second].parts.size();
-    (is_asked(pair, scene) ? share.asked : share.others).add(rows);
+    (is_asked(pair, scene) ? asked : others).add(rows);
     all.add(rows);
   }
-  // Those that do not fit take their turns like all others.
-  if (share.asked.rows > scene.budget) share = {.ticks = share.ticks, .asked = {}, .others = all};
-  return share;
+  const RefreshShare together{.ticks = ticks, .asked = {}, .others = all};
+  const RefreshShare apart{
+      .ticks = ticks, .asked_every_tick = true, .asked = asked, .others = others};
+  if (asked.rows > scene.budget) return together;
+  const bool only_together = apart.queries() > scene.budget && together.queries() <= scene.budget;
+  return only_together ? together : apart;
 }
 
 }  // namespace clearance

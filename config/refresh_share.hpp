@@ -18,9 +18,11 @@ struct TakingTurns {
 };
 
 struct RefreshShare {
-  std::uint64_t ticks = 1;  // within which every pair is to be refreshed
-  TakingTurns asked;        // pairs that are asked for in every tick, if they fit into the budget
-  TakingTurns others;       // all other pairs
+  std::uint64_t ticks = 1;        // within which every pair is to be refreshed
+  bool asked_every_tick = false;  // those that somebody asks for are evaluated in every tick in
+                                  // which the budget lasts, apart from all others: else with them
+  TakingTurns asked;   // these, if so
+  TakingTurns others;  // all other pairs
 
   [[nodiscard]] std::uint64_t queries() const noexcept {
     return asked.queries(ticks) + others.queries(ticks);

@@ -24,7 +24,7 @@ AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
     pairs_.push_back(p);
     rows_ += table.rows_of(p);
   }
-  every_tick_ = rows_ <= scene.budget;
+  every_tick_ = refresh_share(scene).asked_every_tick;
   if (every_tick_) form_groups(parts, table);
 }
 

@@ -6,6 +6,7 @@
 // turn. Counted in whole numbers: nothing drifts.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "config/refresh_share.hpp"
@@ -24,8 +25,10 @@ class RefreshPace {
     return static_cast<std::uint32_t>(owed_ / ticks_);
   }
   [[nodiscard]] std::uint32_t kept() const noexcept {
-    return due() == 0 ? 0 : static_cast<std::uint32_t>(due() + most_ - 1);
+    return due() == 0 ? 0 : static_cast<std::uint32_t>(std::min(rows_, due() + most_ - 1));
   }
+  // What is kept is enough for any pair.
+  [[nodiscard]] bool is_kept() const noexcept { return kept() > 0; }
   // Ends the tick: pairs that take so many at most have had their turn, or all have.
   void end_tick(std::uint32_t spent) noexcept {
     if (spent > due()) return through_with_all();

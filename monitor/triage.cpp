@@ -17,6 +17,8 @@ constexpr std::size_t kWokenPerQuery = 2;
 constexpr std::size_t kLeastWoken = 2'000;
 
 constexpr std::uint32_t kLeastRefreshed = 16;  // pairs a tick
+// Pairs out of sight, of which there may be millions, a tick.
+constexpr std::uint32_t kMostSetAside = 2'000;
 // As many times more when some are overdue, having been out of sight.
 constexpr std::uint32_t kCatchUp = 4;
 // A pair that stays awake is evaluated this often, in ticks: its carried bound may be what keeps
@@ -76,8 +78,16 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
   others_pace_.begin_tick();
   asked_done_ = asked_.every_tick() && has_room(table);
   const std::uint32_t kept = others_pace_.kept() + (asked_done_ ? 0 : asked_pace_.kept());
-  sparing(kept, evaluation, [&] { evaluate_first(zones, evaluation); });
+  bool ran_out = false;
+  sparing(kept, evaluation, [&] {
+    evaluate_first(zones, evaluation);
+    ran_out = evaluation.queries_left == 0;
+  });
   evaluate_in_turn(evaluation);
+  if (ran_out) {  // there is what nobody needed of those that were kept
+    evaluate_minimum(evaluation);
+    evaluate_urgent(evaluation);
+  }
   evaluate_restless(evaluation);
   decide_passages(zones, evaluation);
   passages_.finish();
@@ -100,7 +110,7 @@ void Triage::evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noex
 
 // Pairs asked for that outnumber the budget must not starve the rest, nor these those.
 void Triage::evaluate_in_turn(Evaluation& evaluation) noexcept {
-  const bool covered = asked_.pairs().size() <= evaluation.queries_left;
+  const bool covered = asked_done_ || asked_.pairs().size() <= evaluation.queries_left;
   if (covered) sparing(others_pace_.kept(), evaluation, [&] { evaluate_asked(evaluation); });
   const std::uint32_t kept = covered ? 0 : asked_pace_.kept();
   sparing(kept, evaluation, [&] { refresh_stalest(evaluation); });
@@ -153,14 +163,14 @@ void Triage::look_at_awake(Evaluation& evaluation) noexcept {
 
 // Whether a lower bound of a known pair is `enough`: by its models from coarse to fine, short of
 // the parts. What proves pairs far may not starve those that are near: half of the budget is
-// theirs; nor those whose turn it is.
+// theirs; nor what is `spared` besides.
 template <class Enough>
-bool Triage::by_models(std::uint32_t pair, Evaluation& evaluation, const Enough& enough) noexcept {
+bool Triage::by_models(std::uint32_t pair, std::uint32_t spared, Evaluation& evaluation,
+                       const Enough& enough) noexcept {
   const RowBounds balls = broad_phase_.by_balls(pair);
   if (enough(balls.lower)) return true;
   const bool hopeless = balls.upper <= broad_phase_.horizon();
-  const std::uint32_t spared = std::max((budget_ + 1) / 2, others_pace_.kept());
-  if (hopeless || evaluation.queries_left <= spared) return false;
+  if (hopeless || evaluation.queries_left <= std::max((budget_ + 1) / 2, spared)) return false;
   if (!hulls_.possible(evaluation.table.entries[pair])) return false;
   const double lower = hulls_.lower(pair, evaluation);
   if (!enough(lower)) return false;
@@ -172,7 +182,7 @@ void Triage::settle_woken(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.woken()) {
     if (is_known(pair, evaluation)) {
       const auto sleeps = [&](double lower) { return broad_phase_.sleep(pair, lower); };
-      if (by_models(pair, evaluation, sleeps)) {
+      if (by_models(pair, 0, evaluation, sleeps)) {
         queue_.refreshed(pair, evaluation.cycle);
         continue;
       }
@@ -247,7 +257,11 @@ void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
     const std::uint32_t pair = pairs[next_asked_];
     if (!is_evaluated(pair, evaluation) && is_known(pair, evaluation)) {
       evaluate_these({&pair, 1}, evaluation);
-      if (!is_evaluated(pair, evaluation)) return asked_pace_.end_tick(rows);
+      if (!is_evaluated(pair, evaluation)) {
+        // Nobody may wait for a pair that always finds too little left.
+        if (!asked_pace_.is_kept()) ++next_asked_;
+        return asked_pace_.end_tick(rows);
+      }
       rows += evaluation.table.rows_of(pair);
     }
     ++next_asked_;
@@ -256,16 +270,16 @@ void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
 }
 
 void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
-  // Pairs that are set aside do not count; still, there may be millions of them.
   const std::uint32_t most = kCatchUp * std::max(per_tick_, others_pace_.due());
   std::uint32_t refreshed = 0, rows = 0;
-  for (std::uint32_t turn = 0; turn < most; ++turn) {
+  for (std::uint32_t unknown = 0; refreshed < most && unknown < kMostSetAside;) {
     const std::uint32_t pair = queue_.stalest();
     const bool left = pair != RefreshQueue::kNobody;
     const std::uint64_t last = left ? queue_.refreshed_cycle(pair) : evaluation.cycle;
     if (last == evaluation.cycle) return others_pace_.through_with_all();
     if (!is_known(pair, evaluation)) {
       set_aside(pair, evaluation);
+      ++unknown;
       continue;
     }
     const bool overdue = evaluation.cycle - last >= share_.ticks;
@@ -286,7 +300,7 @@ void Triage::set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcep
 // False: the budget is used up.
 bool Triage::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
   const auto is_far = [&](double lower) { return broad_phase_.is_far(pair, lower); };
-  if (by_models(pair, evaluation, is_far)) {
+  if (by_models(pair, others_pace_.kept(), evaluation, is_far)) {
     queue_.refreshed(pair, evaluation.cycle);
     return true;
   }

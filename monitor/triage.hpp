@@ -91,7 +91,7 @@ class Triage {
   void refresh_stalest(Evaluation& evaluation) noexcept;
   void set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept;
   template <class Enough>
-  [[nodiscard]] bool by_models(std::uint32_t pair, Evaluation& evaluation,
+  [[nodiscard]] bool by_models(std::uint32_t pair, std::uint32_t spared, Evaluation& evaluation,
                                const Enough& enough) noexcept;
   [[nodiscard]] bool refresh(std::uint32_t pair, Evaluation& evaluation) noexcept;
   void evaluate_restless(Evaluation& evaluation) noexcept;

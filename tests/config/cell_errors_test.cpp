@@ -149,7 +149,7 @@ const Mistake kMistakes[] = {
     {"FractionalBudget", "budget: @1.5\n" + kBoxes,
      "found the number 1.5; expected distance queries a tick, a whole number from 1 to 1000000000"},
     {"BudgetTooSmallToRefresh", "refresh_s: 0.001\nbudget: @1\n" + kBoxes,
-     "found a budget of 1; expected at least 3 queries a tick, which refreshing every pair within "
+     "found a budget of 1; expected at least 2 queries a tick, which refreshing every pair within "
      "refresh_s takes (ticks: 1): raise budget or refresh_s"},
     {"InfiniteSpeed", with_shape("sphere: {radius: 1}, max_speed: @.inf"),
      "found the number .inf, which is not a finite number; expected the largest speed of any point "

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "config/refresh_share.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/small_cells.hpp"
 
@@ -179,6 +180,21 @@ TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
     if (t >= 20) oldest = std::max(oldest, report.oldest_evaluation_cycles);
   }
   EXPECT_LE(oldest, 7u);
+}
+
+// A hundred published pairs are due to the last in every tick, and what is awake takes the rest.
+TEST(Triage, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
+  Scene scene = side_by_side(150);
+  for (std::size_t p = 0; p < 100; ++p) scene.pairs[p].publish = true;
+  scene.refresh_s = 0.05;
+  scene.zones = {test::zone_over(scene, 1000.0, 1000.0)};
+  scene.budget = 103;
+  ASSERT_LE(refresh_share(scene).queries(), scene.budget);
+  Monitor monitor(scene);
+  for (int t = 0; t < 300; ++t) {
+    const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
+    if (t > 100) ASSERT_LE(report.oldest_evaluation_cycles, 50u) << "tick " << t;
+  }
 }
 
 TEST(Triage, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
