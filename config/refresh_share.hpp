@@ -21,8 +21,8 @@ struct RefreshShare {
   std::uint64_t ticks = 1;        // within which every pair is to be refreshed
   bool asked_every_tick = false;  // those that somebody asks for are evaluated in every tick in
                                   // which the budget lasts, apart from all others: else with them
-  TakingTurns asked;   // these, if so
-  TakingTurns others;  // all other pairs
+  TakingTurns asked;              // these, if so
+  TakingTurns others;             // all other pairs
 
   [[nodiscard]] std::uint64_t queries() const noexcept {
     return asked.queries(ticks) + others.queries(ticks);
