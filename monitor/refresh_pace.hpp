@@ -27,8 +27,8 @@ class RefreshPace {
   [[nodiscard]] std::uint32_t kept() const noexcept {
     return due() == 0 ? 0 : static_cast<std::uint32_t>(std::min(rows_, due() + most_ - 1));
   }
-  // What is kept is enough for any pair.
-  [[nodiscard]] bool is_kept() const noexcept { return kept() > 0; }
+  // Every pair will find enough kept for it when its turn is due.
+  [[nodiscard]] bool is_sure() const noexcept { return rows_ > 0; }
   // Ends the tick: pairs that take so many at most have had their turn, or all have.
   void end_tick(std::uint32_t spent) noexcept {
     if (spent > due()) return through_with_all();
