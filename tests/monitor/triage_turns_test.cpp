@@ -193,7 +193,9 @@ TEST(Triage, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
   Monitor monitor(scene);
   for (int t = 0; t < 300; ++t) {
     const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
-    if (t > 100) ASSERT_LE(report.oldest_evaluation_cycles, 50u) << "tick " << t;
+    if (t > 100) {
+      ASSERT_LE(report.oldest_evaluation_cycles, 50u) << "tick " << t;
+    }
   }
 }
 
