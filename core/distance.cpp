@@ -58,7 +58,7 @@ inline HWY_NOINLINE DistanceResult walked_on(const ConvexPolyhedron& a, const Co
 }
 
 // A walk's first step where that is straight-line code: nothing here needs the walk in memory, so
-// that what the step finds stays in registers.
+// that what the step finds stays in registers. As a case of step() it costs boxes 3 % more.
 HWY_INLINE Step first_step(Walk& w) {
   switch (w.on_a.dimension * 3 + w.on_b.dimension) {
     case 0:

@@ -18,13 +18,13 @@ bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
 }  // namespace
 
 AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
-                       const PairTable& table) {
+                       const PairTable& table, bool every_tick)
+    : every_tick_(every_tick) {
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     if (!is_asked(scene.pairs[p], scene)) continue;
     pairs_.push_back(p);
     rows_ += table.rows_of(p);
   }
-  every_tick_ = refresh_share(scene).asked_every_tick;
   if (every_tick_) form_groups(parts, table);
 }
 

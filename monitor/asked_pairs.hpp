@@ -16,7 +16,9 @@ namespace clearance {
 
 class AskedPairs {
  public:
-  AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table);
+  // every_tick: as RefreshShare has it.
+  AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
+             bool every_tick);
 
   [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
   // How many queries they can take.
@@ -39,7 +41,7 @@ class AskedPairs {
 
   std::vector<std::uint32_t> pairs_;
   std::uint32_t rows_ = 0;
-  bool every_tick_ = false;
+  bool every_tick_;
   std::vector<Group> groups_;
   std::vector<std::uint32_t> body_parts_;  // what part each body of the groups is
   std::vector<Pose> world_from_body_;      // of this tick

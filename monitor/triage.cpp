@@ -42,7 +42,7 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
       asked_pace_(share_.asked, share_.ticks, share_.queries() <= scene.budget),
       others_pace_(share_.others, share_.ticks, share_.queries() <= scene.budget),
       per_tick_(refreshed_per_tick(scene, share_.ticks)),
-      asked_(scene, parts, table),
+      asked_(scene, parts, table, share_.asked_every_tick),
       counts_(scene),
       urgency_(scene, parts),
       broad_phase_(scene, parts, urgency_.levels(),

@@ -261,7 +261,8 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
   Monitor monitor(scene);
   Adversary adversary(scene, style, 172 + budget);
   const int ticks = ticks_of_a_run();
-  int undecided = 0;  // zones in ticks
+  int undecided = 0;                                            // zones in ticks
+  std::vector<std::uint64_t> known_for(scene.pairs.size(), 0);  // ticks in a row
   for (int t = 0; t < ticks; ++t) {
     const Report& report = adversary.tick(monitor);
     ASSERT_LE(report.queries, budget);
@@ -276,9 +277,14 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
       ASSERT_LE(pair.lower_since, pair.lower) << "tick " << t << " pair " << p;
       least = std::min(least, truth.now[p]);
       least_since = std::min(least_since, truth.since[p]);
-      if (pair.status == PairStatus::kUnknown) continue;
+      known_for[p] = pair.status == PairStatus::kUnknown ? 0 : known_for[p] + 1;
+      if (known_for[p] == 0) continue;
       ASSERT_LE(pair.refresh_age_cycles, report.oldest_evaluation_cycles)
           << "tick " << t << " pair " << p;
+      // Each has its turn in time whatever else is urgent, but with no budget at all.
+      if (budget > 0 && known_for[p] > share.ticks) {
+        ASSERT_LE(pair.refresh_age_cycles, share.ticks) << "tick " << t << " pair " << p;
+      }
     }
     ASSERT_LE(report.lower_all, least + rounding) << "tick " << t;
     ASSERT_LE(report.lower_all_since, least_since + rounding) << "tick " << t;
