@@ -22,7 +22,7 @@ inline constexpr int kSteps = 24;
 
 // From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
 // far end.
-inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepest& way) {
+inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const SteepestEdge& way) {
   const EdgeUse& use = body.vertex_edges[way.at];
   const Edge& edge = body.edges[use.edge];
   if (way.rate >= edge.end && edge.vertex[1 - use.side] != kNone) {
@@ -35,7 +35,7 @@ inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const Steepes
 inline HWY_NOINLINE bool leave_either(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                       const Vertex& of_a, const Vertex& of_b, Side& on_a,
                                       Side& on_b, Quad g, Quad back, double limit) {
-  const Steepest from_a = steepest(a, of_a, g), from_b = steepest(b, of_b, back);
+  const SteepestEdge from_a = steepest(a, of_a, g), from_b = steepest(b, of_b, back);
   if (from_a.rate > -limit && from_a.rate >= from_b.rate) {
     return leave_vertex(a, on_a, from_a) == Step::kMoved;
   }
@@ -90,7 +90,7 @@ HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
     return o.w.levelled();
   }
   if (!all_fall(o.other(), vertex, back, limit)) {
-    const Steepest away = steepest(o.other(), vertex, back);
+    const SteepestEdge away = steepest(o.other(), vertex, back);
     if (!(away.rate > -limit)) {
       to_level(o.other(), o.on_other(), vec3(back), limit);
       return o.w.levelled();
@@ -117,7 +117,7 @@ HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
   if (beyond != kNone) return to_edge(o.on_owner(), beyond);
   const Quad back = -o.opposite().direction_to_own(n);
   if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
-    const Steepest away = steepest(o.other(), vertex, back);
+    const SteepestEdge away = steepest(o.other(), vertex, back);
     if (!(away.rate > kCertainRate)) {
       to_level(o.other(), o.on_other(), vec3(back), -kCertainRate);
       return o.w.levelled();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/active_side.hpp"
+#include "core/steepest_edge.hpp"
 
 namespace clearance {
 
@@ -29,20 +30,9 @@ inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
 }
 
 inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
-  const Vertex& vertex = side.vertex();
-  Lambda best;
-  std::int32_t steepest = 0;
-  for (std::int32_t i = 0; i < vertex.edges; ++i) {
-    const double rate = side.body().outgoing_of(vertex, i).dot(towards);
-    if (rate > best.rate) {
-      best.rate = rate;
-      steepest = i;
-    }
-  }
-  if (vertex.edges == 0) return best;
-  best.to = Feature::kEdge;
-  best.index = side.body().vertex_edges[vertex.first_edge + steepest].edge;
-  return best;
+  const SteepestEdge steepest = steepest_edge(side.body(), side.vertex(), towards);
+  if (steepest.at == kNone) return {};
+  return {steepest.rate, Feature::kEdge, side.body().vertex_edges[steepest.at].edge};
 }
 
 }  // namespace lambda_case

@@ -13,7 +13,7 @@ namespace clearance::HWY_NAMESPACE {
 // Along the edges that rise for certain, so that it ends. certain: where every edge falls.
 std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at, bool& certain) {
   for (;;) {
-    const Steepest way = steepest(body, body.vertices[at], m);
+    const SteepestEdge way = steepest(body, body.vertices[at], m);
     certain = way.rate < -kCertainRate;
     if (!(way.rate > kCertainRate)) return at;
     at = body.neighbours[way.at];

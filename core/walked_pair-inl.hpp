@@ -11,6 +11,7 @@
 
 #include "core/distance.hpp"
 #include "core/relative_quads-inl.hpp"
+#include "core/steepest_edge.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
@@ -96,32 +97,23 @@ HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
   return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
 }
 
-// The steepest of a vertex's edges along g.
-struct Steepest {
-  double rate = -kInfinity;
-  std::int32_t at = 0;  // index into vertex_edges
-};
-
-inline HWY_NOINLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex,
-                                      const Vec3& g) {
+inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex,
+                                          const Vec3& g) {
   const std::int32_t n = vertex.edges;
-  Steepest best;
+  if (HWY_UNLIKELY(n > 4)) return steepest_edge(body, vertex, g);
+  SteepestEdge best;
   const auto take = [&](double rate, std::int32_t i) HWY_ATTR {
     if (rate > best.rate) best = {rate, vertex.first_edge + i};
   };
-  if (HWY_LIKELY(n <= 4)) {
-    const Quad along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
-    const Quad rise = rates(body.outgoing.row(vertex.first_edge), n, 0, along);
-    if (n > 0) take(lane(rise, 0), 0);
-    if (n > 1) take(lane(rise, 1), 1);
-    if (n > 2) take(lane(rise, 2), 2);
-    if (n > 3) take(lane(rise, 3), 3);
-    return best;
-  }
-  for (std::int32_t i = 0; i < n; ++i) take(dot(body.outgoing_of(vertex, i), g), i);
+  const Quad along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
+  const Quad rise = rates(body.outgoing.row(vertex.first_edge), n, 0, along);
+  if (n > 0) take(lane(rise, 0), 0);
+  if (n > 1) take(lane(rise, 1), 1);
+  if (n > 2) take(lane(rise, 2), 2);
+  if (n > 3) take(lane(rise, 3), 3);
   return best;
 }
-HWY_INLINE Steepest steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
+HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
   return steepest(body, vertex, vec3(g));
 }
 

@@ -1,0 +1,28 @@
+// The steepest of the edges that leave a vertex.
+#pragma once
+
+#include <cstdint>
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+struct SteepestEdge {
+  double rate = -kInfinity;  // along g, per unit length
+  std::int32_t at = kNone;   // index into vertex_edges and neighbours
+};
+
+// The first of equals; g: in the body's frame. Sums in the order of vector registers' and a batch's
+// lanes.
+[[nodiscard]] inline SteepestEdge steepest_edge(const ConvexPolyhedron& body, const Vertex& vertex,
+                                                const Vec3& g) noexcept {
+  SteepestEdge best;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const Vec3 along = body.outgoing_of(vertex, i);
+    const double rate = (along.x() * g.x() + along.y() * g.y()) + along.z() * g.z();
+    if (rate > best.rate) best = {rate, vertex.first_edge + i};
+  }
+  return best;
+}
+
+}  // namespace clearance
