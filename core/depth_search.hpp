@@ -29,7 +29,7 @@ class DepthSearch {
       : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {
     if (!body.y().bounded()) {
       wide_ = body.wide_x_from_y();
-      if (wide_.of_quaternions) lean_.emplace(body.a_from_b());
+      if (wide_.says_all()) lean_.emplace(body.a_from_b(), wide_.of_quaternions);
     }
   }
 

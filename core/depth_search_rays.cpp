@@ -17,9 +17,9 @@ bool DepthSearch::rises_exactly(const Ray& ray, bool of_y,
                                 const Vec3& exact_normal) const noexcept {
   if (!lean_ || !ray.exact || exact_normal.isZero(0.0)) return false;
   const bool of_a = of_y == body_.x_is_b();
-  const auto slope =
+  const int slope =
       of_a ? lean_->sign(ray.direction, exact_normal) : lean_->sign(exact_normal, ray.direction);
-  return slope.has_value() && *slope < 0;
+  return slope < 0;
 }
 
 // A ray that all but runs along the arc's edge is level at directions of the arc that its last
@@ -41,12 +41,12 @@ DepthSearch::Rise DepthSearch::rise(const Arc& arc, const Ray& ray) const noexce
 std::optional<DepthSearch::Rise> DepthSearch::rise_of_leaning(const Arc& arc, const Ray& of_x,
                                                               const Ray& of_y) const noexcept {
   if (!lean_ || !of_x.exact || !of_y.exact) return {};
-  const bool swapped = body_.x_is_b();
-  const Lean::Apart apart = swapped ? lean_->apart(of_y.direction, of_x.direction)
-                                    : lean_->apart(of_x.direction, of_y.direction);
-  if (!apart.known) return {};
-  if (!swapped) return Rise{-arc.project(narrow(apart.way)), 0.0};
-  return Rise{apart.sign * arc.project(narrow(wide_ * apart.way)), 0.0};
+  const Vec3 &e = of_x.direction, &f = of_y.direction;
+  if (!body_.x_is_b()) {
+    return Rise{-arc.project(narrow(apart(lean_->kept(e), lean_->turned(f)).way)), 0.0};
+  }
+  const WideVec way = apart(lean_->turned(e), lean_->kept(f)).way;
+  return Rise{-arc.project(narrow(wide_ * way)), 0.0};
 }
 
 DepthSearch::Vec2 DepthSearch::Rise::level(const Vec2& side) const noexcept {

@@ -1,75 +1,74 @@
-// By how little two rays of two bodies lean apart, and which way: for lines that are parallel but
-// for what a quaternion's smallest components say, down to subnormals.
+// By how little two rays of two bodies lean apart, and which way; and on which side of a plane
+// of one body a ray of the other ends: where only the last digits of the quaternions say it, be
+// they subnormal.
 //
-// Where a turn about the axes by 90, 120 or 180 degrees leads a ray f of B exactly along a ray e of
-// A, what is left of the relative quaternion, (w, v), moves f by 2 (w g + v cross g) / |q|^2,
-// g = v cross f: two vectors at right angles, so nothing cancels, and the way is as well known as
-// g. That is a sum of products of doubles, and exact: with quaternions scaled up, as their products
-// may be subnormal otherwise. In the same way, where a direction m of A would stand exactly across
-// f after such a turn, it has the slope 2 (w m.(v cross f) + m.v v.f) / |q|^2 after all of it.
+// The relative quaternion q is a sum of products of doubles, and so is N(q), |q|^2 times the
+// rotation. All of them are exact here, at any exponent (core/long_sum.hpp), so that nothing has to
+// be near to anything for a sign to be known.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <optional>
+#include <limits>
 
+#include "core/long_sum.hpp"
 #include "core/pose.hpp"
 #include "core/simplex.hpp"
 
 namespace clearance {
 
-// A sum of doubles, none of it lost: parts that do not overlap, the largest last.
-class ExactSum {
- public:
-  void add(double x) noexcept;
-  void add(const DoubleDouble& x) noexcept {
-    add(x.low);
-    add(x.high);
-  }
-  void add(const ExactSum& other, double sign) noexcept {
-    for (const double part : other) add(sign * part);
-  }
-  [[nodiscard]] const double* begin() const noexcept { return parts_.data(); }
-  [[nodiscard]] const double* end() const noexcept { return parts_.data() + size_; }
-  [[nodiscard]] double rounded() const noexcept { return size_ == 0 ? 0.0 : parts_[size_ - 1]; }
-  [[nodiscard]] int sign() const noexcept { return (rounded() > 0.0) - (rounded() < 0.0); }
-  // Times 2^exponent, to 2^-104.
-  [[nodiscard]] DoubleDouble scaled(int exponent) const noexcept;
+[[nodiscard]] LongVec<1> long_vec(const Vec3& v) noexcept;
 
- private:
-  // Sums that cancel leave parts of few bits, and there may be any number of these; so that the
-  // same sum has parts of 53 bits each.
-  void spread() noexcept;
-
-  std::array<double, 48> parts_;  // once spread, the doubles' range has room for 40
-  std::size_t size_ = 0;
+// f runs along `sign` times e, plus a positive multiple of `way` (about unit length, to 2^-96 of
+// that), or exactly, where way is zero.
+struct Apart {
+  double sign = 1.0;
+  WideVec way;
 };
+
+// To about unit length, each component to 2^-104 of that; zero stays zero.
+template <int kFactors>
+[[nodiscard]] WideVec rounded(const LongVec<kFactors>& v) noexcept {
+  int most = std::numeric_limits<int>::min();
+  for (const auto& component : v) {
+    if (component.sign() != 0) most = std::max(most, component.exponent());
+  }
+  const WideVec near{v[0].scaled(-most), v[1].scaled(-most), v[2].scaled(-most)};
+  const double length = narrow(near).norm();
+  return length > 0.0 ? DoubleDouble(1.0 / length) * near : WideVec{};
+}
+
+// f e.e - e e.f stands across e.
+template <int kOfE, int kOfF>
+[[nodiscard]] Apart apart(const LongVec<kOfE>& e, const LongVec<kOfF>& f) noexcept {
+  const auto square = dot(e, e);
+  const auto cosine = dot(e, f);
+  LongVec<2 * kOfE + kOfF> way;
+  for (std::size_t i = 0; i < 3; ++i) {
+    way[i].add_product(f[i], square);
+    way[i].add_product(cosine, e[i], -1);
+  }
+  return {cosine.sign() < 0 ? -1.0 : 1.0, rounded(way)};
+}
 
 class Lean {
  public:
-  explicit Lean(const RelativePose& a_from_b) noexcept;
+  // The rotation: that of the pose's quaternions or, if there are none, of its matrix, which is
+  // exact then.
+  Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept;
 
-  // B's ray runs along `sign` times A's, plus a positive multiple of `way` (frame A, about unit
-  // length, to 2^-96 of that), or exactly, where way is zero.
-  struct Apart {
-    bool known = false;
-    double sign = 1.0;
-    WideVec way;
-  };
-  // e of A and f of B: exact rays.
-  [[nodiscard]] Apart apart(const Vec3& e, const Vec3& f) const noexcept;
+  // A direction of B and one of A, in frame A, both times one positive factor.
+  [[nodiscard]] LongVec<5> turned(const Vec3& f) const noexcept;
+  [[nodiscard]] LongVec<5> kept(const Vec3& e) const noexcept;
 
-  // The exact sign of m.Rf, m in frame A and f in frame B: 1, 0, -1; nothing: not known.
-  [[nodiscard]] std::optional<int> sign(const Vec3& m, const Vec3& f) const noexcept;
+  // The exact sign of m.Rf, m in frame A and f in frame B: 1, 0, -1.
+  [[nodiscard]] int sign(const Vec3& m, const Vec3& f) const noexcept {
+    return dot(long_vec(m), turned(f)).sign();
+  }
 
  private:
-  struct Turn;
-  [[nodiscard]] std::optional<int> sign_of_rise(const Turn& turn, const Vec3& m,
-                                                const Vec3& f) const noexcept;
-  [[nodiscard]] WideVec moved(const Turn& turn, const Vec3& f, bool& known) const noexcept;
-
-  std::array<ExactSum, 4> q_;  // x, y, z, w, all times one factor
-  double lost_ = 0.0;          // what each of them may be off by
+  std::array<LongVec<4>, 3> rows_;  // N(q)
+  LongSum<4> square_;               // |q|^2
 };
 
 }  // namespace clearance

@@ -100,8 +100,9 @@ PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b)
 
 // Of frames that all but coincide the way from one ray to the other is known better than both.
 PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const noexcept {
-  if (const Lean::Apart lean = apart(of_a, of_b); lean.known) {
-    const Vec3 n = narrow(cross(of_ray(of_a, false), lean.way));
+  if (rotation_.says_all() && of_a.exact && of_b.exact) {
+    const Vec3 n =
+        narrow(rounded(cross(lean().kept(of_a.direction), lean().turned(of_b.direction))));
     if (n.isZero(0.0)) return {Vec3::Zero(), kInfinity};
     return {n.normalized(), 2.0 * kUnitError};
   }
@@ -175,6 +176,7 @@ bool PolarCone::same_line(const Constraint& c, const Constraint& d) const noexce
 }
 
 void PolarCone::prepare(const Vec3& n, Level& level) const noexcept {
+  level.n = n;
   level.t = n.unitOrthogonal();
   level.u = n.cross(level.t);
   for (std::size_t i = 0; i < level.size; ++i) {
@@ -188,7 +190,7 @@ void PolarCone::prepare(const Vec3& n, Level& level) const noexcept {
       c.two_way = level.items[k].two_way = true;
     }
   }
-  find_leaning(n, level);
+  find_leaning(level);
 }
 
 // Is n itself, or the facet's exact normal that it was rounded from, in the cone?
@@ -228,7 +230,8 @@ void PolarCone::try_move(const Level& level, std::size_t i, std::size_t j, const
     if (c.two_way && (same_line(c, level.items[i]) || same_line(c, level.items[j]))) continue;
     if (falls_from(level, i, k, x, y, error) || falls_from(level, j, k, x, y, error)) continue;
     const double rise = value(c.at_n + x * c.along_t + y * c.along_u);
-    if (!(rise < -4.0 * (error + error_))) return;
+    if (rise < -4.0 * (error + error_)) continue;
+    if (rise > 4.0 * (error + error_) || !falls_across(level, i, j, k)) return;
   }
   best = {value(x), value(y), error, length2};
 }

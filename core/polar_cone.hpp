@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/certificate.hpp"
 #include "core/lean.hpp"
@@ -81,11 +82,11 @@ class PolarCone {
     double slope;  // at_n, in a double
     DoubleDouble at_n, along_t, along_u;
   };
-  // Two of these, of A and of B, that lean apart: the second one is a multiple of the first and,
-  // times `of_a` seen from B's, times `of_b` seen from A's, the way.
+  // Two of these that lean apart: the second one is a multiple of the first and the way; seen from
+  // the second, the first one is one and `back` times the way.
   struct Leaning {
-    std::size_t a, b;
-    double of_a, of_b;
+    std::size_t first, second;
+    double back;
     bool parallel;
     DoubleDouble at_n, along_t, along_u;
   };
@@ -96,7 +97,7 @@ class PolarCone {
     std::size_t size = 0;
     std::array<Leaning, kMostLeaning> leaning;
     std::size_t leaning_size = 0;
-    Vec3 t, u;
+    Vec3 n, t, u;
   };
   struct Move {
     double x = 0.0, y = 0.0;
@@ -113,13 +114,16 @@ class PolarCone {
   [[nodiscard]] bool opposite(const Constraint& c, const Constraint& d) const noexcept;
   [[nodiscard]] bool same_line(const Constraint& c, const Constraint& d) const noexcept;
   void prepare(const Vec3& n, Level& level) const noexcept;
-  void find_leaning(const Vec3& n, Level& level) const noexcept;
+  void find_leaning(Level& level) const noexcept;
   [[nodiscard]] static const Leaning* leaning(const Level& level, std::size_t i,
                                               std::size_t k) noexcept;
   [[nodiscard]] bool falls_from(const Level& level, std::size_t i, std::size_t k,
                                 const DoubleDouble& x, const DoubleDouble& y,
                                 double error) const noexcept;
-  [[nodiscard]] Lean::Apart apart(const Ray& of_a, const Ray& of_b) const noexcept;
+  [[nodiscard]] const Lean& lean() const noexcept;
+  [[nodiscard]] LongVec<5> exactly(const Constraint& c) const noexcept;
+  [[nodiscard]] bool falls_across(const Level& level, std::size_t i, std::size_t j,
+                                  std::size_t k) const noexcept;
   [[nodiscard]] bool stands_across(const Separator& s, const Constraint& c) const noexcept;
   [[nodiscard]] bool holds_as_it_is(const Separator& s, const Vec3& n,
                                     const Level& level) const noexcept;
@@ -130,7 +134,8 @@ class PolarCone {
   const ActiveSide& a_;
   const ActiveSide& b_;
   WideRotation rotation_;
-  double error_;  // of a constraint's numbers
+  mutable std::optional<Lean> lean_;  // made where it is needed
+  double error_;                      // of a constraint's numbers
 };
 
 }  // namespace clearance

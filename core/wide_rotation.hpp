@@ -23,6 +23,8 @@ struct WideRotation {
   DoubleDouble scalar, twice_over_square;
 
   [[nodiscard]] bool exact() const noexcept { return error == 0.0; }
+  // Is the exact rotation known, be it by the quaternions?
+  [[nodiscard]] bool says_all() const noexcept { return exact() || of_quaternions; }
   // Is v, of frame B, turned to the bit?
   [[nodiscard]] bool keeps_bits_of(const Vec3& v) const noexcept {
     const int along = axis_of(v);

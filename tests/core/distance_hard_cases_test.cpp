@@ -108,6 +108,9 @@ constexpr OnceWrong kOnceWrong[] = {
     {"selfsame", 1102104, "the same, 0.02 m"},
     {"leaning", 35500003, "points 0.7 m beside each other where the lines meet, 1e9 m away"},
     {"leaning", 42700003, "the same, 0.5 m"},
+    {"hairs_breadth", 74100003, "no lower bound: but for 1e-119 a facet stands across both lines"},
+    {"hairs_breadth", 2027600003, "the same, of bodies that are apart"},
+    {"without_end", 8016700007, "a depth that vanished while the signs of slopes became exact"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 

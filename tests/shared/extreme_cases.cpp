@@ -94,6 +94,66 @@ HardCase hairs_breadth(Random& random) {
   return c;
 }
 
+namespace {
+
+double faint(Random& random) {
+  if (random.chance(0.3)) return 0.0;
+  const double least = std::numeric_limits<double>::denorm_min();
+  return random.sign() *
+         (random.chance(0.5) ? least * random.integer(1, 3) : random.log_uniform(1e-320, 1e-100));
+}
+
+// Half-spaces whose normals have components down to subnormals, by an exact common line or a corner
+// nearby.
+Body faint_column(Random& random) {
+  Body out;
+  const double t = faint(random);
+  switch (random.integer(0, 3)) {
+    case 0: {  // half-space or slab
+      const Vec3 n(random.chance(0.5), 1, t);
+      out.rows.push_back({n, 0.5});
+      if (random.chance(0.5)) out.rows.push_back({-n, 0.25});
+      break;
+    }
+    case 1:  // wedge
+      out.rows.push_back({Vec3(1, random.integer(1, 3), t), 0.5});
+      out.rows.push_back({Vec3(1, -random.integer(1, 3), faint(random)), 0.25});
+      break;
+    case 2:  // prism along (-t, 0, 1)
+      for (const auto& [x, y] : {std::pair(1, 1), {-1, 2}, {-1, -1}, {2, -1}}) {
+        if (x == 2 && random.chance(0.5)) continue;
+        out.rows.push_back({Vec3(x, y, x * t), 0.5});
+      }
+      break;
+    default:  // corner
+      out.rows.push_back({Vec3(1, faint(random), t), 0.5});
+      out.rows.push_back({Vec3(faint(random), 1, faint(random)), 0.25});
+      out.rows.push_back({Vec3(faint(random), faint(random), 1), 1.0});
+  }
+  if (random.chance(0.3)) {  // the same planes by faint numbers
+    for (HalfSpace& row : out.rows) {
+      row.normal *= 0x1p-600;
+      row.offset *= 0x1p-600;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+HardCase faint_normals(Random& random) {
+  Body a = faint_column(random), b = faint_column(random);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  const Quat turns[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {1, 0, 0, 1}};
+  c.pose_b.orientation = turns[random.integer(0, 4)];
+  if (random.chance(0.3)) c.pose_b.orientation.x() += faint(random);
+  if (random.chance(0.3)) c.pose_a.orientation = c.pose_b.orientation;
+  if (random.chance(0.2)) c.pose_b.orientation = random.rotation();
+  c.pose_b.position = random.log_uniform(0.3, 1e3) * random.direction();
+  if (random.chance(0.3)) move_together(c, random.rotation());
+  return c;
+}
+
 HardCase scales(Random& random) {
   const double size = random.log_uniform(1e-120, 1e80);
   Body a = scaled(any_bounded(random), size);

@@ -15,6 +15,8 @@ namespace clearance::hard {
 
 // The same, leaning by 5e-324 to 1e-100 rad: what only components of a quaternion can say.
 [[nodiscard]] HardCase hairs_breadth(Random& random);
+// Two of these given by normals with components down to subnormals.
+[[nodiscard]] HardCase faint_normals(Random& random);
 
 // Bodies of 1e-120 to 1e80 m, one or both.
 [[nodiscard]] HardCase scales(Random& random);

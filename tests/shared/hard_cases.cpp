@@ -321,6 +321,7 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"razors", razors},
                                         {"leaning", leaning},
                                         {"hairs_breadth", hairs_breadth},
+                                        {"faint_normals", faint_normals},
                                         {"foils", foils}};
 
 }  // namespace
