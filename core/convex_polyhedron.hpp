@@ -13,6 +13,7 @@
 // exactly.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -102,11 +103,29 @@ struct FacetSide {
   double offset;
 };
 
+// A direction up to a positive factor: the sum of digits * 2^exponent, exactly. What is opposite
+// has opposite digits, and what is the same, the same.
+struct ExactDirection {
+  struct Part {
+    Vec3 digits;  // integers of up to 53 bits
+    int exponent;
+  };
+  std::vector<Part> parts;
+
+  [[nodiscard]] bool is_opposite_to(const ExactDirection& other) const noexcept {
+    return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
+                      [](const Part& a, const Part& b) {
+                        return a.digits == -b.digits && a.exponent == b.exponent;
+                      });
+  }
+};
+
 // A direction in which the body is unbounded.
 struct Ray {
   Vec3 direction;  // unit, unless exact
   bool exact;  // then `direction` is the exact direction up to a positive factor, not a rounded one
   Vec3 rest = Vec3::Zero();  // direction + rest is the exact direction up to a factor, to 2^-104
+  ExactDirection exactly{};
 };
 
 struct ConvexPolyhedron {
@@ -120,9 +139,7 @@ struct ConvexPolyhedron {
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
-  // Of an unbounded body, a facet each: a multiple of its normal that is exactly three doubles;
-  // zero where there is none.
-  std::vector<Vec3> exact_normals;
+  std::vector<ExactDirection> exact_normals;  // of an unbounded body, a facet each
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex

@@ -76,13 +76,14 @@ bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
   return at.y() > 0.0 && at.x() * end.y() > at.y() * end.x();
 }
 
-bool DepthSearch::goes_on_along(bool is_y, const Vec3& n, const Vec3& exact_normal) const noexcept {
+bool DepthSearch::goes_on_along(bool is_y, const Vec3& n,
+                                const ExactDirection& normal) const noexcept {
   const ConvexPolyhedron& body = is_y ? body_.y() : body_.x();
   if (rises(body, n, level_)) return true;
-  if (!lean_ || exact_normal.isZero(0.0)) return false;
+  if (!lean_) return false;
   return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
     if (n.dot(ray.direction) < -level_ * ray.direction.norm()) return false;
-    return rises_exactly(ray, is_y, exact_normal);
+    return rises_exactly(ray, is_y, normal);
   });
 }
 

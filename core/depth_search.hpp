@@ -151,15 +151,14 @@ class DepthSearch {
     [[nodiscard]] Vec2 level(const Vec2& side) const noexcept;
   };
   [[nodiscard]] Rise rise(const Arc& arc, const Ray& ray) const noexcept;
-  // The same of a ray of Y that leans from one of X by next to nothing; nothing: not known.
-  [[nodiscard]] std::optional<Rise> rise_of_leaning(const Arc& arc, const Ray& of_x,
-                                                    const Ray& of_y) const noexcept;
+  // Which way a ray of Y leans away from one of X, both in X's frame; about unit, or zero.
+  [[nodiscard]] Vec3 part_across(const Ray& of_x, const Ray& of_y) const noexcept;
   // Does X, or Y, go on for ever along a facet of the other one, which looks along n in its frame?
   // For certain. Which of them it is must be told: both may be the same object.
   [[nodiscard]] bool goes_on_along(bool is_y, const Vec3& n,
-                                   const Vec3& exact_normal) const noexcept;
+                                   const ExactDirection& normal) const noexcept;
   [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
-                                   const Vec3& exact_normal) const noexcept;
+                                   const ExactDirection& normal) const noexcept;
   // False: nothing is left of it, because Y is unbounded along all of it.
   [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
   void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;

@@ -134,4 +134,25 @@ RoundedDirection nearest_direction(const Integer3& direction) {
   return {vector, true};
 }
 
+ExactDirection exact_direction(const Integer3& direction) {
+  // Up to 2^3000, down to 2^-3300: what LongSum<3> holds, in the middle of it if that is enough.
+  constexpr long kBelow = 3300;
+  Integer3 rest = direction;
+  reduce(rest);
+  const auto longest = [&] { return std::max({bits(rest[0]), bits(rest[1]), bits(rest[2])}); };
+  const long down = std::min(longest(), kBelow);
+  ExactDirection out;
+  while (!is_zero(rest)) {
+    const long drop = std::max(longest() - kDoubleBits, 0L);
+    Vec3 digits;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Integer kept = shifted(rest[i], -drop);
+      digits[static_cast<Eigen::Index>(i)] = kept.get_d();
+      rest[i] -= shifted(kept, drop);
+    }
+    out.parts.push_back({digits, static_cast<int>(drop - down)});
+  }
+  return out;
+}
+
 }  // namespace clearance::exact

@@ -1,6 +1,7 @@
 // From exact numbers to doubles, rounded once.
 #pragma once
 
+#include "core/convex_polyhedron.hpp"
 #include "core/exact_vector.hpp"
 #include "core/vec.hpp"
 
@@ -30,5 +31,8 @@ struct RoundedDirection {
   Vec3 rest = Vec3::Zero();
 };
 [[nodiscard]] RoundedDirection nearest_direction(const Integer3& direction);
+
+// Of products of up to three doubles.
+[[nodiscard]] ExactDirection exact_direction(const Integer3& direction);
 
 }  // namespace clearance::exact

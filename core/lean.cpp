@@ -32,8 +32,20 @@ std::array<LongSum<2>, 4> relative(const RelativePose::Orientation& a,
 
 }  // namespace
 
-LongVec<1> long_vec(const Vec3& v) noexcept {
-  return {long_sum(v.x()), long_sum(v.y()), long_sum(v.z())};
+LongVec<3> long_vec(const ExactDirection& v) noexcept {
+  LongVec<3> out;
+  for (const ExactDirection::Part& part : v.parts) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      out[i].add(part.digits[static_cast<Eigen::Index>(i)], part.exponent);
+    }
+  }
+  return out;
+}
+
+LongVec<3> long_vec(const Vec3& v) noexcept {
+  LongVec<3> out;
+  for (std::size_t i = 0; i < 3; ++i) out[i].add(v[static_cast<Eigen::Index>(i)]);
+  return out;
 }
 
 Lean::Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept {
@@ -65,15 +77,13 @@ Lean::Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept {
   }
 }
 
-LongVec<5> Lean::turned(const Vec3& f) const noexcept {
-  const LongVec<1> of = long_vec(f);
-  return {dot(rows_[0], of), dot(rows_[1], of), dot(rows_[2], of)};
+LongVec<7> Lean::turned(const LongVec<3>& f) const noexcept {
+  return {dot(rows_[0], f), dot(rows_[1], f), dot(rows_[2], f)};
 }
 
-LongVec<5> Lean::kept(const Vec3& e) const noexcept {
-  const LongVec<1> of = long_vec(e);
-  LongVec<5> out;
-  for (std::size_t i = 0; i < 3; ++i) out[i].add_product(square_, of[i]);
+LongVec<7> Lean::kept(const LongVec<3>& e) const noexcept {
+  LongVec<7> out;
+  for (std::size_t i = 0; i < 3; ++i) out[i].add_product(square_, e[i]);
   return out;
 }
 

@@ -11,13 +11,15 @@
 #include <array>
 #include <limits>
 
+#include "core/convex_polyhedron.hpp"
 #include "core/long_sum.hpp"
 #include "core/pose.hpp"
 #include "core/simplex.hpp"
 
 namespace clearance {
 
-[[nodiscard]] LongVec<1> long_vec(const Vec3& v) noexcept;
+[[nodiscard]] LongVec<3> long_vec(const ExactDirection& v) noexcept;
+[[nodiscard]] LongVec<3> long_vec(const Vec3& v) noexcept;
 
 // f runs along `sign` times e, plus a positive multiple of `way` (about unit length, to 2^-96 of
 // that), or exactly, where way is zero.
@@ -58,12 +60,12 @@ class Lean {
   Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept;
 
   // A direction of B and one of A, in frame A, both times one positive factor.
-  [[nodiscard]] LongVec<5> turned(const Vec3& f) const noexcept;
-  [[nodiscard]] LongVec<5> kept(const Vec3& e) const noexcept;
+  [[nodiscard]] LongVec<7> turned(const LongVec<3>& f) const noexcept;
+  [[nodiscard]] LongVec<7> kept(const LongVec<3>& e) const noexcept;
 
   // The exact sign of m.Rf, m in frame A and f in frame B: 1, 0, -1.
-  [[nodiscard]] int sign(const Vec3& m, const Vec3& f) const noexcept {
-    return dot(long_vec(m), turned(f)).sign();
+  [[nodiscard]] int sign(const LongVec<3>& m, const LongVec<3>& f) const noexcept {
+    return dot(m, turned(f)).sign();
   }
 
  private:

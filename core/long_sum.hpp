@@ -58,6 +58,11 @@ class LongSum {
     carry(a.first_ + b.first_, a.last_ + b.last_);
   }
 
+  void negate() noexcept {
+    for (std::size_t i = first_; i < last_; ++i) digits_[i] = -digits_[i];
+    carry(first_, last_);
+  }
+
   [[nodiscard]] int sign() const noexcept {
     if (first_ >= last_) return 0;
     return digits_[last_ - 1] > 0 ? 1 : -1;

@@ -111,19 +111,59 @@ Vec3 farthest_near(const ConvexPolyhedron& body, const Vec3& m, const Vec3& poin
   return at;
 }
 
-// Points that are less than this part of the size off along the normal stay where they are, and
-// far away less than this part of how far: rounding does as much to what lies there.
-constexpr double kLevelPoints = 0x1p-30, kLevelThere = 0x1p-47;
+// Points that are less than this part of the size, or of how far away they are, from where the
+// normal leads, stay where they are: rounding does as much.
+constexpr double kLevelPoints = 0x1p-47;
 
-// Lines that all but run along each other meet, the bodies being parted, so far away that no points
-// there can be told: at least they are as far apart along the normal as they should be.
+double reach_of(const DistanceResult& r) noexcept {
+  return std::max(r.point_on_a.norm(), r.point_on_b.norm());
+}
+double off_normal(const DistanceResult& r) noexcept {
+  return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
+}
+
+// Puts the points to where two rays that are level across the normal meet, one of each body, if
+// that is right to the rounding of what lies there.
+bool meet_along_rays(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const Vec3 n = r.normal, m = -(a_from_b.rotation.transpose() * n);
+  const Vec3& top_a = a.anchors[support(a, n).anchor];
+  const Vec3& top_b = b.anchors[support(b, m).anchor];
+  const Vec3 from = a_from_b.rotation * top_b + a_from_b.translation - r.distance * n;
+  for (const Ray& of_a : a.rays) {
+    const Vec3 e = of_a.direction.normalized();
+    if (!(std::abs(n.dot(e)) <= kLevelTop)) continue;
+    for (const Ray& of_b : b.rays) {
+      const Vec3 own = of_b.direction.normalized(), f = a_from_b.rotation * own;
+      if (!(std::abs(n.dot(f)) <= kLevelTop)) continue;
+      const double s = (from - top_a).cross(f).dot(n) / e.cross(f).dot(n);
+      const double t = (top_a + s * e - from).dot(f);
+      if (!(s >= 0.0 && s < kInfinity && t >= 0.0)) continue;
+      DistanceResult there = r;
+      there.point_on_a = top_a + s * e;
+      const Vec3 own_b = top_b + t * own;
+      there.point_on_b = a_from_b.rotation * own_b + a_from_b.translation;
+      if (!(off_normal(there) <= kLevelPoints * reach_of(there))) continue;
+      state.a.point = there.point_on_a;
+      state.b.point = own_b;
+      r = there;
+      return true;
+    }
+  }
+  return false;
+}
+
+// Lines that all but run along each other meet, the bodies being parted, far away, where the walk's
+// points are not; or so far away that no points there can be told: then at least they are as far
+// apart along the normal as they should be.
 void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                      const RelativePose& a_from_b, double size, TrackingState& state,
                      DistanceResult& r) noexcept {
+  const double rounding = kLevelPoints * std::max(size, reach_of(r));
+  if (off_normal(r) <= rounding || meet_along_rays(a, b, a_from_b, state, r)) return;
   const Vec3 way = r.distance * r.normal;
-  const double off = (r.point_on_b - r.point_on_a - way).dot(r.normal);
-  const double there = std::max(r.point_on_a.norm(), r.point_on_b.norm());
-  if (!(std::abs(off) > std::max(kLevelPoints * size, kLevelThere * there))) return;
+  if (!(std::abs((r.point_on_b - r.point_on_a - way).dot(r.normal)) > rounding)) return;
   const Mat3 b_from_a = a_from_b.rotation.transpose();
   const Vec3 near = b_from_a * (r.point_on_a + way - a_from_b.translation);
   state.b.point = farthest_near(b, -(b_from_a * r.normal), near);

@@ -18,11 +18,11 @@ constexpr double kFacetError = 0x1p-51;
 // Rays that differ by less than this from an edge's direction may be the edge's.
 constexpr double kSameLine = 0x1p-40;
 
-// Of a cross product in wide numbers, over the factors' lengths: of two vectors; of rays that are
-// not exactly doubles, besides; of a ray and one that has been turned, all of this together. And
-// over the product's own length, of a small turn's part of it.
-constexpr double kCrossError = 0x1p-101, kRaysError = 0x1p-103, kTurnedError = 0x1p-99,
-                 kMoveError = 0x1p-90;
+// Of the cross product in wide numbers of a ray and one that has been turned, over their lengths.
+constexpr double kTurnedError = 0x1p-99;
+
+// Rays that cross at less have a direction across them that is better taken from long sums.
+constexpr double kCrossing = 0x1p-30;
 
 // Unit vectors made of doubles.
 constexpr double kUnitError = 0x1p-51;
@@ -47,9 +47,8 @@ bool falls_or_is_level(const Vec3& n, const Vec3& g) noexcept {
 // A ray whose opposite is one as well, for certain.
 bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
   return body.vertices.empty() &&
-         std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& other) {
-           return other.direction == -ray.direction && other.rest == -ray.rest;
-         });
+         std::any_of(body.rays.begin(), body.rays.end(),
+                     [&](const Ray& other) { return other.exactly.is_opposite_to(ray.exactly); });
 }
 
 // Null: none, or, of half-spaces and slabs, a whole plane of them.
@@ -84,8 +83,7 @@ const Ray* PolarCone::ray_along(const ConvexPolyhedron& body, const Edge& edge) 
   const Ray* found = nullptr;
   for (const Ray& ray : body.rays) {
     if (!(ray.direction.cross(edge.direction).norm() < kSameLine * ray.direction.norm())) continue;
-    const bool same = found && (ray.direction == -found->direction && ray.rest == -found->rest);
-    if (found && !same) return nullptr;
+    if (found && !ray.exactly.is_opposite_to(found->exactly)) return nullptr;
     found = &ray;
   }
   return found;
@@ -98,29 +96,18 @@ PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b)
   return across(*along_a, *along_b);
 }
 
-// Of frames that all but coincide the way from one ray to the other is known better than both.
 PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const noexcept {
-  if (rotation_.says_all() && of_a.exact && of_b.exact) {
-    const Vec3 n =
-        narrow(rounded(cross(lean().kept(of_a.direction), lean().turned(of_b.direction))));
-    if (n.isZero(0.0)) return {Vec3::Zero(), kInfinity};
-    return {n.normalized(), 2.0 * kUnitError};
-  }
   const WideVec e = of_ray(of_a, false), f = of_ray(of_b, true);
   const double lengths = narrow(e).norm() * narrow(f).norm();
   WideVec n = cross(e, f);
-  double error = rotation_.error + kTurnedError;
-  if (rotation_.small_turn) {
-    const WideVec own = wide(of_b.direction) + wide(of_b.rest), still = cross(e, own);
-    n = still + cross(e, rotation_.move_of(own));
-    error = kMoveError * narrow(n).stableNorm() / lengths;
-    if (!narrow(still).isZero(0.0)) error += kCrossError;
-    if (!of_a.exact || !of_b.exact) error += kRaysError;
+  double sine = narrow(n).stableNorm() / lengths, error = rotation_.error + kTurnedError;
+  if (rotation_.says_all() && !(sine > kCrossing)) {
+    n = rounded(cross(lean().kept(long_vec(of_a.exactly)), lean().turned(long_vec(of_b.exactly))));
+    sine = narrow(n).norm();
+    error = kUnitError * sine;
   }
-  const double sine = narrow(n).stableNorm() / lengths;
   if (!(sine > kParallel)) return {Vec3::Zero(), kInfinity};
-  const Vec3 unit = narrow(DoubleDouble(1.0 / (sine * lengths)) * n).normalized();
-  return {unit, error / sine + kUnitError};
+  return {narrow(n).stableNormalized(), error / sine + kUnitError};
 }
 
 PolarCone::Direction PolarCone::only_direction() const noexcept {
@@ -155,11 +142,9 @@ bool PolarCone::collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
     Constraint& c = level.items[level.size++];
     c.g = of_ray(ray, of_b);
     if (of_b) c.g = WideVec{} - c.g;
-    c.own = ray.direction;
-    c.rest = ray.rest;
+    c.ray = &ray;
     c.of_b = of_b;
-    c.exact = ray.exact;
-    c.known = ray.exact && (!of_b || rotation_.keeps_bits_of(c.own));
+    c.known = ray.exact && (!of_b || rotation_.keeps_bits_of(ray.direction));
     c.two_way = false;
   }
   return true;
@@ -169,7 +154,7 @@ bool PolarCone::collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
 bool PolarCone::opposite(const Constraint& c, const Constraint& d) const noexcept {
   if (c.known && d.known) return narrow(c.g) == -narrow(d.g);
   const ConvexPolyhedron& body = c.of_b ? b_.body() : a_.body();
-  return c.of_b == d.of_b && body.vertices.empty() && c.own == -d.own && c.rest == -d.rest;
+  return c.of_b == d.of_b && body.vertices.empty() && c.ray->exactly.is_opposite_to(d.ray->exactly);
 }
 bool PolarCone::same_line(const Constraint& c, const Constraint& d) const noexcept {
   return opposite(c, d) || (c.known && d.known && narrow(c.g) == narrow(d.g));
@@ -196,25 +181,20 @@ void PolarCone::prepare(const Vec3& n, Level& level) const noexcept {
 // Is n itself, or the facet's exact normal that it was rounded from, in the cone?
 bool PolarCone::holds_as_it_is(const Separator& s, const Vec3& n,
                                const Level& level) const noexcept {
-  const bool facet = s.facet_of_a != kNone || s.facet_of_b != kNone;
-  Vec3 exact_n = n;
-  if (s.facet_of_a != kNone) exact_n = a_.body().exact_normals[s.facet_of_a];
-  if (s.facet_of_b != kNone) {
-    const Vec3& own = b_.body().exact_normals[s.facet_of_b];
-    const bool stays = rotation_.keeps_bits_of(own);
-    exact_n = stays ? narrow(WideVec{} - rotation_ * wide(own)) : Vec3::Zero();
-  }
-  const int axis_of_b = rotation_.axis_along(exact_n);
-  const double margin = 4.0 * error_ + (facet ? 4.0 * kFacetError : 0.0);
-  return std::all_of(level.items.begin(), level.items.begin() + level.size, [&](const auto& c) {
-    const bool of_facets_body = facet && c.of_b == (s.facet_of_b != kNone);
-    if (of_facets_body || c.slope < -margin) return true;
-    if (facet && stands_across(s, c)) return true;
-    if (exact_n.isZero(0.0)) return false;
-    if (c.of_b && axis_of_b >= 0) {
-      return c.slope < 0.0 || (c.own[axis_of_b] == 0.0 && c.rest[axis_of_b] == 0.0);
-    }
-    return c.known && falls_or_is_level(exact_n, narrow(c.g));
+  const bool of_a = s.facet_of_a != kNone, of_b = s.facet_of_b != kNone;
+  const double margin = 4.0 * error_ + (of_a || of_b ? 4.0 * kFacetError : 0.0);
+  const auto certainly_falls = [&](const Constraint& c) {
+    return (c.of_b ? of_b : of_a) || c.slope < -margin ||
+           (c.known && !of_a && !of_b && falls_or_is_level(n, narrow(c.g)));
+  };
+  const auto *const first = level.items.data(), *const last = first + level.size;
+  if (std::all_of(first, last, certainly_falls)) return true;
+  if (!rotation_.says_all()) return false;
+  const LongVec<7> exact_n =
+      of_b ? lean().turned(long_vec(b_.body().exact_normals[s.facet_of_b]))
+           : lean().kept(of_a ? long_vec(a_.body().exact_normals[s.facet_of_a]) : long_vec(n));
+  return std::all_of(first, last, [&](const Constraint& c) {
+    return certainly_falls(c) || (of_b ? -1 : 1) * dot(exact_n, exactly(c)).sign() <= 0;
   });
 }
 

@@ -72,10 +72,8 @@ class PolarCone {
   // at_n + x along_t + y along_u.
   struct Constraint {
     WideVec g;
-    Vec3 own;   // the ray in its body's frame, and
-    Vec3 rest;  // what that leaves of it
+    const Ray* ray;
     bool of_b;
-    bool exact;  // `own` is the ray's direction up to a factor, and
     bool known;  // g is exactly three doubles
     // Held exactly level: its opposite is another one, or all but is.
     bool two_way = false;
@@ -121,10 +119,9 @@ class PolarCone {
                                 const DoubleDouble& x, const DoubleDouble& y,
                                 double error) const noexcept;
   [[nodiscard]] const Lean& lean() const noexcept;
-  [[nodiscard]] LongVec<5> exactly(const Constraint& c) const noexcept;
+  [[nodiscard]] LongVec<7> exactly(const Constraint& c) const noexcept;
   [[nodiscard]] bool falls_across(const Level& level, std::size_t i, std::size_t j,
                                   std::size_t k) const noexcept;
-  [[nodiscard]] bool stands_across(const Separator& s, const Constraint& c) const noexcept;
   [[nodiscard]] bool holds_as_it_is(const Separator& s, const Vec3& n,
                                     const Level& level) const noexcept;
   void try_move(const Level& level, std::size_t i, std::size_t j, const DoubleDouble& x,

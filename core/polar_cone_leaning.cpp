@@ -16,8 +16,11 @@ const Lean& PolarCone::lean() const noexcept {
   return *lean_;
 }
 
-LongVec<5> PolarCone::exactly(const Constraint& c) const noexcept {
-  return c.of_b ? lean().turned(-c.own) : lean().kept(c.own);
+LongVec<7> PolarCone::exactly(const Constraint& c) const noexcept {
+  LongVec<3> own = long_vec(c.ray->exactly);
+  if (!c.of_b) return lean().kept(own);
+  for (LongSum<3>& component : own) component.negate();
+  return lean().turned(own);
 }
 
 void PolarCone::find_leaning(Level& level) const noexcept {
@@ -25,7 +28,7 @@ void PolarCone::find_leaning(Level& level) const noexcept {
   for (std::size_t i = 0; i < level.size; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       Constraint &c = level.items[i], &d = level.items[k];
-      if (!c.exact || !d.exact || level.leaning_size == kMostLeaning) continue;
+      if (level.leaning_size == kMostLeaning) return;
       if (c.two_way && d.two_way && same_line(c, d)) continue;
       const Vec3 g = narrow(c.g), h = narrow(d.g);
       if (!(g.cross(h).norm() < kLeaning * g.norm() * h.norm())) continue;
@@ -66,21 +69,11 @@ bool PolarCone::falls_from(const Level& level, std::size_t i, std::size_t k, con
 bool PolarCone::falls_across(const Level& level, std::size_t i, std::size_t j,
                              std::size_t k) const noexcept {
   const Constraint &c = level.items[i], &d = level.items[j], &e = level.items[k];
-  if (i == j || !rotation_.says_all() || !c.exact || !d.exact || !e.exact) return false;
-  const LongVec<10> normal = cross(exactly(c), exactly(d));
+  if (i == j || !rotation_.says_all()) return false;
+  const LongVec<14> normal = cross(exactly(c), exactly(d));
   const double side = narrow(rounded(normal)).dot(level.n);
   const int rise = dot(normal, exactly(e)).sign();
   return side > 0.5 ? rise <= 0 : side < -0.5 && rise >= 0;
-}
-
-// Does a ray of the other body than the facet's fall along its normal, or is it level, exactly?
-bool PolarCone::stands_across(const Separator& s, const Constraint& c) const noexcept {
-  if (!rotation_.says_all() || !c.exact) return false;
-  const bool of_a = s.facet_of_a != kNone;
-  const Vec3& normal =
-      of_a ? a_.body().exact_normals[s.facet_of_a] : b_.body().exact_normals[s.facet_of_b];
-  if (normal.isZero(0.0)) return false;
-  return lean().sign(of_a ? normal : c.own, of_a ? c.own : normal) >= 0;
 }
 
 }  // namespace clearance

@@ -73,9 +73,14 @@ class Assembler {
     place_facet_points();
     for (const Integer3& ray : solid_.rays) {
       const RoundedDirection direction = nearest_direction(ray);
-      body_.rays.push_back({direction.vector, direction.exact, direction.rest});
+      body_.rays.push_back(
+          {direction.vector, direction.exact, direction.rest, exact_direction(ray)});
     }
-    if (!solid_.rays.empty()) add_exact_normals();
+    if (!solid_.rays.empty()) {
+      for (const Integer4& plane : solid_.planes) {
+        body_.exact_normals.push_back(exact_direction(head(plane)));
+      }
+    }
     body_.position_error = rounder_.error();
     return std::move(body_);
   }
@@ -85,13 +90,6 @@ class Assembler {
     const Integer3 normal = head(plane);
     body_.facets.push_back(
         {Vec3::Zero(), unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), 0, 0});
-  }
-
-  void add_exact_normals() {
-    for (const Integer4& plane : solid_.planes) {
-      const RoundedDirection normal = nearest_direction(head(plane));
-      body_.exact_normals.push_back(normal.exact ? normal.vector : Vec3::Zero());
-    }
   }
 
   void add_edge(const SolidEdge& edge) {

@@ -47,16 +47,6 @@ struct FourProducts {
   [[nodiscard]] DoubleDouble sum() const noexcept {
     return (terms[0] + terms[1]) + (terms[2] + terms[3]);
   }
-  // However much of the terms cancels.
-  [[nodiscard]] DoubleDouble accurate_sum() const noexcept {
-    std::array<double, 8> parts;
-    for (std::size_t i = 0; i < 4; ++i) {
-      parts[2 * i] = terms[i].low;
-      parts[2 * i + 1] = terms[i].high;
-    }
-    exact::distil(parts);
-    return exact::ordered_sum(parts[7], parts[6]);
-  }
   // Is it x for certain?
   [[nodiscard]] bool is_exactly(double x) const noexcept {
     std::array<double, 9> parts;
@@ -162,19 +152,6 @@ void set_axes(const std::array<FourProducts, 4>& of, WideRotation& r) noexcept {
   if (known == 3) r.error = 0.0;
 }
 
-// A turn by less than this (the sine of half of it) is known to its own last digits.
-constexpr double kSmallTurn = 0x1p-30;
-
-void set_small_turn(const std::array<FourProducts, 4>& of, WideRotation& r) noexcept {
-  const WideVec v{of[0].accurate_sum(), of[1].accurate_sum(), of[2].accurate_sum()};
-  const DoubleDouble w = of[3].sum();
-  r.small_turn =
-      of[0].whole && of[1].whole && of[2].whole && narrow(v).norm() < kSmallTurn * std::abs(w.high);
-  r.vector = v;
-  r.scalar = w;
-  r.twice_over_square = DoubleDouble(2.0) / (dot(v, v) + w * w);
-}
-
 // Somebody may have given the pose another rotation than its orientations have.
 bool agrees(const WideRotation& wide, const RelativePose& pose) noexcept {
   double off2 = 0.0;
@@ -204,7 +181,6 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   out.of_quaternions = true;
   out.error = kWideError;
   set_axes(of, out);
-  set_small_turn(of, out);
   return agrees(out, pose) ? out : as_given;
 }
 

@@ -16,12 +16,6 @@ struct WideRotation {
   // The axis of A (0, 1, 2) that B's x, y and z lie along for certain, either way: what lies along
   // such an axis is turned to the bit, and what stands across it stays across. -1: none.
   std::array<int, 3> lands_on{-1, -1, -1};
-  // Of frames that all but coincide, the relative quaternion: its vector to 2^-100 of its own
-  // length; and twice over the square.
-  bool small_turn = false;
-  WideVec vector;
-  DoubleDouble scalar, twice_over_square;
-
   [[nodiscard]] bool exact() const noexcept { return error == 0.0; }
   // Is the exact rotation known, be it by the quaternions?
   [[nodiscard]] bool says_all() const noexcept { return exact() || of_quaternions; }
@@ -30,22 +24,10 @@ struct WideRotation {
     const int along = axis_of(v);
     return exact() || (along >= 0 && lands_on[static_cast<std::size_t>(along)] >= 0);
   }
-  // The axis of B that lies along n, of frame A; -1: none for certain.
-  [[nodiscard]] int axis_along(const Vec3& n) const noexcept {
-    const int along = axis_of(n);
-    for (int i = 0; i < 3; ++i) {
-      if (along >= 0 && lands_on[static_cast<std::size_t>(i)] == along) return i;
-    }
-    return -1;
-  }
   [[nodiscard]] WideRotation transposed() const noexcept {
     WideRotation out;
     out.error = error;
     out.of_quaternions = of_quaternions;
-    out.small_turn = small_turn;
-    out.vector = WideVec{} - vector;
-    out.scalar = scalar;
-    out.twice_over_square = twice_over_square;
     out.rows = {{{rows[0].x, rows[1].x, rows[2].x},
                  {rows[0].y, rows[1].y, rows[2].y},
                  {rows[0].z, rows[1].z, rows[2].z}}};
@@ -53,11 +35,6 @@ struct WideRotation {
   }
   [[nodiscard]] WideVec operator*(const WideVec& v) const noexcept {
     return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
-  }
-  // Where small_turn: by how much v is moved, to 2^-96 of that.
-  [[nodiscard]] WideVec move_of(const WideVec& v) const noexcept {
-    const WideVec across = cross(vector, v);
-    return twice_over_square * (scalar * across + cross(vector, across));
   }
 
  private:

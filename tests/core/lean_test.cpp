@@ -16,7 +16,7 @@ Lean lean(const Quat& a, const Quat& b) {
   return Lean(relative_pose({Vec3::Zero(), a}, {Vec3::Zero(), b}), true);
 }
 Apart apart(const Lean& lean, const Vec3& e, const Vec3& f) {
-  return apart(lean.kept(e), lean.turned(f));
+  return apart(lean.kept(long_vec(e)), lean.turned(long_vec(f)));
 }
 
 TEST(LongSum, LosesNothingBetweenTheLargestAndTheLeastDouble) {
@@ -73,12 +73,12 @@ TEST(Lean, OfATurnAboutTheLineIsNone) {
 TEST(Lean, SaysOnWhichSideOfAWallALineEnds) {
   const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
   for (const double tilt : {1e-20, 1e-200, kLeast}) {
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, tilt, 0}).sign(x, z), 1);
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, -tilt, 0}).sign(x, z), -1);
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, tilt, 0, 0}).sign(x, z), 0);
+    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, tilt, 0}).sign(long_vec(x), long_vec(z)), 1);
+    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, -tilt, 0}).sign(long_vec(x), long_vec(z)), -1);
+    EXPECT_EQ(lean({1, 0, 0, 0}, {1, tilt, 0, 0}).sign(long_vec(x), long_vec(z)), 0);
   }
   // What two tilts do one after the other is the product of both.
-  EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0x1p-300, 0, 0x1p-300}).sign(x, z), 1);
+  EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0x1p-300, 0, 0x1p-300}).sign(long_vec(x), long_vec(z)), 1);
 }
 
 }  // namespace
