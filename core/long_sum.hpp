@@ -18,7 +18,7 @@ namespace clearance {
 template <int kFactors>
 class LongSum {
  public:
-  LongSum() noexcept { digits_.fill(0); }
+  LongSum() noexcept {}  // NOLINT: most digits are never looked at
 
   // Adds x 2^exponent, which must be in range.
   void add(double x, int exponent = 0) noexcept {
@@ -29,9 +29,10 @@ class LongSum {
     const auto at = static_cast<std::size_t>(lowest / 32);
     const std::int64_t low = whole & 0xffffffff, high = whole >> 32;
     const int shift = lowest % 32;
-    put(at, low << shift & 0xffffffff);
-    put(at + 1, (low << shift >> 32) + ((high << shift) & 0xffffffff));
-    put(at + 2, high << shift >> 32);
+    cover(at, at + 3);
+    digits_[at] += low << shift & 0xffffffff;
+    digits_[at + 1] += (low << shift >> 32) + ((high << shift) & 0xffffffff);
+    digits_[at + 2] += high << shift >> 32;
     carry(at, at + 3);
   }
   // Adds sign a b, sign being 1 or -1.
@@ -45,6 +46,7 @@ class LongSum {
     for (std::size_t k = b.first_; k < b.last_; ++k) {
       if (b.digits_[k] != 0) of_b[count++] = k;
     }
+    cover(a.first_ + b.first_, a.last_ + b.last_);
     for (std::size_t i = a.first_; i < a.last_; ++i) {
       const std::int64_t by = sign * a.digits_[i];
       if (by == 0) continue;
@@ -95,26 +97,28 @@ class LongSum {
   static int exponent_of(std::size_t digit) noexcept {
     return 32 * (static_cast<int>(digit) - kPoint);
   }
-  void put(std::size_t at, std::int64_t x) noexcept { digits_[at] += x; }
+  // Digits in [from, to) are some, those not used before zero.
+  void cover(std::size_t from, std::size_t to) noexcept {
+    if (first_ >= last_) first_ = last_ = from;
+    while (from < first_) digits_[--first_] = 0;
+    while (last_ < to) digits_[last_++] = 0;
+  }
   // Digits from -2^31 to 2^31 - 1, so that the highest one has the sign of the sum. Those in
   // [from, to) may have grown.
   void carry(std::size_t from, std::size_t to) noexcept {
     std::int64_t over = 0;
-    std::size_t i = from;
-    for (; i < kDigits && (i < to || over != 0); ++i) {
+    for (std::size_t i = from; i < to || over != 0; ++i) {
+      cover(i, i + 1);
       const std::int64_t digit = digits_[i] + over;
       over = (digit + kHalf) >> 32;
       digits_[i] = digit - over * (2 * kHalf);
     }
-    const bool empty = first_ >= last_;
-    first_ = empty ? from : std::min(first_, from);
-    last_ = empty ? i : std::max(last_, i);
     while (last_ > first_ && digits_[last_ - 1] == 0) --last_;
     while (first_ < last_ && digits_[first_] == 0) ++first_;
   }
 
   std::array<std::int64_t, kDigits> digits_;  // the lowest first
-  std::size_t first_ = 0, last_ = 0;          // where any are not zero
+  std::size_t first_ = 0, last_ = 0;          // of those that are in use; all others are zero
 };
 
 template <int kFactors>
