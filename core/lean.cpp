@@ -50,7 +50,6 @@ LongVec<3> long_vec(const Vec3& v) noexcept {
 
 Lean::Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept {
   if (!of_quaternions) {
-    square_.add(1.0);
     for (std::size_t i = 0; i < 9; ++i) {
       rows_[i / 3][i % 3].add(
           a_from_b.rotation(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)));
@@ -58,7 +57,6 @@ Lean::Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept {
     return;
   }
   const auto q = relative(a_from_b.world_from_a, a_from_b.world_from_b);
-  for (const LongSum<2>& component : q) square_.add_product(component, component);
   constexpr std::size_t w = 3;
   const auto add_twice = [&](LongSum<4>& to, std::size_t i, std::size_t k, int sign) {
     to.add_product(q[i], q[k], sign);
@@ -81,9 +79,11 @@ LongVec<7> Lean::turned(const LongVec<3>& f) const noexcept {
   return {dot(rows_[0], f), dot(rows_[1], f), dot(rows_[2], f)};
 }
 
-LongVec<7> Lean::kept(const LongVec<3>& e) const noexcept {
+LongVec<7> Lean::kept(const LongVec<3>& e) noexcept {
+  LongSum<4> one;
+  one.add(1.0);
   LongVec<7> out;
-  for (std::size_t i = 0; i < 3; ++i) out[i].add_product(square_, e[i]);
+  for (std::size_t i = 0; i < 3; ++i) out[i].add_product(one, e[i]);
   return out;
 }
 

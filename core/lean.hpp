@@ -59,9 +59,9 @@ class Lean {
   // exact then.
   Lean(const RelativePose& a_from_b, bool of_quaternions) noexcept;
 
-  // A direction of B and one of A, in frame A, both times one positive factor.
+  // A direction of B and one of A, in frame A, each times a positive factor.
   [[nodiscard]] LongVec<7> turned(const LongVec<3>& f) const noexcept;
-  [[nodiscard]] LongVec<7> kept(const LongVec<3>& e) const noexcept;
+  [[nodiscard]] static LongVec<7> kept(const LongVec<3>& e) noexcept;
 
   // The exact sign of m.Rf, m in frame A and f in frame B: 1, 0, -1.
   [[nodiscard]] int sign(const LongVec<3>& m, const LongVec<3>& f) const noexcept {
@@ -70,7 +70,6 @@ class Lean {
 
  private:
   std::array<LongVec<4>, 3> rows_;  // N(q)
-  LongSum<4> square_;               // |q|^2
 };
 
 }  // namespace clearance
