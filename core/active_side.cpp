@@ -1,7 +1,5 @@
 #include "core/active_side.hpp"
 
-#include <cmath>
-
 namespace clearance {
 namespace {
 
@@ -9,9 +7,8 @@ namespace {
 // still be taken for a point on it: 16 roundings, 2^-49.
 constexpr double kOnFacet = 0x1p-49;
 
-bool finite(const Vec3& v) noexcept {
-  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
+// A state may hold anything: its length has to be a number as well.
+bool is_a_point(const Vec3& v) noexcept { return v.squaredNorm() < kInfinity; }
 
 bool within(std::int32_t index, std::size_t size) noexcept {
   return index >= 0 && static_cast<std::size_t>(index) < size;
@@ -40,7 +37,7 @@ bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
     place_at_vertex(hint.feature);
     return true;
   }
-  if (!finite(hint.point)) return false;
+  if (!is_a_point(hint.point)) return false;
   if (hint.dimension == 1 && within(hint.feature, body_.edges.size())) {
     place_on_edge(hint.feature, hint.point);
     return true;

@@ -97,6 +97,11 @@ inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index
   return span;
 }
 
+// As std::clamp, but what is no number becomes `from`.
+HWY_INLINE double clamped(double s, double from, double to) {
+  return s >= from ? (to < s ? to : s) : from;
+}
+
 // Of the owner's edge, the part that faces the other's facet (or the other way round).
 template <bool kMoved>
 HWY_INLINE Span facing(const Owned<kMoved>& edge_of, const Edge& edge, std::int32_t facet) {
@@ -131,7 +136,7 @@ inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
     return to_vertex(o.on_owner(), edge.vertex[end]);
   }
   if (rises_beside(edge, down, -kCertainRate, o.on_owner())) return o.w.levelled();
-  const double s = std::clamp(halfway(o, start, e), span.from, span.to);
+  const double s = clamped(halfway(o, start, e), span.from, span.to);
   const Quad own = start + s * e, above = o.point_out(own);
   const double apart = of_facet.height(facet, own, above, n);
   if (!(apart > 0.0) && !o.w.overlapping) return Step::kLost;
@@ -156,7 +161,7 @@ HWY_INLINE bool halfway_on_facet(const Walk& w, const Facet& of_b, Quad& own) {
   const double height = dot(n, middle) - of_b.offset;
   own = middle - height * n;
   const double size = (w.a.bounding_radius + w.b.bounding_radius) + w.a_from_b.apart;
-  return std::abs(height) <= 2.0 * size;
+  return std::abs(height) <= 2.0 * size && dot(own, own) < kInfinity;
 }
 
 // From a point that has passed the edge of the owner's facet back to it, in the owner's frame.
@@ -170,7 +175,7 @@ inline bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) 
     return false;
   }
   const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
-  point = start + std::clamp(dot(point - start, e), span.from, span.to) * e;
+  point = start + clamped(dot(point - start, e), span.from, span.to) * e;
   return true;
 }
 
@@ -257,7 +262,7 @@ inline HWY_NOINLINE Step parallel_edges(Walk& w, const Quad& start_b, const Quad
   const double from = std::max(0.0, std::min(begin, end));
   const double to = std::min(first.end, std::max(begin, end));
   if (!(from < to)) return to_facing_ends(w, first, second, !(from < first.end), cosine > 0.0);
-  const double s = std::clamp(halfway(Owned<false>{w}, start_a, e), from, to);
+  const double s = clamped(halfway(Owned<false>{w}, start_a, e), from, to);
   w.point_a = start_a + s * e;
   w.own_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
   w.point_b = point_to_a(w.a_from_b, w.own_b);
