@@ -110,10 +110,12 @@ constexpr OnceWrong kOnceWrong[] = {
     {"leaning", 42700003, "the same, 0.5 m"},
     {"hairs_breadth", 74100003, "no lower bound: but for 1e-119 a facet stands across both lines"},
     {"hairs_breadth", 2027600003, "the same, of bodies that are apart"},
+    {"faint_normals", 13600007, "0.3 m too high: a ray's subnormal component was taken for none"},
+    {"faint_normals", 16800007, "the same, 0.6 m, of bodies that overlap"},
     {"leaning", 615800007, "points 2e-11 m off along the normal"},
     {"leaning", 9009700007, "points 0.3 m beside each other: the lines meet 2e10 m away"},
     {"hairs_breadth", 39200003, "points 6e-10 m off along the normal"},
-    {"without_end", 8016700007, "a depth that vanished while the signs of slopes became exact"},
+    {"without_end", 8016700007, "no depth: rays at right angles were taken for leaning ones"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
