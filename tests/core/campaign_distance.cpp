@@ -14,6 +14,7 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/nonsense_state.hpp"
 
 namespace clearance {
 namespace {
@@ -46,7 +47,7 @@ class Campaign {
     check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "cold");
     check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "again");
     for (int k = 0; k < 2; ++k) {
-      state = nonsense(judge, random);
+      state = test::nonsense_state(judge.a(), judge.b(), random);
       check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "nonsense");
     }
     check(judge, judge.ask(c.pose_a, c.pose_b, last_), truth, c.pose_a, c.pose_b, "another's");
@@ -88,26 +89,6 @@ class Campaign {
   }
 
  private:
-  static TrackingState::Side nonsense_side(const ConvexPolyhedron& body, Random& random) {
-    TrackingState::Side out;
-    out.dimension = static_cast<std::uint8_t>(random.integer(0, 5));
-    const std::size_t most =
-        std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
-    out.feature = random.integer(-2, static_cast<int>(most) + 1);
-    out.point = random.in_box(random.log_uniform(1e-3, 1e18));
-    if (random.chance(0.1)) out.point.x() = std::nan("");
-    if (random.chance(0.1)) out.point.y() = kInfinity;
-    return out;
-  }
-
-  static TrackingState nonsense(const DistanceJudge& judge, Random& random) {
-    TrackingState out;
-    out.a = nonsense_side(judge.a(), random);
-    out.b = nonsense_side(judge.b(), random);
-    out.a.deep = random.chance(0.5);
-    return out;
-  }
-
   void check(DistanceJudge& judge, const DistanceResult& result, const oracle::ExactDistance& truth,
              const Pose& pose_a, const Pose& pose_b, const char* how) {
     ++tally_->asked;

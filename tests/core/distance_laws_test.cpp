@@ -8,6 +8,7 @@
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/made.hpp"
+#include "tests/shared/nonsense_state.hpp"
 
 namespace clearance {
 namespace {
@@ -47,17 +48,6 @@ void for_each_example(const std::function<void(const Example&, Random&)>& visit)
 void expect_same_truth(const DistanceResult& r, const DistanceResult& s, const std::string& what) {
   EXPECT_LE(r.lower, s.upper) << what;
   EXPECT_LE(s.lower, r.upper) << what;
-}
-
-TrackingState::Side nonsense(const ConvexPolyhedron& body, Random& random) {
-  TrackingState::Side out;
-  out.dimension = static_cast<std::uint8_t>(random.integer(0, 6));
-  const std::size_t most = std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
-  out.feature = random.integer(-2, static_cast<int>(most) + 1);
-  out.point = random.in_box(random.log_uniform(1e-3, 1e6));
-  if (random.chance(0.2)) out.point.x() = std::nan("");
-  if (random.chance(0.2)) out.point.y() = kInfinity;
-  return out;
 }
 
 TEST(Distance, SwappingTheBodiesSwapsTheAnswer) {
@@ -137,7 +127,7 @@ TEST(Distance, BoundsHoldEvenWhenTheStateIsNonsense) {
   for_each_example([](const Example& e, Random& random) {
     const DistanceResult r = cold(e.a, e.b, e.pose());
     for (int k = 0; k < 10; ++k) {
-      TrackingState state{nonsense(e.a, random), nonsense(e.b, random)};
+      TrackingState state = test::nonsense_state(e.a, e.b, random);
       const DistanceResult s = distance(e.a, e.b, e.pose(), state);
       // -infinity: two unbounded bodies that no translation parts.
       const bool no_way_out = s.lower == -kInfinity && !e.a.bounded() && !e.b.bounded();
@@ -184,7 +174,7 @@ TEST(Distance, GivesTheSameBitsForTheSameQuestion) {
 TEST(Distance, AllocatesNothing) {
   for_each_example([](const Example& e, Random& random) {
     TrackingState tracked;
-    TrackingState wrong{nonsense(e.a, random), nonsense(e.b, random)};
+    TrackingState wrong = test::nonsense_state(e.a, e.b, random);
     const std::uint64_t before = allocations();
     const RelativePose pose = e.pose();
     (void)distance(e.a, e.b, pose, tracked);

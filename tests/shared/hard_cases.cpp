@@ -9,6 +9,7 @@
 #include "tests/shared/extreme_cases.hpp"
 #include "tests/shared/foil_cases.hpp"
 #include "tests/shared/hostile_cases.hpp"
+#include "tests/shared/slender_cases.hpp"
 #include "tests/shared/tied_cases.hpp"
 
 namespace clearance::hard {
@@ -322,7 +323,9 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"leaning", leaning},
                                         {"hairs_breadth", hairs_breadth},
                                         {"faint_normals", faint_normals},
-                                        {"foils", foils}};
+                                        {"foils", foils},
+                                        {"crossing_axes", crossing_axes},
+                                        {"slender_wedges", slender_wedges}};
 
 }  // namespace
 

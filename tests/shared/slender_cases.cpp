@@ -1,0 +1,54 @@
+#include "tests/shared/slender_cases.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "tests/shared/poses.hpp"
+
+namespace clearance::hard {
+namespace {
+
+Body segment(Random& random) {
+  const Vec3 end = random.uniform(0.1, 2.0) * Vec3::UnitX();
+  const double radius = random.chance(0.5) ? 0.0 : random.log_uniform(1e-3, 0.3);
+  return {{}, {-end, end}, radius};
+}
+
+// Opens downwards; the origin is its tip, or on its edge.
+Body wedge_without_end(Random& random) {
+  const double opening = random.log_uniform(1e-16, 1e-2);
+  const int sides = random.chance(0.5) ? 2 : random.integer(3, 8);
+  Body out;
+  for (int k = 0; k < sides; ++k) {
+    const double azimuth = 2 * std::numbers::pi * k / sides;
+    out.rows.push_back({Vec3(std::cos(azimuth), std::sin(azimuth), opening), 0.0});
+  }
+  if (sides == 2) out.rows[1].normal = {-1.0, 0.0, opening};
+  if (random.chance(0.5)) out.rows.push_back({Vec3::UnitY(), 1.0});
+  return out;
+}
+
+}  // namespace
+
+HardCase crossing_axes(Random& random) {
+  Body a = segment(random), b = segment(random);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  c.pose_b.orientation = test::turned(Vec3::UnitZ(), random.log_uniform(1e-16, 1e-2));
+  c.pose_b.position.x() = random.uniform(-0.5, 0.5);
+  if (random.chance(0.5)) c.pose_b.position.z() = random.log_uniform(1e-16, 1e-2);
+  if (random.chance(0.7)) move_together(c, random.rotation(), random.in_box(1.0));
+  return c;
+}
+
+HardCase slender_wedges(Random& random) {
+  Body a = wedge_without_end(random), b = any_bounded(random);
+  if (random.chance(0.5)) std::swap(a, b);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  c.pose_b.position = random.in_box(10.0);
+  if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
+  if (random.chance(0.5)) move_together(c, random.rotation(), random.in_box(1.0));
+  return c;
+}
+
+}  // namespace clearance::hard

@@ -1,0 +1,14 @@
+// Pairs in which all but one direction is lost in rounding: lines that cross at next to no angle,
+// and bodies without end that open by next to none.
+#pragma once
+
+#include "tests/shared/hard_cases.hpp"
+
+namespace clearance::hard {
+
+// Segments or capsules whose axes cross at 1e-16 to 1e-2 rad, or miss each other by as little.
+[[nodiscard]] HardCase crossing_axes(Random& random);
+// A wedge or cone without end, 1e-16 to 1e-2 rad wide, and a bounded body.
+[[nodiscard]] HardCase slender_wedges(Random& random);
+
+}  // namespace clearance::hard
