@@ -31,7 +31,7 @@ struct Apart {
 // To about unit length, each component to 2^-104 of that; zero stays zero.
 template <int kFactors>
 [[nodiscard]] WideVec rounded(const LongVec<kFactors>& v) noexcept {
-  int most = std::numeric_limits<int>::min();
+  int most = -std::numeric_limits<int>::max();
   for (const auto& component : v) {
     if (component.sign() != 0) most = std::max(most, component.exponent());
   }
