@@ -45,7 +45,7 @@ HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
 }
 
 // A pose is eight numbers: position, one that means nothing, x, y, z, w.
-static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == 16);
+static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == sizeof(Pose));
 static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
 
 HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
