@@ -15,23 +15,11 @@ struct Features {
 
 constexpr WalkStart kOneStep{.steps = 1};
 
-WalkStart to_edge(Side& side, std::int32_t edge) noexcept {
-  side.dimension = 1;
-  side.feature = edge;
-  return kOneStep;
-}
-
 // Where an edge ends: it need not.
-WalkStart to_vertex(Side& side, std::int32_t vertex) noexcept {
-  if (vertex == kNone) return {};
-  side.dimension = 0;
-  side.feature = vertex;
-  return kOneStep;
-}
-
-WalkStart to_facet(Side& side, std::int32_t facet) noexcept {
-  side.dimension = 2;
-  side.feature = facet;
+WalkStart go(Side& side, std::uint8_t dimension, std::int32_t feature) noexcept {
+  if (feature == kNone) return {};
+  side.dimension = dimension;
+  side.feature = feature;
   return kOneStep;
 }
 
@@ -46,27 +34,27 @@ WalkStart along_edge(const ConvexPolyhedron& body, Side& side, std::int32_t i,
   const EdgeUse& use = edge_of_vertex(body, side, i);
   const Edge& edge = body.edges[use.edge];
   const std::int32_t far = edge.vertex[1 - use.side];
-  return rate >= edge.end && far != kNone ? to_vertex(side, far) : to_edge(side, use.edge);
+  return rate >= edge.end && far != kNone ? go(side, 0, far) : go(side, 1, use.edge);
 }
 
 WalkStart leave_edge(const ConvexPolyhedron& body, Side& side, std::int32_t next) noexcept {
   const Edge& edge = body.edges[side.feature];
-  return next < kNextEnd ? to_facet(side, edge.facet[next - kNextBeside])
-                         : to_vertex(side, edge.vertex[next - kNextEnd]);
+  return next < kNextEnd ? go(side, 2, edge.facet[next - kNextBeside])
+                         : go(side, 0, edge.vertex[next - kNextEnd]);
 }
 
 WalkStart from_edge_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextBeside) return leave_edge(f.owner, f.on_owner, next);
-  return to_edge(f.on_other, edge_of_vertex(f.other, f.on_other, next).edge);
+  return go(f.on_other, 1, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
 WalkStart from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);
-    return to_vertex(f.on_other, f.other.edges[use.edge].vertex[1 - use.side]);
+    return go(f.on_other, 0, f.other.edges[use.edge].vertex[1 - use.side]);
   }
   const Facet& facet = f.owner.facets[f.on_owner.feature];
-  return to_edge(f.on_owner, f.owner.facet_edges[facet.first_side + next].edge);
+  return go(f.on_owner, 1, f.owner.facet_edges[facet.first_side + next].edge);
 }
 
 // Of what rises beside crossing edges, or is level.
@@ -74,8 +62,8 @@ WalkStart to_facets_beside(const Features& f, std::int32_t next) noexcept {
   const std::int32_t of_a = next % kNextBesideB, of_b = next / kNextBesideB;
   const Edge& first = f.owner.edges[f.on_owner.feature];
   const Edge& second = f.other.edges[f.on_other.feature];
-  if (of_a > 0) to_facet(f.on_owner, first.facet[of_a - 1]);
-  if (of_b > 0) to_facet(f.on_other, second.facet[of_b - 1]);
+  if (of_a > 0) (void)go(f.on_owner, 2, first.facet[of_a - 1]);
+  if (of_b > 0) (void)go(f.on_other, 2, second.facet[of_b - 1]);
   return {.steps = 1, .levels = 1};
 }
 
