@@ -140,6 +140,9 @@ struct ConvexPolyhedron {
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
   std::vector<ExactDirection> exact_normals;  // of an unbounded body, a facet each
+  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
+  // there is none. Made by add_walking_tables().
+  Vec3 inwards = Vec3::Zero();
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex

@@ -144,7 +144,8 @@ bool meet_along_rays(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
       there.point_on_a = top_a + s * e;
       const Vec3 own_b = top_b + t * own;
       there.point_on_b = a_from_b.rotation * own_b + a_from_b.translation;
-      if (!(off_normal(there) <= kLevelPoints * reach_of(there))) continue;
+      const double reach = reach_of(there);
+      if (!(reach < kInfinity && off_normal(there) <= kLevelPoints * reach)) continue;
       state.a.point = there.point_on_a;
       state.b.point = own_b;
       r = there;

@@ -235,7 +235,8 @@ PolarCone::Move PolarCone::shortest_move(const Level& level) const noexcept {
       const DoubleDouble rise_c = rise_wanted(c);
       const DoubleDouble x = (c.along_u * rise_d - d.along_u * rise_c) / area;
       const DoubleDouble y = (d.along_t * rise_c - c.along_t * rise_d) / area;
-      try_move(level, i, j, x, y, 16.0 * error_ / size, best);
+      // That far, where neither is two-way, the direction is beside the one across both.
+      try_move(level, i, j, x, y, 64.0 * error_ / size, best);
     };
     for (std::size_t j = 0; j < i; ++j) {
       const Leaning* const pair = c.two_way ? leaning(level, i, j) : nullptr;

@@ -118,7 +118,7 @@ struct Lines {
   }
   static bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
     return std::any_of(body.rays.begin(), body.rays.end(),
-                       [&](const Ray& other) { return other.direction == -ray.direction; });
+                       [&](const Ray& other) { return other.exactly.is_opposite_to(ray.exactly); });
   }
   [[nodiscard]] Vec3 across(Vec3 v) const noexcept {
     for (std::size_t i = 0; i < count; ++i) v -= v.dot(along[i]) * along[i];

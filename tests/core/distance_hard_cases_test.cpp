@@ -1,6 +1,7 @@
 // distance() against the exact truth, on every family of hard cases and motions.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <ostream>
 #include <stdexcept>
 #include <variant>
@@ -165,6 +166,24 @@ TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
         judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
     EXPECT_TRUE(faults.empty()) << joined(faults);
   }
+}
+
+// Its two rays across the edge have opposite doubles, and the body was taken for a plane with
+// nothing beneath it.
+TEST(Distance, OfAWedgeThatOpensByNextToHalfATurnCountsWhatIsBeneathItsEdge) {
+  constexpr double kFaint = std::numeric_limits<double>::denorm_min();
+  const oracle::Body segment{{}, {Vec3::Zero(), Vec3::UnitX()}, 0.0};
+  const oracle::Body wedge{
+      {{Vec3(kFaint, 0.0, 32.0), 16.0}, {Vec3(0.0, 0.0, 32.0), 16.0}}, {}, 0.0};
+  const Pose pose_a{Vec3::Zero(), Eigen::Quaterniond::Identity()};
+  const Pose pose_b{Vec3(0.39129246328944345, -0.50452189756837584, 7.2650967051210715),
+                    Eigen::Quaterniond::Identity()};
+  DistanceJudge judge(segment, wedge);
+  TrackingState state;
+  const DistanceResult result = judge.ask(pose_a, pose_b, state);
+  const auto faults = judge.faults(result, judge.truth(pose_a, pose_b), pose_a, pose_b);
+  EXPECT_TRUE(faults.empty()) << joined(faults);
+  EXPECT_NEAR(result.distance, -7.7650967051210715, 1e-12);
 }
 
 // One shape may stand in two places: which of the two bodies is meant is no question of the

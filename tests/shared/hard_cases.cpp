@@ -325,7 +325,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"faint_normals", faint_normals},
                                         {"foils", foils},
                                         {"crossing_axes", crossing_axes},
-                                        {"slender_wedges", slender_wedges}};
+                                        {"slender_wedges", slender_wedges},
+                                        {"broad_wedges", broad_wedges}};
 
 }  // namespace
 

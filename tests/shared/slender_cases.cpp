@@ -1,6 +1,7 @@
 #include "tests/shared/slender_cases.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -29,6 +30,20 @@ Body wedge_without_end(Random& random) {
   return out;
 }
 
+// Of some, the sides are so close that no unit vector tells them apart.
+Body broad_wedge(Random& random) {
+  const bool faint = random.chance(0.4);
+  const auto slope = [&] {
+    return faint ? random.integer(0, 3) * std::numeric_limits<double>::denorm_min()
+                 : random.log_uniform(1e-320, 1e-2);
+  };
+  const double height = faint ? std::ldexp(1.0, random.integer(2, 6)) : 1.0;
+  Body out;
+  out.rows.push_back({Vec3(slope(), 0.0, height), 0.5 * height});
+  out.rows.push_back({Vec3(-slope(), 0.0, height), 0.5 * height});
+  return out;
+}
+
 }  // namespace
 
 HardCase crossing_axes(Random& random) {
@@ -48,6 +63,16 @@ HardCase slender_wedges(Random& random) {
   c.pose_b.position = random.in_box(10.0);
   if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
   if (random.chance(0.5)) move_together(c, random.rotation(), random.in_box(1.0));
+  return c;
+}
+
+HardCase broad_wedges(Random& random) {
+  Body a = broad_wedge(random), b = any_bounded(random);
+  if (random.chance(0.5)) std::swap(a, b);
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  c.pose_b.position = random.in_box(random.chance(0.5) ? 3.0 : 10.0);
+  if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
+  if (random.chance(0.3)) move_together(c, random.rotation(), random.in_box(1.0));
   return c;
 }
 

@@ -1,5 +1,5 @@
 // Pairs in which all but one direction is lost in rounding: lines that cross at next to no angle,
-// and bodies without end that open by next to none.
+// and bodies without end that open by next to none or by next to half a turn.
 #pragma once
 
 #include "tests/shared/hard_cases.hpp"
@@ -10,5 +10,8 @@ namespace clearance::hard {
 [[nodiscard]] HardCase crossing_axes(Random& random);
 // A wedge or cone without end, 1e-16 to 1e-2 rad wide, and a bounded body.
 [[nodiscard]] HardCase slender_wedges(Random& random);
+// All but a half-space: a wedge whose two sides are 5e-324 to 1e-2 rad apart, and a bounded body
+// above or in it.
+[[nodiscard]] HardCase broad_wedges(Random& random);
 
 }  // namespace clearance::hard
