@@ -40,7 +40,7 @@ enum class DistancePath : std::uint8_t {
 // normal. Overlapping, B moved by depth * normal only touches A, and the two points are those that
 // meet there: point_on_a is A's farthest along the normal, point_on_b is B's farthest against it
 // (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
-// up to rounding.
+// up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
 // Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
 // vouch for: lower is -infinity then, distance and normal are NaN, the points lie in both bodies,

@@ -13,7 +13,7 @@
 namespace clearance {
 
 struct ObjectState {
-  // What every pair asks of both its objects each tick comes first: one cache line.
+  // What every pair asks of both its objects each tick comes first: one cache line, to `turned`.
   bool seen = false;   // some pose is in use; always so for a fixed object
   bool late = false;   // that pose is older than the object's limit
   bool moved = false;  // it is not that of the last tick
