@@ -22,7 +22,7 @@ constexpr double kSameLine = 0x1p-40;
 constexpr double kTurnedError = 0x1p-99;
 
 // Rays that cross at less have a direction across them that is better taken from long sums.
-constexpr double kCrossing = 0x1p-30;
+constexpr double kClearlyCrossing = 0x1p-30;
 
 // Unit vectors made of doubles.
 constexpr double kUnitError = 0x1p-51;
@@ -101,7 +101,7 @@ PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const n
   const double lengths = narrow(e).norm() * narrow(f).norm();
   WideVec n = cross(e, f);
   double sine = narrow(n).stableNorm() / lengths, error = rotation_.error + kTurnedError;
-  if (rotation_.says_all() && !(sine > kCrossing)) {
+  if (rotation_.says_all() && !(sine > kClearlyCrossing)) {
     n = rounded(cross(lean().kept(long_vec(of_a.exactly)), lean().turned(long_vec(of_b.exactly))));
     sine = narrow(n).norm();
     error = kUnitError * sine;
