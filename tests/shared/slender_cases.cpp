@@ -44,6 +44,17 @@ Body broad_wedge(Random& random) {
   return out;
 }
 
+// In either order; the bodies' origins are up to `apart` from each other along each axis.
+HardCase with_any_bounded(Body wedge, double apart, Random& random) {
+  Body other = any_bounded(random);
+  if (random.chance(0.5)) std::swap(wedge, other);
+  HardCase c{"", std::move(wedge), std::move(other), {}, {}};
+  c.pose_b.position = random.in_box(apart);
+  if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
+  if (random.chance(0.5)) move_together(c, random.rotation(), random.in_box(1.0));
+  return c;
+}
+
 }  // namespace
 
 HardCase crossing_axes(Random& random) {
@@ -57,23 +68,12 @@ HardCase crossing_axes(Random& random) {
 }
 
 HardCase slender_wedges(Random& random) {
-  Body a = wedge_without_end(random), b = any_bounded(random);
-  if (random.chance(0.5)) std::swap(a, b);
-  HardCase c{"", std::move(a), std::move(b), {}, {}};
-  c.pose_b.position = random.in_box(10.0);
-  if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
-  if (random.chance(0.5)) move_together(c, random.rotation(), random.in_box(1.0));
-  return c;
+  return with_any_bounded(wedge_without_end(random), 10.0, random);
 }
 
 HardCase broad_wedges(Random& random) {
-  Body a = broad_wedge(random), b = any_bounded(random);
-  if (random.chance(0.5)) std::swap(a, b);
-  HardCase c{"", std::move(a), std::move(b), {}, {}};
-  c.pose_b.position = random.in_box(random.chance(0.5) ? 3.0 : 10.0);
-  if (random.chance(0.5)) c.pose_b.orientation = random.rotation();
-  if (random.chance(0.3)) move_together(c, random.rotation(), random.in_box(1.0));
-  return c;
+  Body wedge = broad_wedge(random);
+  return with_any_bounded(std::move(wedge), random.chance(0.5) ? 3.0 : 10.0, random);
 }
 
 }  // namespace clearance::hard
