@@ -81,6 +81,7 @@ WideVec PolarCone::of_ray(const Ray& ray, bool of_b) const noexcept {
 // Null: there is none, or which of several it is cannot be told. Which way it runs does not matter.
 const Ray* PolarCone::ray_along(const ConvexPolyhedron& body, const Edge& edge) noexcept {
   const Ray* found = nullptr;
+  if (edge.end < kInfinity) return nullptr;
   for (const Ray& ray : body.rays) {
     if (!(ray.direction.cross(edge.direction).norm() < kSameLine * ray.direction.norm())) continue;
     if (found && !ray.exactly.is_opposite_to(found->exactly)) return nullptr;
@@ -108,6 +109,23 @@ PolarCone::Direction PolarCone::across(const Ray& of_a, const Ray& of_b) const n
   }
   if (!(sine > kParallel)) return {Vec3::Zero(), kInfinity};
   return {narrow(n).stableNormalized(), error / sine + kUnitError};
+}
+
+PolarCone::Direction PolarCone::of_facet(bool of_b, std::int32_t facet) const noexcept {
+  if (!of_b) return {a_.body().facets[facet].normal, kFacetError};
+  return {narrow(rotation_ * wide(b_.body().facets[facet].normal)), kFacetError + rotation_.error};
+}
+
+PolarCone::Slope PolarCone::slope_over_facet(bool of_b, std::int32_t facet,
+                                             const Edge& edge) const noexcept {
+  const ConvexPolyhedron &under = (of_b ? b_ : a_).body(), &over = (of_b ? a_ : b_).body();
+  const Ray* const ray = ray_along(over, edge);
+  if (ray == nullptr) return {0.0, kInfinity};
+  const WideVec normal = rounded(long_vec(under.exact_normals[facet]));
+  const WideVec n = of_b ? rotation_ * normal : normal, g = of_ray(*ray, !of_b);
+  const double length = narrow(normal).norm() * ray->direction.norm();
+  const double way = ray->direction.dot(edge.direction) < 0.0 ? -1.0 : 1.0;
+  return {way * value(dot(n, g)) / length, error_};
 }
 
 PolarCone::Direction PolarCone::only_direction() const noexcept {
@@ -251,17 +269,14 @@ PolarCone::Move PolarCone::shortest_move(const Level& level) const noexcept {
 }
 
 PolarCone::Direction PolarCone::nearest(const Separator& s) const noexcept {
-  Vec3 n = s.normal;
-  if (s.facet_of_b != kNone) {
-    n = -narrow(rotation_ * wide(b_.body().facets[s.facet_of_b].normal));
-  }
+  const Vec3 n = s.facet_of_b != kNone ? Vec3(-of_facet(true, s.facet_of_b).n) : s.normal;
   const Direction none{n, kInfinity};
   Level level;
   if (!collect(a_.body(), false, n, level) || !collect(b_.body(), true, n, level)) return none;
   prepare(n, level);
   if (holds_as_it_is(s, n, level)) {
-    const bool facet = s.facet_of_a != kNone || s.facet_of_b != kNone;
-    return {n, facet ? kFacetError + (s.facet_of_b != kNone ? rotation_.error : 0.0) : 0.0};
+    if (s.facet_of_a != kNone) return {n, of_facet(false, s.facet_of_a).off};
+    return {n, s.facet_of_b != kNone ? of_facet(true, s.facet_of_b).off : 0.0};
   }
   const Move move = shortest_move(level);
   if (!(move.length2 < kInfinity)) return none;

@@ -37,6 +37,16 @@ class PolarCone {
   // off than that; infinity: not known.
   [[nodiscard]] Direction across_lines(const Edge& of_a, const Edge& of_b) const noexcept;
 
+  // A facet's exact normal, outward.
+  [[nodiscard]] Direction of_facet(bool of_b, std::int32_t facet) const noexcept;
+  // How an edge without end of the other body rises over the facet, per metre, off by no more than
+  // `error` and 4 roundings; infinity: not known.
+  struct Slope {
+    double rate, error;
+  };
+  [[nodiscard]] Slope slope_over_facet(bool of_b, std::int32_t facet,
+                                       const Edge& edge) const noexcept;
+
   // Where each body has one line and these cross for certain, the cone has no other directions than
   // this and its opposite; infinity: not known.
   [[nodiscard]] Direction only_direction() const noexcept;

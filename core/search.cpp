@@ -6,13 +6,13 @@
 #include "core/active_side.hpp"
 #include "core/certificate.hpp"
 #include "core/dqp3.hpp"
+#include "core/far_features.hpp"
 #include "core/feature_walk.hpp"
 #include "core/overlap.hpp"
 #include "core/polar_cone.hpp"
 #include "core/precision.hpp"
 #include "core/radii.hpp"
 #include "core/robust.hpp"
-#include "core/towards.hpp"
 
 namespace clearance {
 namespace {
@@ -86,31 +86,13 @@ double beyond_reach(const ActiveSide& a, const ActiveSide& b, const RelativePose
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
 }
 
-// Is where a point lies along its edge, m, certainly between the ends, off by this or not?
-bool is_between_ends(const ActiveSide& side, double off) noexcept {
-  const double at = (side.own() - side.edge().point).dot(side.edge().direction);
-  return at - off > side.edge().begin && at + off < side.edge().end;
-}
-
-// Where lines are closest far away, how far they are apart is known better than where: it is how
-// far they are along the direction across both, measured near the bodies' origins.
-void bound_by_lines(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
+void bound_far_away(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
                     const Precision& p) noexcept {
   if (!(bounds.beyond > 0.0)) return;
-  if (a.feature() != Feature::kEdge || b.feature() != Feature::kEdge) return;
-  const double sine = towards_case::along(a).cross(towards_case::along(b)).norm();
-  // Beyond this a wrong rotation moves the closest points by more than a part of the way to them.
-  if (!(sine > 0x1p-42)) return;
-  const double out = a.own().norm() + b.own().norm();
-  const double off = 0x1p-3 * out + 0x1p-46 * p.size / sine;
-  if (!is_between_ends(a, off) || !is_between_ends(b, off)) return;
-  const auto across = PolarCone(a, b).across_lines(a.edge(), b.edge());
-  if (!(across.off < kInfinity)) return;
-  const Vec3 between = b.point_to_common(b.edge().point) - a.edge().point;
-  const double apart = std::abs(across.n.dot(between)), beyond = across.off * between.norm();
-  if (!(apart + beyond < bounds.certain_upper())) return;
-  bounds.upper = apart;
-  bounds.beyond = beyond;
+  const FarApart far = far_apart(a, b, p);
+  if (!(far.upper + far.beyond < bounds.certain_upper())) return;
+  bounds.upper = far.upper;
+  bounds.beyond = far.beyond;
 }
 
 DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
@@ -128,7 +110,7 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
     bounds.raise(proved_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  if (!met) bound_by_lines(bounds, a, b, p);
+  if (!met) bound_far_away(bounds, a, b, p);
   if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
     prove_from_below(bounds, a, b, p);
   DistanceResult result = conclude(a, b, bounds, p);

@@ -117,6 +117,11 @@ constexpr OnceWrong kOnceWrong[] = {
     {"leaning", 9009700007, "points 0.3 m beside each other: the lines meet 2e10 m away"},
     {"hairs_breadth", 39200003, "points 6e-10 m off along the normal"},
     {"without_end", 8016700007, "no depth: rays at right angles were taken for leaning ones"},
+    {"leaning", 3021600003, "an upper bound 1e-9 too high: an edge on a facet, 2e5 m away"},
+    {"leaning", 5211100003, "the same"},
+    {"leaning", 5232900003, "the same"},
+    {"leaning", 21017600007, "the same, by 2e-12, 3e2 m away"},
+    {"leaning", 3347700003, "the same"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
