@@ -51,13 +51,15 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
 }
 
 // How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
-// edge of X, has a direction exactly there in which X reaches exactly as far as that feature.
+// edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
+// that leaves open whether they overlap at all, every ulp counts, and both ways are gone.
 double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
                  const ActiveSide& a, const ActiveSide& b, const Precision& p,
                  double rounding) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
-  if (feature_of_x && body.y().bounded()) return best.height + rounding;
-  return -separation(s, a, b, p) + p.slack;
+  const double by_feature = feature_of_x && body.y().bounded() ? best.height + rounding : kInfinity;
+  if (best.height > rounding && by_feature < kInfinity) return by_feature;
+  return std::min(by_feature, -separation(s, a, b, p) + p.slack);
 }
 
 // Bodies with one line each, which cross: the direction across both, or its opposite, parts them or

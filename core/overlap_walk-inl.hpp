@@ -117,7 +117,9 @@ HWY_INLINE bool conclude_overlap(Walk& w) {
   w.slack = p.slack;
   const bool proved =
       w.apart > 0.0 ? w.proved > p.slack : w.apart + w.beyond < -p.slack && is_shortest(w, p.size);
-  if (!proved || !(w.apart - w.proved <= p.tight)) return false;
+  const double noise = w.apart - w.proved;
+  const bool narrow = noise + w.beyond + 2.0 * p.slack <= kConvergedGap * p.size;
+  if (!proved || !(noise <= p.tight) || !narrow) return false;
   w.on_a.deep = !(w.apart > 0.0);
   w.on_a.point = vec3(w.point_a);
   w.on_b.point = vec3(w.own_b);

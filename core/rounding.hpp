@@ -57,6 +57,10 @@ inline constexpr double kPermutedTranslationError = 4 * kUlp;
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
 
+// Of a matrix each entry of which is rounded once: in the 2-norm no more ulps than that of its
+// entries' magnitudes, which for a rotation is at most 5/3. All of it may be a stretch.
+inline constexpr double kRoundedRotationError = 1.7 * kUlp / kStretched;
+
 // Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
 // in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
 // in ulps of |a|, |b| and |t|

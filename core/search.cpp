@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/active_side.hpp"
 #include "core/certificate.hpp"
@@ -13,6 +14,7 @@
 #include "core/precision.hpp"
 #include "core/radii.hpp"
 #include "core/robust.hpp"
+#include "core/wide_rotation.hpp"
 
 namespace clearance {
 namespace {
@@ -126,6 +128,52 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
   return result;
 }
 
+// From the features of the state on, which it moves on; of the cores, without radii.
+DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
+  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  const double apart = a_from_b.translation.norm();
+  side_a.place_near(state.a, side_b, apart);
+  side_b.place_near(state.b, side_a, apart);
+  DistanceResult result = core_distance(side_a, side_b, a_from_b);
+  state = {side_a.tracked(), side_b.tracked()};
+  if (result.lower > 0.0) return result;
+  if (depth) {
+    measure_overlap(a, b, a_from_b, state, result);
+  } else {
+    result.status = DistanceStatus::kIterationLimit;
+  }
+  return result;
+}
+
+// Of bodies that overlap or touch more is rounded than of others, and their bounds may come out
+// wider than a converged answer's: then once more, with less rounding of the pose. Both are bounds.
+void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                   const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) noexcept {
+  const double gap = r.upper - r.lower;
+  const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
+  const bool overlapping = r.status == DistanceStatus::kOverlapping;
+  if (!overlapping && r.status != DistanceStatus::kTouching) return;
+  if (!(gap > kConvergedGap * p.size && gap < kInfinity)) return;
+  const std::optional<RelativePose> nearer = rounded_once(a_from_b);
+  if (!nearer) return;
+  TrackingState again = state;
+  DistanceResult narrower;
+  if (still_overlapping(a, b, *nearer, again, narrower)) {
+    narrower.path = r.path;
+  } else if (overlapping) {
+    return;
+  } else {
+    narrower = searched(a, b, *nearer, again, true);
+  }
+  narrower.lower = std::max(narrower.lower, r.lower);
+  narrower.upper = std::min(narrower.upper, r.upper);
+  if (!(narrower.upper - narrower.lower < gap)) return;
+  narrower.distance = std::clamp(narrower.distance, narrower.lower, narrower.upper);
+  r = narrower;
+  state = again;
+}
+
 // Lengths that overflow leave numbers that are none.
 bool says_something(const DistanceResult& r) noexcept {
   if (r.status == DistanceStatus::kOverlapping) return r.lower <= r.upper;
@@ -159,19 +207,8 @@ void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
-  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
-  const double apart = a_from_b.translation.norm();
-  side_a.place_near(state.a, side_b, apart);
-  side_b.place_near(state.b, side_a, apart);
-  DistanceResult result = core_distance(side_a, side_b, a_from_b);
-  state = {side_a.tracked(), side_b.tracked()};
-  if (!(result.lower > 0.0)) {
-    if (depth) {
-      measure_overlap(a, b, a_from_b, state, result);
-    } else {
-      result.status = DistanceStatus::kIterationLimit;
-    }
-  }
+  DistanceResult result = searched(a, b, a_from_b, state, depth);
+  if (depth) narrow_bounds(a, b, a_from_b, state, result);
   finish(a, b, result);
   return result;
 }
@@ -182,6 +219,7 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   DistanceResult result;
   if (still_overlapping(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
+    narrow_bounds(a, b, a_from_b, state, result);
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
     return by_search(a, b, a_from_b, state, true);
   }

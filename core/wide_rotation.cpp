@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rounding.hpp"
+
 namespace clearance {
 namespace {
 
@@ -182,6 +184,17 @@ WideRotation wide_rotation(const RelativePose& pose) noexcept {
   out.error = kWideError;
   set_axes(of, out);
   return agrees(out, pose) ? out : as_given;
+}
+
+std::optional<RelativePose> rounded_once(const RelativePose& a_from_b) noexcept {
+  const WideRotation known = wide_rotation(a_from_b);
+  if (!known.of_quaternions) return {};
+  RelativePose out = a_from_b;
+  for (int i = 0; i < 3; ++i) {
+    out.rotation.row(i) = narrow(known.rows[static_cast<std::size_t>(i)]);
+  }
+  out.rotation_error = known.exact() ? 0.0 : kRoundedRotationError;
+  return out;
 }
 
 }  // namespace clearance

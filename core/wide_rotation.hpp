@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/pose.hpp"
 #include "core/simplex.hpp"
@@ -49,5 +50,9 @@ struct WideRotation {
 
 // The pose's own rotation, where that is exact or nothing better is known.
 [[nodiscard]] WideRotation wide_rotation(const RelativePose& a_from_b) noexcept;
+
+// The same pose with its rotation rounded once, for a fifteenth of the error; nothing where its
+// quaternions do not say more than the pose.
+[[nodiscard]] std::optional<RelativePose> rounded_once(const RelativePose& a_from_b) noexcept;
 
 }  // namespace clearance

@@ -12,6 +12,7 @@
 #include <map>
 #include <string>
 
+#include "core/rounding.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/nonsense_state.hpp"
@@ -22,7 +23,7 @@ namespace {
 struct Tally {
   long asked = 0, failed = 0, cases = 0;
   long iterations = 0, most_iterations = 0;
-  double widest = 0.0;  // of the converged: upper - lower, over the reach of both and their offset
+  double widest = 0.0;  // but at the iteration limit: upper - lower, over DistanceJudge::size
 };
 
 // Streams of neighbouring seeds are the same but for one draw; no case draws as often as this.
@@ -94,9 +95,10 @@ class Campaign {
     ++tally_->asked;
     tally_->iterations += result.iterations;
     tally_->most_iterations = std::max<long>(tally_->most_iterations, result.iterations);
-    if (result.status == DistanceStatus::kConverged) {
-      const double gap = result.upper - result.lower;
-      tally_->widest = std::max(tally_->widest, gap / judge.size({}, pose_a, pose_b));
+    const double gap = result.upper - result.lower - 4.0 * kUnderflow;
+    const double size = judge.size(truth, pose_a, pose_b);
+    if (result.status != DistanceStatus::kIterationLimit && gap < kInfinity && size > 0.0) {
+      tally_->widest = std::max(tally_->widest, gap / size);
     }
     for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
       report(std::string(how) + ": " + fault);
@@ -123,12 +125,11 @@ class Campaign {
 
 int main(int argc, char** argv) {
   if (argc < 4) {
-    std::cerr
-        << "usage: campaign_distance FIRST_SEED CASES MOTIONS [FINDINGS.jsonl] [FAMILY]\n"
-           "CASES single poses and MOTIONS motions of 100 poses of each family, with seeds\n"
-           "FIRST_SEED, FIRST_SEED + 100000, ...; prints what is wrong, and by family the\n"
-           "widest bounds (upper - lower) of those converged over what errors are relative to.\n"
-           "example: campaign_distance 0 1000 10 findings.jsonl\n";
+    std::cerr << "usage: campaign_distance FIRST_SEED CASES MOTIONS [FINDINGS.jsonl] [FAMILY]\n"
+                 "CASES single poses and MOTIONS motions of 100 poses of each family, with seeds\n"
+                 "FIRST_SEED, FIRST_SEED + 100000, ...; prints what is wrong, and by family the\n"
+                 "widest bounds (upper - lower) over what errors are relative to.\n"
+                 "example: campaign_distance 0 1000 10 findings.jsonl\n";
     return 2;
   }
   const std::uint64_t first = std::strtoull(argv[1], nullptr, 10);

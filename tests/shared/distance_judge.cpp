@@ -18,14 +18,9 @@ using oracle::Body;
 using oracle::ExactDistance;
 using oracle::Rational;
 
-// Relative to DistanceJudge::size. The proof of the bounds counts about 50 roundings of 2^-53 on
-// either side, 30 of them for the relative rotation (core/rounding.hpp): 1.2e-14
-// for both.
-constexpr double kTolerance = 1.5e-14;
-
-// Of the gap between the bounds of a converged answer where only one of the bodies may be
-// unbounded.
-constexpr double kConvergedTolerance = 1e-14;
+// Relative to DistanceJudge::size: of the gap between the bounds; and of where the witness points
+// may lie.
+constexpr double kGapTolerance = 1e-14, kPointTolerance = 1.5e-14;
 
 // Rows or points; where their features are not plain, the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
@@ -84,9 +79,6 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
                     Faults& faults) {
   const char* status = name(r.status);
   const double gap = r.upper - r.lower;
-  const double narrow = r.status == DistanceStatus::kConverged
-                            ? kConvergedTolerance / kTolerance * tolerance
-                            : tolerance;
   switch (r.status) {
     case DistanceStatus::kIterationLimit:
     case DistanceStatus::kFarAway:
@@ -105,7 +97,8 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
           text("touching, but the truth is %.17g, tolerance %.3g", truth.lower, tolerance));
       break;
   }
-  faults.unless(gap <= narrow, text("%s with a gap of %.3g, more than %.3g", status, gap, narrow));
+  faults.unless(gap <= tolerance,
+                text("%s with a gap of %.3g, more than %.3g", status, gap, tolerance));
 }
 
 // Are the points where distance and normal say? `placed`: what rounding may do to a point;
@@ -228,13 +221,14 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
   if (!are_numbers(r, faults)) return faults.all;
   look_at_bounds(r, truth, !truth.cores_meet() || depth_is_asked_for(), faults);
 
-  const double tolerance = kTolerance * size(truth, pose_a, pose_b) + 4.0 * kUnderflow;
+  const double reach = size(truth, pose_a, pose_b);
+  const double tolerance = kGapTolerance * reach + 4.0 * kUnderflow;
   // Lines of two unbounded bodies that all but run along each other: the closest points are so far
   // away that doubles cannot say where, let alone to the tolerance.
   const double closest_at = where_they_part(r, truth, pose_a, pose_b);
   const bool out_of_sight = !a_.bounded() && !b_.bounded() && kUlp * closest_at > tolerance;
   // Floors and wedges through both origins have no size that a rounding error could be relative to.
-  const bool no_size = size(truth, pose_a, pose_b) == 0.0;
+  const bool no_size = reach == 0.0;
   const bool may_give_up = no_size || (out_of_sight && truth.squared_depth == 0);
   if (may_give_up && r.status == DistanceStatus::kIterationLimit) return faults.all;
   look_at_status(r, truth, tolerance, faults);
@@ -246,8 +240,9 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
   // Two unbounded bodies may be closest, or part, far away: there the points' own coordinates are
   // rounded to more.
   const double out_there = std::max(r.point_on_a.norm(), r.point_on_b.norm());
+  const bool far_out = !a_.bounded() && !b_.bounded();
   const double placed =
-      a_.bounded() || b_.bounded() ? tolerance : std::max(tolerance, kTolerance * out_there);
+      kPointTolerance * (far_out ? std::max(reach, out_there) : reach) + 4.0 * kUnderflow;
   const double off_a = outside(exact_a_, pose_a, body_a_.radius, r.point_on_a, pose_a);
   const double off_b = outside(exact_b_, pose_b, body_b_.radius, r.point_on_b, pose_a);
   faults.unless(off_a <= placed,
@@ -256,7 +251,7 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
                 text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
   // The normal, a rounded one, leads to where they part but for its rounding; no point there can be
   // told, and those that are told stay near the bodies.
-  const double led = std::min(kTolerance * closest_at, size(truth, pose_a, pose_b));
+  const double led = std::min(kPointTolerance * closest_at, reach);
   look_at_witnesses(r, placed, out_of_sight ? std::max(placed, led) : placed, faults);
   return faults.all;
 }

@@ -31,13 +31,13 @@ class DistanceJudge {
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
   //  - the bounds, compared exactly; the upper one only where the depth is known
-  //  - the status: converged within 1e-14 of size(), overlapping, touching and two unbounded bodies
-  //    within 1.5e-14; overlapping and touching only where it is so; at the iteration limit only
-  //    where two unbounded bodies, apart or touching, are closest beyond what doubles can say; with
-  //    no lower bound only where two unbounded bodies overlap that no translation parts
-  //  - the witness points: on their bodies, and `distance` apart along the normal; of two unbounded
-  //    bodies that meet beyond what doubles can say, beside each other by no more than the normal's
-  //    rounding moves them there, and than their size; the normal: unit
+  //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
+  //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
+  //    or touching, are closest beyond what doubles can say; with no lower bound only where two
+  //    unbounded bodies overlap that no translation parts
+  //  - the witness points, to 1.5e-14: on their bodies, and `distance` apart along the normal; of
+  //    two unbounded bodies that meet beyond what doubles can say, beside each other by no more
+  //    than the normal's rounding moves them there, and than their size; the normal: unit
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,
                                                 const Pose& pose_a, const Pose& pose_b);
