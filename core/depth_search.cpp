@@ -141,22 +141,22 @@ DepthSearch::Sample DepthSearch::sample(const Arc& arc, const Vec2& at) noexcept
 }
 
 bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
-  const Vec2 first = l, last = r;
+  ArcEnds level_at{};
   for (const Ray& ray : body_.y().rays) {
     const Rise over = rise(arc, ray);
     const double certain = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
-    const auto rises_at = [&](const Vec2& at, std::int32_t end) {
+    const auto rises_at = [&](const Vec2& at, std::size_t end) {
       const double rate = over.rate.dot(at);
-      if (rate > certain || rate < -certain || end == kNone) return rate > certain;
-      return rises_exactly(ray, true, body_.x().exact_normals[arc.edge.facet[end]]);
+      if (rate > certain || rate < -certain) return rate > certain;
+      return rises_exactly(ray, arc, end, level_at[end]);
     };
-    const bool l_rises = rises_at(l, l == first ? 0 : kNone),
-               r_rises = rises_at(r, r == last ? 1 : kNone);
+    const bool l_rises = rises_at(l, 0), r_rises = rises_at(r, 1);
     if (l_rises && r_rises) return false;
     if (!l_rises && !r_rises) continue;
     // Of the two directions across the ray, the one on the arc: less than a quarter turn from its
     // middle.
     (l_rises ? l : r) = over.level(middle_of(l, r));
+    level_at[l_rises ? 0 : 1] = &ray;
   }
   return true;
 }

@@ -157,9 +157,18 @@ class DepthSearch {
   // For certain. Which of them it is must be told: both may be the same object.
   [[nodiscard]] bool goes_on_along(bool is_y, const Vec3& n,
                                    const ExactDirection& normal) const noexcept;
+  // A multiple of what a ray falls by along a facet's normal of the other body.
+  [[nodiscard]] LongSum<10> fall(const Ray& ray, bool of_y,
+                                 const ExactDirection& normal) const noexcept;
   [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
                                    const ExactDirection& normal) const noexcept;
-  // False: nothing is left of it, because Y is unbounded along all of it.
+  // What is left of an arc ends where these rays of Y are level; null: at its facet's normal.
+  using ArcEnds = std::array<const Ray*, 2>;
+  // At the first or second end, where `level` is.
+  [[nodiscard]] bool rises_exactly(const Ray& ray, const Arc& arc, std::size_t end,
+                                   const Ray* level) const noexcept;
+  // False: nothing is left of it, because Y is unbounded along all of it. X is unbounded as well,
+  // and all of its edges have facets.
   [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
   void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
   void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;

@@ -16,12 +16,33 @@ constexpr double kLeaning = 0x1p-30;
 
 }  // namespace
 
-bool DepthSearch::rises_exactly(const Ray& ray, bool of_y,
-                                const ExactDirection& normal) const noexcept {
-  if (!lean_) return false;
+LongSum<10> DepthSearch::fall(const Ray& ray, bool of_y,
+                              const ExactDirection& normal) const noexcept {
   const LongVec<3> g = long_vec(ray.exactly), n = long_vec(normal);
   const bool of_a = of_y == body_.x_is_b();
-  return (of_a ? lean_->sign(g, n) : lean_->sign(n, g)) < 0;
+  return of_a ? dot(g, lean_->turned(n)) : dot(n, lean_->turned(g));
+}
+
+bool DepthSearch::rises_exactly(const Ray& ray, bool of_y,
+                                const ExactDirection& normal) const noexcept {
+  return lean_ && fall(ray, of_y, normal).sign() < 0;
+}
+
+// Between the normals l and r the level ray falls along one and rises along the other, so that it
+// is level along l |its fall along r| + r |its fall along l|.
+bool DepthSearch::rises_exactly(const Ray& ray, const Arc& arc, std::size_t end,
+                                const Ray* level) const noexcept {
+  if (!lean_) return false;
+  const auto along = [&](const Ray& of, std::size_t k) {
+    return fall(of, true, body_.x().exact_normals[arc.edge.facet[k]]);
+  };
+  if (level == nullptr) return along(ray, end).sign() < 0;
+  const LongSum<10> level_l = along(*level, 0), level_r = along(*level, 1);
+  LongSum<20> falls;
+  falls.add_product(along(ray, 0), level_r);
+  falls.add_product(along(ray, 1), level_l, -1);
+  const int falls_to_r = level_r.sign() != 0 ? level_r.sign() : -level_l.sign();
+  return falls_to_r * falls.sign() < 0;
 }
 
 // A ray that all but runs along the arc's edge is level at directions of the arc that its last

@@ -125,6 +125,11 @@ constexpr OnceWrong kOnceWrong[] = {
     {"links", 62800003, "an overlap bounded to 1.02e-14 of its size"},
     {"sizes", 66500003, "the same, to 1.06e-14"},
     {"far_from_origin", 69900003, "a touch bounded to 1.34e-14, asked for the other way round"},
+    {"faint_normals", 12044800007,
+     "half of a depth's bounds: which part of an arc neither body goes on along hangs on 1e-130"},
+    {"faint_normals", 21184200007, "the same, swapped"},
+    {"faint_normals", 3352700003, "the same"},
+    {"faint_normals", 3308000003, "the same, swapped"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
