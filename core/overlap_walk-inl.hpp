@@ -21,6 +21,7 @@
 #include <cmath>
 
 #include "core/feature_walk-inl.hpp"
+#include "core/radii.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
@@ -118,8 +119,10 @@ HWY_INLINE bool conclude_overlap(Walk& w) {
   const bool proved =
       w.apart > 0.0 ? w.proved > p.slack : w.apart + w.beyond < -p.slack && is_shortest(w, p.size);
   const double noise = w.apart - w.proved;
-  const bool narrow = noise + w.beyond + 2.0 * p.slack <= kConvergedGap * p.size;
-  if (!proved || !(noise <= p.tight) || !narrow) return false;
+  const double gap = noise + w.beyond + 2.0 * p.slack;
+  if (!proved || !(noise <= p.tight) || !is_as_promised(w.a, w.b, p.size, w.apart, gap)) {
+    return false;
+  }
   w.on_a.deep = !(w.apart > 0.0);
   w.on_a.point = vec3(w.point_a);
   w.on_b.point = vec3(w.own_b);

@@ -12,6 +12,19 @@ namespace clearance {
   return a.radius + b.radius;
 }
 
+// What taking their sum off a bound of the cores' distance, about `distance`, rounds.
+[[nodiscard]] inline double rounding_of_radii(double sum, double distance) noexcept {
+  return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
+}
+
+// Will bounds of the cores' distance, `gap` from each other, be as near as a converged answer's
+// when the radii are taken off? `size`: Precision::size.
+[[nodiscard]] inline bool is_as_promised(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         double size, double distance, double gap) noexcept {
+  const double sum = radii(a, b);
+  return gap + 2.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
+}
+
 // B's witness point of a result with radii, from the core's (TrackingState); both and the result's
 // normal in the same frame.
 [[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_core, const Vec3& normal,
@@ -24,7 +37,7 @@ inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
                       const ConvexPolyhedron& b) noexcept {
   const double sum = radii(a, b);
   if (sum == 0.0 || r.upper == -kInfinity) return;  // what no translation parts stays so
-  const double rounding = kRadiusRounding * (sum + std::abs(r.upper - sum));
+  const double rounding = rounding_of_radii(sum, r.upper);
   r.distance -= sum;
   r.lower -= sum + rounding;
   r.upper -= sum - rounding;

@@ -151,10 +151,10 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                    const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) noexcept {
   const double gap = r.upper - r.lower;
-  const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
   const bool overlapping = r.status == DistanceStatus::kOverlapping;
   if (!overlapping && r.status != DistanceStatus::kTouching) return;
-  if (!(gap > kConvergedGap * p.size && gap < kInfinity)) return;
+  const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
+  if (is_as_promised(a, b, p.size, r.upper, gap) || !(gap < kInfinity)) return;
   const std::optional<RelativePose> nearer = rounded_once(a_from_b);
   if (!nearer) return;
   TrackingState again = state;
