@@ -211,7 +211,7 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const Points between = start_b - first;
   const Points n = cross(e, f);
   const Lanes sine2 = dot(n, n), cosine = dot(e, f), along_e = dot(between, e);
-  const Lanes t = hn::Div(hn::Sub(hn::Mul(cosine, along_e), dot(between, f)), sine2);
+  const Lanes t = hn::Div(dot(cross(between, e), n), sine2);
   const Lanes s = hn::Add(along_e, hn::Mul(cosine, t));
   const Lanes begin_a = at.lanes(6), end_a = at.lanes(7);
   const Lanes begin_b = at.lanes(kSecond + 6), end_b = at.lanes(kSecond + 7);

@@ -154,10 +154,11 @@ struct EdgeLines {
         n(cross(e, f)),
         sine2(dot(n, n)) {}
 
-  // s along the first and t along the second: of lines that cross.
+  // s along the first and t along the second: of lines that cross. What lies between them along e
+  // is taken off first, so that its rounding is over the sine, and not over the sine's square.
   HWY_INLINE void find_nearest() {
     const double cosine = dot(e, f), along_e = dot(between, e);
-    t = (cosine * along_e - dot(between, f)) / sine2;
+    t = dot(cross(between, e), n) / sine2;
     s = along_e + cosine * t;
   }
   HWY_INLINE void place_witnesses(Walk& w) const {

@@ -173,6 +173,27 @@ void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   r.point_on_a = state.a.point;
 }
 
+// From the features of the state, unless that brings the points farther beside each other than
+// `beside`; how far they are then.
+double bring_together(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                      const RelativePose& a_from_b, const RelativePose& moved, double beside,
+                      TrackingState& state, DistanceResult& r) noexcept {
+  const DistanceResult before = r;
+  r.iterations += settle_apart(a, b, moved, state);
+  const double after = take_points(a_from_b, state, r);
+  if (after < beside) return after;
+  r = before;
+  return beside;
+}
+
+// At the vertices that are farthest along the normal, of bodies that have any.
+TrackingState at_farthest(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                          const RelativePose& a_from_b, const Vec3& normal) noexcept {
+  const std::int32_t of_a = support(a, normal).anchor;
+  const std::int32_t of_b = support(b, -(a_from_b.rotation.transpose() * normal)).anchor;
+  return {{0, false, of_a, a.anchors[of_a]}, {0, false, of_b, b.anchors[of_b]}};
+}
+
 // The points that meet when B has been moved clear of A.
 void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                      const RelativePose& a_from_b, const Depth& found, TrackingState& state,
@@ -190,10 +211,14 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   const double beside = take_points(a_from_b, state, r);
   if (!(beside > kBeside * size)) return;
   moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
-  const DistanceResult before = r;
-  r.iterations += settle_apart(a, b, moved, state);
-  if (!(take_points(a_from_b, state, r) < beside)) r = before;
-  if (!a.bounded() && !b.bounded()) level_witnesses(a, b, a_from_b, size, state, r);
+  const double nearer = bring_together(a, b, a_from_b, moved, beside, state, r);
+  if (!a.bounded() && !b.bounded()) return level_witnesses(a, b, a_from_b, size, state, r);
+  // Features that are level to more than rounding, and yet at so small a distance not to be told
+  // from the right ones, nor left by steps.
+  const double along = (r.point_on_b - r.point_on_a).dot(r.normal) - r.distance;
+  if (std::abs(along) <= kLevelPoints * size || a.vertices.empty() || b.vertices.empty()) return;
+  TrackingState farthest = at_farthest(a, b, a_from_b, found.normal);
+  if (bring_together(a, b, a_from_b, moved, nearer, farthest, r) < nearer) state = farthest;
 }
 
 void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -216,7 +216,7 @@ constexpr Kind kKinds[] = {
                       start_b = at.point(start_of(p.b));
        const Counted3 between = start_b - start_of(p.a), n = cross(e, f);
        const Counted sine2 = dot(n, n), cosine = dot(e, f), along_e = dot(between, e);
-       const Counted t = (cosine * along_e - dot(between, f)) / sine2, s = along_e + cosine * t;
+       const Counted t = dot(cross(between, e), n) / sine2, s = along_e + cosine * t;
        return norm((start_b + t.forgotten() * f) - (start_of(p.a) + s.forgotten() * e));
      }}};
 
