@@ -19,6 +19,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/opening.hpp"
 #include "core/start_table.hpp"
 #include "core/vec.hpp"
 
@@ -126,6 +127,7 @@ struct Ray {
   bool exact;  // then `direction` is the exact direction up to a positive factor, not a rounded one
   Vec3 rest = Vec3::Zero();  // direction + rest is the exact direction up to a factor, to 2^-104
   ExactDirection exactly{};
+  bool is_line = false;  // its opposite is one as well; made by add_walking_tables()
 };
 
 struct ConvexPolyhedron {
@@ -140,9 +142,7 @@ struct ConvexPolyhedron {
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
   std::vector<ExactDirection> exact_normals;  // of an unbounded body, a facet each
-  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
-  // there is none. Made by add_walking_tables().
-  Vec3 inwards = Vec3::Zero();
+  Opening opening;                            // of an unbounded body; made by add_walking_tables()
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex

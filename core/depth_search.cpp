@@ -15,8 +15,9 @@ constexpr int kSamples = 1024;
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   const auto rise = [&](const Vec3& way) { return n.dot(way) > margin * way.norm(); };
-  return rise(body.inwards) || std::any_of(body.rays.begin(), body.rays.end(),
-                                           [&](const Ray& ray) { return rise(ray.direction); });
+  return rise(body.opening.inwards) ||
+         std::any_of(body.rays.begin(), body.rays.end(),
+                     [&](const Ray& ray) { return rise(ray.direction); });
 }
 bool may_rise(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   return rises(body, n, -margin);

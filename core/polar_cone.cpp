@@ -44,19 +44,12 @@ bool falls_or_is_level(const Vec3& n, const Vec3& g) noexcept {
   return exact::sum_is_not_positive(parts);
 }
 
-// A ray whose opposite is one as well, for certain.
-bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
-  return body.vertices.empty() &&
-         std::any_of(body.rays.begin(), body.rays.end(),
-                     [&](const Ray& other) { return other.exactly.is_opposite_to(ray.exactly); });
-}
-
 // Null: none, or, of half-spaces and slabs, a whole plane of them.
 const Ray* only_line(const ConvexPolyhedron& body) noexcept {
   const Ray* found = nullptr;
   int lines = 0;
   for (const Ray& ray : body.rays) {
-    if (!is_line(body, ray)) continue;
+    if (!ray.is_line) continue;
     found = &ray;
     ++lines;
   }
@@ -139,7 +132,7 @@ PolarCone::Rise PolarCone::rise_of_others(const Direction& n) const noexcept {
   double steepest = -kInfinity;
   const auto look_at = [&](const ConvexPolyhedron& body, const Vec3& m) {
     for (const Ray& ray : body.rays) {
-      if (is_line(body, ray)) continue;
+      if (ray.is_line) continue;
       steepest = std::max(steepest, m.dot(ray.direction) / ray.direction.norm());
     }
   };

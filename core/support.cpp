@@ -101,78 +101,19 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   return best;
 }
 
-namespace {
-
-// Rays that come with their opposite: at most two lines, or a whole plane by two of them. Unit.
-struct Lines {
-  std::array<Vec3, 2> along;  // at right angles
-  std::size_t count = 0;
-
-  explicit Lines(const ConvexPolyhedron& body) noexcept {
-    if (!body.vertices.empty()) return;
-    for (const Ray& ray : body.rays) {
-      if (count == along.size() || !is_line(body, ray)) continue;
-      const Vec3 rest = across(ray.direction.normalized());
-      if (rest.norm() > 0.5) along[count++] = rest.normalized();
-    }
-  }
-  static bool is_line(const ConvexPolyhedron& body, const Ray& ray) noexcept {
-    return std::any_of(body.rays.begin(), body.rays.end(),
-                       [&](const Ray& other) { return other.exactly.is_opposite_to(ray.exactly); });
-  }
-  [[nodiscard]] Vec3 across(Vec3 v) const noexcept {
-    for (std::size_t i = 0; i < count; ++i) v -= v.dot(along[i]) * along[i];
-    return v;
-  }
-};
-
-// Directions and products are off by at most this.
-constexpr double kSlopeError = 0x1p-50;
-
-// Calls with the direction of each ray, unit, that does not run along a line.
-template <class Call>
-void for_rays_but_lines(const ConvexPolyhedron& body, const Lines& lines, const Call& call) {
-  for (const Ray& ray : body.rays) {
-    if (lines.count > 0 && Lines::is_line(body, ray)) continue;
-    call(ray.exact ? Vec3(ray.direction.normalized()) : ray.direction);
-  }
-}
-
-// How much of any such ray, at least, lies along one direction. Two are tried: against the sum of
-// the facets' normals, as no ray leads out of a facet and only lines run along all of them, and the
-// sum of the rays, along which one of many may have nothing but those of a slender cone have all.
-double opening(const ConvexPolyhedron& body, const Lines& lines) noexcept {
-  Vec3 inwards = Vec3::Zero(), along = Vec3::Zero();
-  for (const Facet& facet : body.facets) inwards -= facet.normal;
-  for_rays_but_lines(body, lines, [&](const Vec3& direction) { along += direction; });
-  inwards = lines.across(inwards).stableNormalized();
-  along = lines.across(along).stableNormalized();
-  double of_inwards = kInfinity, of_along = kInfinity;
-  for_rays_but_lines(body, lines, [&](const Vec3& direction) {
-    of_inwards = std::min(of_inwards, inwards.dot(direction));
-    of_along = std::min(of_along, along.dot(direction));
-  });
-  return std::max(of_inwards, of_along) - kSlopeError;
-}
-
-}  // namespace
-
 // A point is an anchor plus a sum of rays, r. What lies along the lines is no longer than r. The
-// other rays, their parts across the lines, all have a part of at least `opening` along one
+// other rays, their parts across the lines, all have a part of at least Opening::least along one
 // direction, so that there are no more of them than |r| over that: they count as often as the
 // steepest rises.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  const Lines lines(body);
-  const Vec3 across = lines.across(m);
+  const Opening& opening = body.opening;
+  if (!(opening.least > 0.0)) return kInfinity;
+  const Vec3 across = opening.across_lines(m);
   double steepest = 0.0;
-  for_rays_but_lines(body, lines, [&](const Vec3& direction) {
-    steepest = std::max(steepest, across.dot(direction) + kSlopeError);
-  });
-  const double open = opening(body, lines);
-  if (!(open > 0.0)) return kInfinity;
-  double rate = steepest / open;
-  if (lines.count > 0) rate += (m - across).norm() + kSlopeError;
+  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  double rate = steepest / opening.least;
+  if (opening.line_count > 0) rate += (m - across).norm() + kSlopeError;
   return rate * (within + body.bounding_radius);
 }
 

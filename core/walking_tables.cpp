@@ -60,18 +60,6 @@ double inner_radius(const ConvexPolyhedron& body) {
   return std::max(0.0, nearest - kRoundings * body.bounding_radius - body.position_error);
 }
 
-// Against the sum of all normals, if it leads away from each by more than rounding.
-Vec3 inwards(const ConvexPolyhedron& body) {
-  constexpr double kAway = 0x1p-20;
-  if (body.bounded() || body.facets.empty()) return Vec3::Zero();
-  Vec3 sum = Vec3::Zero();
-  for (const Facet& facet : body.facets) sum -= facet.normal;
-  const Vec3 way = sum.stableNormalized();
-  const bool away = std::all_of(body.facets.begin(), body.facets.end(),
-                                [&](const Facet& facet) { return facet.normal.dot(way) < -kAway; });
-  return away ? way : Vec3(Vec3::Zero());
-}
-
 void add_facet_sides(ConvexPolyhedron& body) {
   body.facet_sides.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
@@ -102,7 +90,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
   body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
   body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   body.inner_radius = inner_radius(body);
-  body.inwards = inwards(body);
+  add_opening(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
   add_outgoing(body);

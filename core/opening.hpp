@@ -1,0 +1,40 @@
+// How an unbounded body goes on for ever: worked out once, when it is made.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+struct ConvexPolyhedron;
+
+struct Opening {
+  // Rays that come with their opposite: at most two lines, or a whole plane by two of them. Unit,
+  // at right angles.
+  std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
+  std::size_t line_count = 0;
+  std::vector<Vec3> rays;  // the others, unit
+  // How much of any of these, at least, lies along one direction at right angles to the lines;
+  // rounding included. 0 or less: no such direction is known.
+  double least = 0.0;
+  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
+  // there is none.
+  Vec3 inwards = Vec3::Zero();
+
+  // What of v is at right angles to the lines.
+  [[nodiscard]] Vec3 across_lines(Vec3 v) const noexcept {
+    for (std::size_t i = 0; i < line_count; ++i) v -= v.dot(lines[i]) * lines[i];
+    return v;
+  }
+};
+
+// Of a directions' and a product's rounding.
+inline constexpr double kSlopeError = 0x1p-50;
+
+// Sets the body's `opening`, and which of its rays are lines.
+void add_opening(ConvexPolyhedron& body);
+
+}  // namespace clearance
