@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/long_sum.hpp"
+
 namespace clearance::exact {
 namespace {
 
@@ -134,12 +136,26 @@ RoundedDirection nearest_direction(const Integer3& direction) {
   return {vector, true};
 }
 
+namespace {
+
+// What LongSum<3> holds, in the middle of it if that is enough.
+constexpr long kBelow = 3300, kAbove = 3000;
+static_assert(-kBelow >= LongSum<3>::kLowest && kAbove <= LongSum<3>::kHighest);
+
+long longest_of(const Integer3& v) { return std::max({bits(v[0]), bits(v[1]), bits(v[2])}); }
+
+}  // namespace
+
+bool has_exact_direction(const Integer3& direction) {
+  Integer3 shortest = direction;
+  reduce(shortest);
+  return longest_of(shortest) <= kBelow + kAbove;
+}
+
 ExactDirection exact_direction(const Integer3& direction) {
-  // Up to 2^3000, down to 2^-3300: what LongSum<3> holds, in the middle of it if that is enough.
-  constexpr long kBelow = 3300;
   Integer3 rest = direction;
   reduce(rest);
-  const auto longest = [&] { return std::max({bits(rest[0]), bits(rest[1]), bits(rest[2])}); };
+  const auto longest = [&] { return longest_of(rest); };
   const long down = std::min(longest(), kBelow);
   ExactDirection out;
   while (!is_zero(rest)) {

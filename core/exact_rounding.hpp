@@ -32,7 +32,11 @@ struct RoundedDirection {
 };
 [[nodiscard]] RoundedDirection nearest_direction(const Integer3& direction);
 
-// Of products of up to three doubles.
+// Is the direction, by its shortest integers, no longer than exact_direction() has room for? Sums
+// of products of up to three doubles are: their integers have 3 * 2098 + 2 bits.
+[[nodiscard]] bool has_exact_direction(const Integer3& direction);
+
+// Of one that has_exact_direction().
 [[nodiscard]] ExactDirection exact_direction(const Integer3& direction);
 
 }  // namespace clearance::exact

@@ -35,7 +35,7 @@ struct Solid {
 [[nodiscard]] std::variant<Solid, ShapeError> intersection_of(std::span<const HalfSpace> rows);
 
 // Rounds every coordinate once; refused when a coordinate leaves the range in which squares are
-// finite.
+// finite, or a direction that is kept exactly the room for it.
 [[nodiscard]] ShapeResult rounded_polyhedron(const Solid& solid);
 
 }  // namespace clearance::exact

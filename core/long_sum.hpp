@@ -18,7 +18,18 @@ namespace clearance {
 template <int kFactors>
 class LongSum {
  public:
+  // What fits: digits from 2^kLowest to below 2^kHighest.
+  static constexpr int kLowest = -32 * 36 * kFactors, kHighest = 32 * 32 * kFactors;
+
   LongSum() noexcept {}  // NOLINT: most digits are never looked at
+  LongSum(const LongSum& other) noexcept { *this = other; }  // NOLINT: nor copied
+  LongSum& operator=(const LongSum& other) noexcept {
+    if (this == &other) return *this;
+    first_ = other.first_;
+    last_ = other.last_;
+    for (std::size_t i = first_; i < last_; ++i) digits_[i] = other.digits_[i];
+    return *this;
+  }
 
   // Adds x 2^exponent, which must be in range.
   void add(double x, int exponent = 0) noexcept {
@@ -90,8 +101,8 @@ class LongSum {
   friend class LongSum;
 
   // A double has its digits in 68; of a product the places add up.
-  static constexpr int kPoint = 36 * kFactors;
-  static constexpr std::size_t kDigits = 68 * kFactors + 3;
+  static constexpr int kPoint = -kLowest / 32;
+  static constexpr std::size_t kDigits = (kHighest - kLowest) / 32 + 3;
   static constexpr std::int64_t kHalf = std::int64_t{1} << 31;
 
   static int exponent_of(std::size_t digit) noexcept {

@@ -237,9 +237,20 @@ class Assembler {
   Rounder rounder_;
 };
 
+// Of an unbounded one they are kept.
+bool has_exact_directions(const Solid& solid) {
+  return solid.rays.empty() ||
+         (std::all_of(solid.rays.begin(), solid.rays.end(), has_exact_direction) &&
+          std::all_of(solid.planes.begin(), solid.planes.end(),
+                      [](const Integer4& plane) { return has_exact_direction(head(plane)); }));
+}
+
 }  // namespace
 
 ShapeResult rounded_polyhedron(const Solid& solid) {
+  if (!has_exact_directions(solid)) {
+    return ShapeError{"a direction in which the body goes on for ever takes more than 6300 bits"};
+  }
   ConvexPolyhedron body = Assembler(solid).build();
   double farthest = 0.0;
   for (const Vec3& anchor : body.anchors) {

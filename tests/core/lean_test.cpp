@@ -48,6 +48,21 @@ TEST(LongSum, OfProductsIsKnownToTwiceTheDigitsAndCancelsToTheLast) {
   }
 }
 
+TEST(LongSum, IsCopiedWithTheDigitsThatAreInUse) {
+  LongSum<1> wide, narrow;
+  wide.add(1e300);
+  wide.add(kLeast);
+  narrow.add(3.0);
+  LongSum<1> copy = wide;
+  copy.add(-1e300);
+  EXPECT_EQ(copy.scaled(1074).high, 1.0);
+  copy = narrow;
+  EXPECT_EQ(copy.scaled(0).high, 3.0);
+  copy = wide;
+  copy.add(-1e300);
+  EXPECT_EQ(copy.scaled(1074).high, 1.0);
+}
+
 TEST(Lean, OfALineTurnedByASubnormalIsAcrossTheTurn) {
   const Vec3 z = Vec3::UnitZ();
   for (const double tilt : {1e-20, 1e-200, kLeast, -kLeast}) {
