@@ -112,7 +112,7 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
     bounds.raise(proved_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  if (!met) bound_far_away(bounds, a, b, p);
+  bound_far_away(bounds, a, b, p);
   if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
     prove_from_below(bounds, a, b, p);
   DistanceResult result = conclude(a, b, bounds, p);
