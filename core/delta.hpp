@@ -68,7 +68,8 @@ inline void edge_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3
     to_q = onto_line(to_p, q.common(), f);
     return;
   }
-  const double s = -between.dot(across) / sine2;
+  // Across e as well: of a long `between`, what rounding leaves of e in `across` would count.
+  const double s = -(between - between.dot(e) * e).dot(across) / sine2;
   to_q = q.common() + s * f;
   to_p = onto_line(to_q, p.common(), e);
 }

@@ -325,6 +325,7 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"faint_normals", faint_normals},
                                         {"foils", foils},
                                         {"crossing_axes", crossing_axes},
+                                        {"twisted_images", twisted_images},
                                         {"slender_wedges", slender_wedges},
                                         {"broad_wedges", broad_wedges}};
 

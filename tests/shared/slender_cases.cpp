@@ -67,6 +67,27 @@ HardCase crossing_axes(Random& random) {
   return c;
 }
 
+HardCase twisted_images(Random& random) {
+  Body a;
+  for (int k = random.integer(5, 8); k > 0; --k) {
+    a.points.emplace_back(random.integer(-2, 2), random.integer(-2, 2), random.integer(-2, 2));
+  }
+  // Whatever these are, they are a solid with them.
+  for (const Vec3& corner : {Vec3(2, 2, 0), Vec3(-2, 2, 0), Vec3(0, 2, 1), Vec3(0, 1, 0)}) {
+    a.points.push_back(corner);
+  }
+  const Eigen::Quaterniond turn = random.rotation();  // so that no edge lies along an axis
+  a = rotated(std::move(a), turn);
+  Body b = a;
+  for (Vec3& point : b.points) point = -point;
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  c.pose_b.orientation = test::turned(random.direction(), random.log_uniform(1e-12, 0.1));
+  c.pose_b.position = turn * (8.0 * Vec3::UnitY() + random.in_box(1.0));
+  set_gap(c, random.log_uniform(1e-9, 1.0));
+  move_together(c, random.rotation());
+  return c;
+}
+
 HardCase slender_wedges(Random& random) {
   return with_any_bounded(wedge_without_end(random), 10.0, random);
 }

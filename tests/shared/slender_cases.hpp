@@ -8,6 +8,9 @@ namespace clearance::hard {
 
 // Segments or capsules whose axes cross at 1e-16 to 1e-2 rad, or miss each other by as little.
 [[nodiscard]] HardCase crossing_axes(Random& random);
+// A body and its mirror image, as a rule edge to edge, turned against each other by 1e-12 to 1e-3
+// rad.
+[[nodiscard]] HardCase twisted_images(Random& random);
 // A wedge or cone without end, 1e-16 to 1e-2 rad wide, and a bounded body.
 [[nodiscard]] HardCase slender_wedges(Random& random);
 // All but a half-space: a wedge whose two sides are 5e-324 to 1e-2 rad apart, and a bounded body
