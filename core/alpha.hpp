@@ -68,6 +68,27 @@ inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
   return alpha_case::from_inside(side, move);
 }
 
+// Facets may be level to rounding, and which of their planes a move through the inside meets first
+// is rounding's choice: the one of them that the point is on.
+inline std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
+                                const Vec3& p) noexcept {
+  for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
+    const Facet& facet = body.facets[index];
+    double least = 0.0;
+    std::int32_t beside = kNone;
+    for (std::int32_t i = 0; i < facet.sides; ++i) {
+      const FacetSide side = body.side_of(facet, i);
+      const double gap = side.inward.dot(p) - side.offset;
+      if (!(gap < least)) continue;
+      least = gap;
+      beside = body.facets_beside[facet.first_side + i];
+    }
+    if (beside == kNone) break;
+    index = beside;
+  }
+  return index;
+}
+
 // Makes the move and, where it was blocked, the blocking feature the active one.
 inline void advance(ActiveSide& side, const Vec3& move_in_common, const Alpha& step) noexcept {
   if (side.feature() == Feature::kVertex) return;
@@ -80,7 +101,9 @@ inline void advance(ActiveSide& side, const Vec3& move_in_common, const Alpha& s
     if (step.blocking != kNone) return side.place_on_edge(step.blocking, to);
     return side.place_on_facet(side.index(), to);
   }
-  if (step.blocking != kNone) return side.place_on_facet(step.blocking, to);
+  if (step.blocking != kNone) {
+    return side.place_on_facet(facet_under(side.body(), step.blocking, to), to);
+  }
   side.place_inside(to);
 }
 

@@ -160,6 +160,19 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
   }
 }
 
+// A move through the inside ended on the plane of a facet that is level with another to rounding, a
+// metre beside it: the next one left the body, and the upper bound was 1.7e-5 m too low.
+TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
+  const hard::HardCase c = hard::case_of("twisted_images", 201700000);
+  DistanceJudge judge(c.a, c.b);
+  TrackingState state;
+  state.a = {0, false, 6, {-0.19070708568473327, -2.2977091586443654, -1.6383416706387699}};
+  state.b = {1, false, 14, {2.3348357887424309, 0.69295394283147593, -0.70402263704604096}};
+  const auto faults = judge.faults(judge.ask(c.pose_a, c.pose_b, state),
+                                   judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
+  EXPECT_TRUE(faults.empty()) << joined(faults);
+}
+
 // Turned by the last bit of a quaternion, their lines cross 1e15 m away: there, where nobody can
 // see them, the witness points would meet along the normal.
 TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {
