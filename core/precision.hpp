@@ -2,7 +2,8 @@
 // by it.
 //
 // One ulp here is 2^-53, the largest relative error of one rounding. The counts are upper bounds;
-// the derivation is in core/README.md, "Why the bounds hold in floating point".
+// the derivation is in core/README.md, "Why the bounds hold in floating point", and
+// core/ROUNDING.md.
 #pragma once
 
 #include <algorithm>
