@@ -13,10 +13,6 @@ namespace {
 using towards_case::across;
 using towards_case::along;
 
-// A separating direction shorter than this (as a cross product of unit vectors) says nothing of its
-// own.
-constexpr double kTooParallel = 1e-6;
-
 void add_direction(Separators& list, const Vec3& v) noexcept {
   const double length = v.norm();
   if (length > 0.0 && std::isfinite(length)) list.add({v / length});
@@ -31,13 +27,8 @@ void add_facets(Separators& list, const ActiveSide& a, const ActiveSide& b) noex
 
 void add_crossing_edges(Separators& list, const ActiveSide& a, const ActiveSide& b,
                         const Vec3& between) noexcept {
-  const Vec3 e = along(a);
-  const Vec3 f = across(along(b), e);
-  const double sine = f.norm();
-  if (sine > kTooParallel) {
-    const Vec3 n = e.cross(across(Vec3(f / sine), e));
-    add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
-  }
+  const Vec3 n = towards_case::across_both(along(a), along(b));
+  add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
 double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within) noexcept {

@@ -6,6 +6,7 @@
 #include "core/depth_search.hpp"
 #include "core/polar_cone.hpp"
 #include "core/rounding.hpp"
+#include "core/towards.hpp"
 
 namespace clearance {
 namespace {
@@ -132,23 +133,13 @@ double depth_from_below(const ActiveSide& a, const ActiveSide& b, const Relative
   return least - rounding - 2.0 * off * p.reach_b;
 }
 
-// A direction across two, each unit or zero: at right angles to both up to rounding, however nearly
-// parallel they are.
-Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
-  if (e.isZero(0.0)) return f.isZero(0.0) ? Vec3::UnitZ() : f.unitOrthogonal();
-  const Vec3 turned = e.dot(f) < 0.0 ? Vec3(f + e) : Vec3(f - e);
-  const Vec3 across = e.cross(turned).stableNormalized();
-  if (across.isZero(0.0)) return e.unitOrthogonal();
-  return (across - across.dot(e) * e).normalized();
-}
-
 // Two points or segments have no inside: they meet in a point and are parted by next to nothing.
 Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
   const auto along = [](const ActiveSide& s) {
     return s.body().edges.empty() ? Vec3::Zero().eval()
                                   : s.direction_to_common(s.body().edges[0].direction);
   };
-  const Vec3 n = across_both(along(a), along(b));
+  const Vec3 n = towards_case::across_both(along(a), along(b));
   const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
   Depth out;
   out.normal = forth >= back ? n : Vec3(-n);

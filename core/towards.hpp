@@ -26,6 +26,16 @@ inline Vec3 normal_of(const ActiveSide& s) noexcept {
   return s.direction_to_common(s.facet().normal).normalized();
 }
 
+// A direction across two, each of them unit or zero: at right angles to both up to rounding,
+// however nearly parallel they are.
+inline Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
+  if (e.isZero(0.0)) return f.isZero(0.0) ? Vec3::UnitZ() : f.unitOrthogonal();
+  const Vec3 turned = e.dot(f) < 0.0 ? Vec3(f + e) : Vec3(f - e);
+  const Vec3 across = e.cross(turned).stableNormalized();
+  if (across.isZero(0.0)) return e.unitOrthogonal();
+  return (across - across.dot(e) * e).normalized();
+}
+
 inline Towards edge_edge(const ActiveSide& a, const ActiveSide& b, const Vec3& between) noexcept {
   const Vec3 e = along(a), f = along(b);
   const Vec3 n = e.cross(f);

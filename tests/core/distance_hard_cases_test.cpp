@@ -160,6 +160,29 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
   }
 }
 
+// Across edges at 1e-10 rad no direction was tried, and that between the points left the bounds
+// 1.04e-14 of the size apart.
+TEST(Distance, OfSegmentsThatAllButCoincideIsBoundedToRounding) {
+  const oracle::Body a{{},
+                       {{-0.56576604662083629, 0.12651541366186986, -1.039743676360132},
+                        {0.35848687098692628, 2.1592520127714545, -0.047344986938405755}},
+                       0.01};
+  const oracle::Body b{{},
+                       {{-0.56576604662662844, 0.1265154139557875, -1.0397436766000099},
+                        {0.35848687107003308, 2.159252012949346, -0.047344986851412529}},
+                       0.0};
+  const Eigen::Quaterniond turn(-0.47396311279582631, 0.41643771460434975, 0.31324633509965683,
+                                0.70979950064129393);
+  const Pose pose_a{Vec3::Zero(), turn};
+  const Pose pose_b{{1.2034553682427502e-12, -2.0547799046854091e-14, 5.8641486488895234e-13},
+                    turn};
+  DistanceJudge judge(a, b);
+  TrackingState state;
+  const auto faults =
+      judge.faults(judge.ask(pose_a, pose_b, state), judge.truth(pose_a, pose_b), pose_a, pose_b);
+  EXPECT_TRUE(faults.empty()) << joined(faults);
+}
+
 // A move through the inside ended on the plane of a facet that is level with another to rounding, a
 // metre beside it: the next one left the body, and the upper bound was 1.7e-5 m too low.
 TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
