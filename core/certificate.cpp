@@ -63,14 +63,15 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
   Separators list;
   const Vec3 between = b.common() - a.common();
   add_facets(list, a, b);
-  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
-    add_crossing_edges(list, a, b, between);
-  }
   Vec3 direct = between;
   if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
   if (b.feature() == Feature::kEdge) direct = across(direct, along(b));
   if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
   add_direction(list, direct);
+  // Says more only where the points are so near to each other that rounding has a part in `direct`.
+  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+    add_crossing_edges(list, a, b, between);
+  }
   return list;
 }
 

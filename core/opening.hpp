@@ -31,7 +31,7 @@ struct Opening {
   }
 };
 
-// Of a directions' and a product's rounding.
+// Of a direction's and a product's rounding.
 inline constexpr double kSlopeError = 0x1p-50;
 
 // Sets the body's `opening`, and which of its rays are lines.

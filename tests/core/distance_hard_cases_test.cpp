@@ -1,7 +1,9 @@
 // distance() against the exact truth, on every family of hard cases and motions.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <ostream>
 #include <stdexcept>
 #include <variant>
@@ -177,6 +179,29 @@ TEST(Distance, OfSegmentsThatAllButCoincideIsBoundedToRounding) {
   const Pose pose_b{{1.2034553682427502e-12, -2.0547799046854091e-14, 5.8641486488895234e-13},
                     turn};
   DistanceJudge judge(a, b);
+  TrackingState state;
+  const auto faults =
+      judge.faults(judge.ask(pose_a, pose_b, state), judge.truth(pose_a, pose_b), pose_a, pose_b);
+  EXPECT_TRUE(faults.empty()) << joined(faults);
+}
+
+std::vector<Vec3> prism(int sides, double turned, double half_height) {
+  std::vector<Vec3> out;
+  for (int i = 0; i < sides; ++i) {
+    const double at = 2.0 * std::numbers::pi * i / sides + turned;
+    for (const double z : {-half_height, half_height}) {
+      out.emplace_back(std::cos(at), std::sin(at), z);
+    }
+  }
+  return out;
+}
+
+// Of edges that all but align the direction across both is known less well than that from point to
+// point, and does not go before it: the points were 0.4 m beside the normal.
+TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
+  DistanceJudge judge({{}, prism(61, 0.0, 1.25), 0.0}, {{}, prism(8, 0.034, 3.3e-18), 0.0});
+  const Pose pose_a{{0.3, 4.29e9, 0.0}, Eigen::Quaterniond::Identity()};
+  const Pose pose_b{Vec3::Zero(), Eigen::Quaterniond::Identity()};
   TrackingState state;
   const auto faults =
       judge.faults(judge.ask(pose_a, pose_b, state), judge.truth(pose_a, pose_b), pose_a, pose_b);
