@@ -18,7 +18,7 @@ struct Delta {
 namespace delta_case {
 
 // Directions whose cross product is shorter than this are parallel as far as doubles can tell: the
-// unit vectors carry an error of 2^-52 each.
+// unit vectors, once turned, carry an error of 2^-52 each.
 constexpr double kParallel = 0x1p-50;
 
 inline Vec3 normal(const ActiveSide& s) noexcept { return s.direction_to_common(s.facet().normal); }

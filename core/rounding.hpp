@@ -25,11 +25,10 @@ inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
 
 // Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
 // - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
-// quotient
-//   1. (Or of nearly unit ones: from 1 on the sum is off by 1 and 2 - |q|^2 exact; below 1, by 1/2
-//   and 1; 2^-55 is 1/4.) That scales R - I, which is 2|x| long: 6|x|.
+//   quotient 1. (Or of nearly unit ones: from 1 on the sum is off by 1 and 2 - |q|^2 exact; below
+//   1, by 1/2 and 1; 2^-55 is 1/4.) That scales R - I, which is 2|x| long: 6|x|.
 // - The squares, there and on the diagonal 1 - 2p, p = x_j^2 + x_k^2: 4 p (1 - p); beside it
-// |R_ij|.
+//   |R_ij|.
 // - The other products beside the diagonal: 2 (|x_i x_j| + |w x_k|).
 // - The sum in an entry and the product with the factor: 4 p and 2|R_ij|. 1 - 2p: 1/2.
 // The last three make a matrix of bounds; its 2-norm and 6|x| are together at most 15.52.

@@ -4,8 +4,11 @@
 // tests/shared/distance_judge.hpp; and the sanitizers. The input picks a hard case by family and
 // seed and then changes doubles of it: to neighbours, to zero, to other doubles of the same case.
 //
-// Build: CXX=clang++ cmake -B build-fuzz -G Ninja -DCLEARANCE_FUZZ=ON && ninja -C build-fuzz
-// fuzz_distance Run:   build-fuzz/bin/fuzz_distance -max_len=256 -max_total_time=600
+// To build and to run it:
+//
+//   CXX=clang++ CC=clang cmake -B build-fuzz -G Ninja -DCLEARANCE_FUZZ=ON -DCLEARANCE_CORE_ONLY=ON
+//   ninja -C build-fuzz fuzz_distance
+//   build-fuzz/bin/fuzz_distance -max_len=96 -max_total_time=600
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -56,7 +56,7 @@ constexpr const char* kHelp =
     "\n"
     "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
     "  --version          says which one it is\n"
-    "  --report DIR       runs all but cells and ticks, which takes a few minutes, and writes\n"
+    "  --report DIR       runs all but cells and ticks, which takes two minutes, and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
     "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
     "and\n"
