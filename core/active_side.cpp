@@ -26,6 +26,20 @@ bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& 
 
 }  // namespace
 
+std::int32_t crossed_side(const ConvexPolyhedron& body, const Facet& facet,
+                          const Vec3& p) noexcept {
+  double least = 0.0;
+  std::int32_t beyond = kNone;
+  for (std::int32_t i = 0; i < facet.sides; ++i) {
+    const FacetSide side = body.side_of(facet, i);
+    const double gap = side.inward.dot(p) - side.offset;
+    if (!(gap < least)) continue;
+    least = gap;
+    beyond = i;
+  }
+  return beyond;
+}
+
 void ActiveSide::place_cold(const Vec3& other) noexcept {
   if (body_.vertices.empty()) return place_inside(body_.interior);
   const Vec3 towards = direction_to_own(other - point_to_common(body_.interior));

@@ -17,6 +17,11 @@
 
 namespace clearance {
 
+// The side of a facet's polygon, of its Facet::sides, beyond whose line p lies farthest; kNone: p
+// lies within.
+[[nodiscard]] std::int32_t crossed_side(const ConvexPolyhedron& body, const Facet& facet,
+                                        const Vec3& p) noexcept;
+
 enum class Feature : std::uint8_t { kVertex = 0, kEdge = 1, kFacet = 2, kInside = 3 };
 
 class ActiveSide {

@@ -74,17 +74,9 @@ inline std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index
                                 const Vec3& p) noexcept {
   for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
     const Facet& facet = body.facets[index];
-    double least = 0.0;
-    std::int32_t beside = kNone;
-    for (std::int32_t i = 0; i < facet.sides; ++i) {
-      const FacetSide side = body.side_of(facet, i);
-      const double gap = side.inward.dot(p) - side.offset;
-      if (!(gap < least)) continue;
-      least = gap;
-      beside = body.facets_beside[facet.first_side + i];
-    }
-    if (beside == kNone) break;
-    index = beside;
+    const std::int32_t beyond = crossed_side(body, facet, p);
+    if (beyond == kNone) break;
+    index = body.facets_beside[facet.first_side + beyond];
   }
   return index;
 }

@@ -63,11 +63,6 @@ class Lean {
   [[nodiscard]] LongVec<7> turned(const LongVec<3>& f) const noexcept;
   [[nodiscard]] static LongVec<7> kept(const LongVec<3>& e) noexcept;
 
-  // The exact sign of m.Rf, m in frame A and f in frame B: 1, 0, -1.
-  [[nodiscard]] int sign(const LongVec<3>& m, const LongVec<3>& f) const noexcept {
-    return dot(m, turned(f)).sign();
-  }
-
  private:
   std::array<LongVec<4>, 3> rows_;  // N(q)
 };

@@ -102,18 +102,10 @@ void bound_far_away(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
 void keep_on_facet(ActiveSide& side) noexcept {
   if (side.feature() != Feature::kFacet) return;
   const Facet& facet = side.facet();
-  double least = 0.0;
-  std::int32_t beyond = kNone;
-  for (std::int32_t i = 0; i < facet.sides; ++i) {
-    const FacetSide boundary = side.body().side_of(facet, i);
-    const double gap = boundary.inward.dot(side.own()) - boundary.offset;
-    if (!(gap < least)) continue;
-    least = gap;
-    beyond = side.body().facet_edges[facet.first_side + i].edge;
-  }
+  const std::int32_t beyond = crossed_side(side.body(), facet, side.own());
   if (beyond == kNone) return;
   const std::int32_t index = side.index();
-  side.place_on_edge(beyond, side.own());
+  side.place_on_edge(side.body().facet_edges[facet.first_side + beyond].edge, side.own());
   side.place(Feature::kFacet, index, side.own());
 }
 
@@ -188,6 +180,7 @@ void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   } else {
     narrower = searched(a, b, *nearer, again, true);
   }
+  narrower.iterations += r.iterations;
   narrower.lower = std::max(narrower.lower, r.lower);
   narrower.upper = std::min(narrower.upper, r.upper);
   if (!(narrower.upper - narrower.lower < gap)) return;

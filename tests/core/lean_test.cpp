@@ -86,14 +86,16 @@ TEST(Lean, OfATurnAboutTheLineIsNone) {
 }
 
 TEST(Lean, SaysOnWhichSideOfAWallALineEnds) {
-  const Vec3 x = Vec3::UnitX(), z = Vec3::UnitZ();
+  const auto side = [](const Lean& of) {
+    return dot(long_vec(Vec3(Vec3::UnitX())), of.turned(long_vec(Vec3(Vec3::UnitZ())))).sign();
+  };
   for (const double tilt : {1e-20, 1e-200, kLeast}) {
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, tilt, 0}).sign(long_vec(x), long_vec(z)), 1);
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0, -tilt, 0}).sign(long_vec(x), long_vec(z)), -1);
-    EXPECT_EQ(lean({1, 0, 0, 0}, {1, tilt, 0, 0}).sign(long_vec(x), long_vec(z)), 0);
+    EXPECT_EQ(side(lean({1, 0, 0, 0}, {1, 0, tilt, 0})), 1);
+    EXPECT_EQ(side(lean({1, 0, 0, 0}, {1, 0, -tilt, 0})), -1);
+    EXPECT_EQ(side(lean({1, 0, 0, 0}, {1, tilt, 0, 0})), 0);
   }
   // What two tilts do one after the other is the product of both.
-  EXPECT_EQ(lean({1, 0, 0, 0}, {1, 0x1p-300, 0, 0x1p-300}).sign(long_vec(x), long_vec(z)), 1);
+  EXPECT_EQ(side(lean({1, 0, 0, 0}, {1, 0x1p-300, 0, 0x1p-300})), 1);
 }
 
 }  // namespace
