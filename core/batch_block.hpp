@@ -30,6 +30,15 @@ enum class FeatureKind : std::uint8_t {
 };
 inline constexpr std::size_t kFeatureKinds = 9;
 
+constexpr bool at_vertex_of_a(FeatureKind kind) {
+  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kVertexEdge ||
+         kind == FeatureKind::kVertexFacet;
+}
+constexpr bool at_vertex_of_b(FeatureKind kind) {
+  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kEdgeVertex ||
+         kind == FeatureKind::kFacetVertex;
+}
+
 // Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
 // first of them up to the points are not read of a plain block, nor kept.
 enum CommonRow : std::size_t {

@@ -136,8 +136,12 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   if constexpr (kKind == FeatureKind::kVertexVertex) {
     hn::Store(c.rate, Tag(), &failed.rate[first]);
   }
-  store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
-  store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
+  if constexpr (!at_vertex_of_a(kKind)) {
+    store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
+  }
+  if constexpr (!at_vertex_of_b(kKind)) {
+    store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
+  }
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Tag(), r.good, bits);
   return bits[0];
