@@ -21,6 +21,8 @@ class Variant {
 
   Variant(Shape a, Shape b) : a_(*a), b_(*b) {}
   void forget() { tracking_ = {}; }
+  [[nodiscard]] const TrackingState& tracking() const { return tracking_; }
+  void restore(const TrackingState& tracking) { tracking_ = tracking; }
   Answer query(const Pose& world_from_a, const Pose& world_from_b) {
     const RelativePose a_from_b = relative_pose(world_from_a, world_from_b);
     ActiveSide a(a_, nullptr), b(b_, &a_from_b);
@@ -42,7 +44,8 @@ class Moved {
   using Shape = const ConvexPolyhedron*;
   static Shape shape(const ConvexPolyhedron& body) { return &body; }
 
-  Moved(Shape a, Shape b) : a_(*a), b_(*b) {}
+  Moved(Shape a, Shape b) : Moved(*a, *b) {}
+  Moved(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : a_(a), b_(b) {}
   void forget() { tracking_ = {}; }
   void move(const Pose& world_from_a, const Pose& world_from_b) {
     a_.move(world_from_a);
@@ -73,29 +76,63 @@ class Moved {
   TrackingState tracking_;
 };
 
-// The loop on tables that are at their poses already. Reading the clock costs as much as several
-// queries, so each is repeated, from what the last pose left.
-void time_moved(benchmark::State& state, const std::string& name) {
-  constexpr int kRepeats = 256;
-  const Trajectory& t = workload(name).trajectories[0];
-  Moved pair(t.a.get(), t.b.get());
-  double spent = 0.0, queries = 0.0, sum = 0.0;
+// The base variant at poses that it is told before.
+class Unmoved {
+ public:
+  Unmoved(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : pair_(&a, &b) {}
+  void move(const Pose& world_from_a, const Pose& world_from_b) {
+    world_from_a_ = world_from_a;
+    world_from_b_ = world_from_b;
+  }
+  [[nodiscard]] const TrackingState& tracking() const { return pair_.tracking(); }
+  void restore(const TrackingState& tracking) { pair_.restore(tracking); }
+  Answer loop() { return pair_.query(world_from_a_, world_from_b_); }
+
+ private:
+  Variant<Release::kBase, Scan::kNeighbours> pair_;
+  Pose world_from_a_, world_from_b_;
+};
+
+// What remains of a query when its bodies have been moved. Reading the clock costs as much as
+// several queries, so each is repeated, from what the last pose left, after one that is not timed.
+template <class Pair>
+void time_repeated(benchmark::State& state, const std::string& name) {
+  constexpr int kRepeats = 64;
+  const Workload& load = workload(name);
+  const double clock_cost = cost_of(cpu_ns), queries = static_cast<double>(load.queries());
+  Verdict verdict;
+  double spent_ns = 0.0, sum = 0.0;
   for (auto _ : state) {
-    pair.forget();
-    for (const auto& [a, b] : t.poses) {
-      pair.move(a, b);
-      const TrackingState last = pair.tracking();
-      const double start = cpu_ns();
-      for (int i = 0; i < kRepeats; ++i) {
-        pair.restore(last);
-        sum += pair.loop().distance;
+    verdict = {};
+    for (std::size_t i = 0; i < load.trajectories.size(); ++i) {
+      const Trajectory& t = load.trajectories[i];
+      Pair pair(*t.a, *t.b);
+      for (std::size_t k = 0; k < t.poses.size(); ++k) {
+        const TrackingState last = pair.tracking();
+        pair.move(t.poses[k].first, t.poses[k].second);
+        verdict.add(pair.loop(), load.truth[i][k]);
+        const double start = cpu_ns();
+        for (int repeat = 0; repeat < kRepeats; ++repeat) {
+          pair.restore(last);
+          sum += pair.loop().distance;
+        }
+        spent_ns += cpu_ns() - start - clock_cost;
       }
-      spent += cpu_ns() - start;
-      queries += kRepeats;
     }
   }
   benchmark::DoNotOptimize(sum);
-  state.counters["ns"] = spent / queries;
+  verdict.iterations /= queries;
+  state.counters["ns"] = spent_ns / (kRepeats * queries * static_cast<double>(state.iterations()));
+  count(state, verdict);
+}
+
+template <class Pair>
+void register_repeated(const std::string& name) {
+  for (const int order : kOrders) {
+    const std::string load = "f" + std::to_string(order);
+    benchmark::RegisterBenchmark(("variant/" + name + "/tracked/" + load).c_str(),
+                                 [=](benchmark::State& s) { time_repeated<Pair>(s, load); });
+  }
 }
 
 template <class Solver>
@@ -116,11 +153,8 @@ void register_variants() {
   register_variant<Variant<Release::kConsistent, Scan::kNeighbours>>("consistent");
   register_variant<Variant<Release::kBase, Scan::kAllFacets>>("all-facets");
   register_variant<Moved>("moved");
-  for (const int order : kOrders) {
-    const std::string load = "f" + std::to_string(order);
-    benchmark::RegisterBenchmark(("variant/moved-before/tracked/" + load).c_str(),
-                                 [=](benchmark::State& s) { time_moved(s, load); });
-  }
+  register_repeated<Unmoved>("base-repeated");
+  register_repeated<Moved>("moved-before");
 }
 
 }  // namespace clearance::bench
