@@ -45,7 +45,8 @@ on stderr as well.)";
 constexpr const char* kExample =
     R"(With --check, cases carry exact answers: "distance" as text ("distances": a list of them, for a motion), and if
 known "penetration" and "scale", the length to which errors are relative. Distances, depths and witness points
-have to be right within --tolerance, bounds to hold exactly. Every fault and a table by "family" go to stderr.
+have to be right within --tolerance, bounds to hold exactly and to be no farther apart than --gap says. Every fault
+and a table by "family" go to stderr.
 
 Exit status: 0 every line answered (and right), 1 some lines have errors or wrong answers, 2 wrong usage or
 unreadable files.
@@ -62,7 +63,7 @@ struct Options {
   bool cold = false;
   int repeat = 1;
   bool check = false;
-  double tolerance = 1e-14;
+  double tolerance = 1e-14, gap = 1e-14;
 };
 
 void tell(const Options& options, std::size_t line, const std::vector<std::string>& faults) {
@@ -73,7 +74,7 @@ void tell(const Options& options, std::size_t line, const std::vector<std::strin
 
 int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   Answerer answerer(options.cold, options.repeat);
-  ExactCheck check(options.tolerance);
+  ExactCheck check(options.tolerance, options.gap);
   std::size_t line_number = 0, lines = 0, bad = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;
@@ -154,6 +155,13 @@ int main(int argc, char** argv) {
       app.add_flag("--check", options.check, "Hold the answers against exact ones in the cases");
   app.add_option("--tolerance", options.tolerance,
                  "Of --check, over the larger of a case's scale and distance")
+      ->needs(check)
+      ->check(clearance::number_from_zero())
+      ->capture_default_str();
+  app.add_option(
+         "--gap", options.gap,
+         "Of --check, how far bounds may be apart, over the sum of both bodies' reach and the "
+         "distance of their origins")
       ->needs(check)
       ->check(clearance::number_from_zero())
       ->capture_default_str();

@@ -191,6 +191,18 @@ TEST_F(DistanceTool, ChecksItsAnswersAgainstExactOnes) {
   EXPECT_NE(overlap.err.find("status overlapping, exactly 0.1"), std::string::npos) << overlap.err;
 }
 
+// No bounds in doubles are a millionth of an ulp apart.
+TEST_F(DistanceTool, ChecksHowFarItsBoundsAreApart) {
+  const std::string apart = with_exact(cubes("apart", 1.7), R"("distance":"0.7")");
+  const std::string deep =
+      with_exact(cubes("deep", 0.7), R"("distance":"0","penetration":"0.3","scale":1)");
+  for (const std::string& cube : {apart, deep}) {
+    const Outcome r = run("--cases - --out - --check --tolerance 1 --gap 1e-22", cube);
+    EXPECT_EQ(r.status, 1);
+    EXPECT_NE(r.err.find(" of the bodies' size apart"), std::string::npos) << r.err;
+  }
+}
+
 TEST_F(DistanceTool, ChecksEveryPoseOfAMotion) {
   std::string line = cubes("motion", 0.0);
   const std::string start = R"([0,0,0,1,0,0,0])";

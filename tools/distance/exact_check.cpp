@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/distance.hpp"
+#include "core/rounding.hpp"
 #include "tools/distance/rational.hpp"
 
 namespace clearance {
@@ -74,6 +75,19 @@ std::string shown(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+// What the gap between bounds is over, m: how far both bodies reach, one that has no end as far as
+// the closest points may lie, and how far their origins are apart.
+double size_of(const DistanceCase& asked, std::size_t pose, double farthest) {
+  const auto& [world_from_a, world_from_b] = asked.poses[pose];
+  const double apart = (world_from_b.position - world_from_a.position).norm();
+  const double of_a = asked.a.bounding_radius + asked.a.radius;
+  const double of_b = asked.b.bounding_radius + asked.b.radius;
+  const auto reach = [&](const ConvexPolyhedron& body, double own, double of_other) {
+    return body.bounded() ? own : std::max(own, of_other + apart + farthest);
+  };
+  return reach(asked.a, of_a, of_b) + reach(asked.b, of_b, of_a) + apart;
+}
+
 // The entry of a motion, or the value itself.
 const OrderedJson& entry(const OrderedJson& answer, const char* key, std::size_t k, bool motion) {
   return motion ? answer[key][k] : answer[key];
@@ -88,15 +102,16 @@ struct ExactCheck::Question {
   const Pose& pose_b;
   ExactNumber distance;
   std::optional<ExactNumber> penetration;
-  double scale;
+  double scale, size;
 };
 
 // What was answered to it, and what is wrong with that.
 class ExactCheck::Judge {
  public:
-  Judge(const Question& question, double tolerance)
+  Judge(const Question& question, double tolerance, double widest)
       : question_(question),
         tolerance_(tolerance),
+        widest_(widest),
         measure_(std::max(question.distance.value.get_d(), question.scale)) {}
 
   void judge_distance(const Json& distance, const Json& lower, const Json& upper,
@@ -111,7 +126,7 @@ class ExactCheck::Judge {
     const double d = distance.get<double>();
     const Rational off = abs(Rational(d) - truth);
     figures.error = off.get_d() / measure_;
-    figures.gap = (upper.get<double>() - lower.get<double>()) / measure_;
+    judge_gap(lower.get<double>(), upper.get<double>());
     if (figures.error > tolerance_) faults.push_back("distance " + shown(d) + exact);
     if (Rational(lower.get<double>()) > truth + slack) {
       faults.push_back("lower bound " + shown(lower.get<double>()) + exact);
@@ -134,6 +149,7 @@ class ExactCheck::Judge {
       return;
     }
     const Rational slack = exact * digits_left_out();
+    judge_gap(lower.get<double>(), upper.get<double>());
     figures.depth = Rational(abs(Rational(depth.get<double>()) - exact)).get_d() / question_.scale;
     if (figures.depth > tolerance_) {
       faults.push_back("penetration " + shown(depth.get<double>()) + text);
@@ -167,6 +183,15 @@ class ExactCheck::Judge {
   std::vector<std::string> faults;
 
  private:
+  void judge_gap(double lower, double upper) {
+    const double gap = std::max(0.0, upper - lower - kUnderflow) / question_.size;
+    figures.gap = std::max(figures.gap, gap);
+    if (!(gap <= widest_)) {
+      faults.push_back("bounds from " + shown(lower) + " to " + shown(upper) + ", " + shown(gap) +
+                       " of the bodies' size apart");
+    }
+  }
+
   void judge_inside(const char* which, const RationalPoint& point, const Pose& world_from_body) {
     const Json& body = question_.line[which];
     if (!has_rows(body)) return;
@@ -180,7 +205,7 @@ class ExactCheck::Judge {
   }
 
   const Question& question_;
-  double tolerance_;
+  double tolerance_, widest_;
   double measure_;  // what errors of distance and points are relative to, m
 };
 
@@ -209,15 +234,19 @@ std::vector<std::string> ExactCheck::faults(const Json& line, const DistanceCase
   std::vector<std::string> all;
   for (std::size_t k = 0; k < asked.poses.size(); ++k) {
     const Json& depth = asked.motion && depths.is_array() ? depths.at(k) : depths;
-    const Question question{
+    Question question{
         line,
         asked.poses[k].first,
         asked.poses[k].second,
         exact_number(asked.motion ? exact[k] : exact, key),
         depth.is_null() ? std::optional<ExactNumber>() : exact_number(depth, "penetration"),
-        std::max(line.value("scale", reach), kLeastScale)};
+        std::max(line.value("scale", reach), kLeastScale),
+        0.0};
+    const double deep = question.penetration ? question.penetration->value.get_d() : 0.0;
+    question.size =
+        std::max(size_of(asked, k, question.distance.value.get_d() + deep), kLeastScale);
     const auto given = [&](const char* name) { return entry(answer, name, k, asked.motion); };
-    Judge judge(question, tolerance_);
+    Judge judge(question, tolerance_, widest_);
     judge.judge_distance(given("distance"), given("lower"), given("upper"), given("status"));
     judge.judge_depth(given("penetration"), given("penetration_lower"), given("penetration_upper"));
     if (judge.faults.empty()) {
@@ -244,16 +273,19 @@ void ExactCheck::print_row(const std::string& name, const Figures& figures) {
 }
 
 void ExactCheck::print_summary() const {
-  std::fprintf(stderr, "%-20s %8s %9s %9s %9s %9s %6s   largest, over the scale\n", "family",
-               "answers", "error", "gap", "witness", "depth", "wrong");
+  std::fprintf(stderr,
+               "%-20s %8s %9s %9s %9s %9s %6s   largest, over the scale; gap over the size\n",
+               "family", "answers", "error", "gap", "witness", "depth", "wrong");
   for (const auto& [family, figures] : families_) print_row(family, figures);
   const Figures sum = total();
   print_row("all", sum);
   if (without_ > 0) std::fprintf(stderr, "%zu lines carry no exact answer\n", without_);
   std::fprintf(stderr, "%s\n",
                sum.answers == 0 ? "nothing was checked"
-               : sum.wrong == 0 ? "every bound holds, every answer is within the tolerance"
-                                : "some answers are wrong");
+               : sum.wrong == 0
+                   ? "every bound holds and is as near as promised, every answer is within the "
+                     "tolerance"
+                   : "some answers are wrong");
 }
 
 bool ExactCheck::good() const {

@@ -19,8 +19,9 @@ namespace clearance {
 class ExactCheck {
  public:
   // `tolerance`: of distance and witness points, over the larger of scale and distance; of depth,
-  // over the scale. Bounds have none.
-  explicit ExactCheck(double tolerance) : tolerance_(tolerance) {}
+  // over the scale. Bounds have none. `widest`: how far bounds may be apart, over the bodies' reach
+  // and the distance of their origins, of which a converged answer promises 1e-14 (and kUnderflow).
+  ExactCheck(double tolerance, double widest) : tolerance_(tolerance), widest_(widest) {}
 
   // What is wrong with the answer, a sentence each. Throws BadLine where the exact one cannot be
   // read.
@@ -34,7 +35,7 @@ class ExactCheck {
   [[nodiscard]] bool good() const;
 
  private:
-  // The largest of each, over what the tolerance is.
+  // The largest of each, over what its tolerance is.
   struct Figures {
     std::size_t answers = 0, wrong = 0;
     double error = 0.0, gap = 0.0, witness = 0.0, depth = 0.0;
@@ -47,7 +48,7 @@ class ExactCheck {
   static void print_row(const std::string& name, const Figures& figures);
   [[nodiscard]] Figures total() const;
 
-  double tolerance_;
+  double tolerance_, widest_;
   std::map<std::string, Figures> families_;
   std::size_t without_ = 0;  // lines that carry no exact answer
 };
