@@ -96,7 +96,7 @@ class Campaign {
     tally_->iterations += result.iterations;
     tally_->most_iterations = std::max<long>(tally_->most_iterations, result.iterations);
     const double gap = result.upper - result.lower - 4.0 * kUnderflow;
-    const double size = judge.size(truth, pose_a, pose_b);
+    const double size = judge.size(result, truth, pose_a, pose_b);
     if (result.status != DistanceStatus::kIterationLimit && gap < kInfinity && size > 0.0) {
       tally_->widest = std::max(tally_->widest, gap / size);
     }

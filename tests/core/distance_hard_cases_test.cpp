@@ -233,7 +233,7 @@ TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {
       const DistanceResult r = judge.ask(c.pose_a, c.pose_b, state);
       EXPECT_GE(truth.compare(r.lower), 0) << seed;
       EXPECT_LE(truth.compare(r.upper), 0) << seed;
-      EXPECT_LE(r.upper - r.lower, 1e-14 * judge.size(truth, c.pose_a, c.pose_b)) << seed;
+      EXPECT_LE(r.upper - r.lower, 1e-14 * judge.size(r, truth, c.pose_a, c.pose_b)) << seed;
     }
   }
 }

@@ -175,13 +175,28 @@ bool DistanceJudge::depth_is_asked_for() const {
   return small(body_a_) && small(body_b_);
 }
 
-double DistanceJudge::size(const ExactDistance& truth, const Pose& pose_a,
-                           const Pose& pose_b) const {
-  const double between = (pose_b.position - pose_a.position).norm() + std::abs(truth.upper);
+bool DistanceJudge::depth_is_known(const ExactDistance& truth) const {
+  return !truth.cores_meet() || depth_is_asked_for();
+}
+
+double DistanceJudge::size(double farthest, const Pose& pose_a, const Pose& pose_b) const {
+  const double between = (pose_b.position - pose_a.position).norm() + farthest;
   const double of_a = a_.bounding_radius + a_.radius, of_b = b_.bounding_radius + b_.radius;
   const double reach_a = a_.bounded() ? of_a : std::max(of_a, of_b + between);
   const double reach_b = b_.bounded() ? of_b : std::max(of_b, of_a + between);
   return reach_a + reach_b + between;
+}
+
+double DistanceJudge::size(const DistanceResult& r, const ExactDistance& truth, const Pose& pose_a,
+                           const Pose& pose_b) const {
+  return size(std::abs(depth_is_known(truth) ? truth.upper : r.lower), pose_a, pose_b);
+}
+
+bool DistanceJudge::parted_by(double depth, const Vec3& normal, const Pose& pose_a,
+                              const Pose& pose_b) {
+  Pose parted = pose_b;
+  parted.position += depth * (pose_a.orientation.normalized() * normal);
+  return !oracle::exact_distance(exact_a_, pose_a, exact_b_, parted).cores_meet();
 }
 
 bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const {
@@ -219,10 +234,14 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
     return faults.all;
   }
   if (!are_numbers(r, faults)) return faults.all;
-  look_at_bounds(r, truth, !truth.cores_meet() || depth_is_asked_for(), faults);
+  look_at_bounds(r, truth, depth_is_known(truth), faults);
 
-  const double reach = size(truth, pose_a, pose_b);
+  const double reach = size(r, truth, pose_a, pose_b);
   const double tolerance = kGapTolerance * reach + 4.0 * kUnderflow;
+  const double placing = 4.0 * kUlp * pose_b.position.norm();  // of B in the world, as doubles
+  const double deepest = tolerance + placing - r.lower - body_a_.radius - body_b_.radius;
+  faults.unless(depth_is_known(truth) || parted_by(deepest, r.normal, pose_a, pose_b),
+                text("LOWER %.17g, but B moved by that along the normal still meets A", r.lower));
   // Lines of two unbounded bodies that all but run along each other: the closest points are so far
   // away that doubles cannot say where, let alone to the tolerance.
   const double closest_at = where_they_part(r, truth, pose_a, pose_b);

@@ -30,7 +30,8 @@ class DistanceJudge {
 
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
-  //  - the bounds, compared exactly; the upper one only where the depth is known
+  //  - the bounds, compared exactly; where the depth is not known, only the lower one, by moving B
+  //    that far along the normal and 1e-14 of size(), and its position's rounding, farther
   //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
   //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
   //    or touching, are closest beyond what doubles can say; with no lower bound only where two
@@ -44,11 +45,18 @@ class DistanceJudge {
 
   // The lengths that a rounding error is relative to: reach of both bodies (of an unbounded one as
   // far as the closest points may lie), how far their origins are apart, and the distance itself.
-  [[nodiscard]] double size(const oracle::ExactDistance& truth, const Pose& pose_a,
-                            const Pose& pose_b) const;
+  [[nodiscard]] double size(const DistanceResult& result, const oracle::ExactDistance& truth,
+                            const Pose& pose_a, const Pose& pose_b) const;
 
  private:
   [[nodiscard]] bool depth_is_asked_for() const;
+  // Is the truth that of the bodies, and not only that they overlap?
+  [[nodiscard]] bool depth_is_known(const oracle::ExactDistance& truth) const;
+  // `farthest`: the distance or depth, m.
+  [[nodiscard]] double size(double farthest, const Pose& pose_a, const Pose& pose_b) const;
+  // Does B, moved by `depth` along the normal, miss A?
+  [[nodiscard]] bool parted_by(double depth, const Vec3& normal, const Pose& pose_a,
+                               const Pose& pose_b);
   // A ball of this radius fits into both (of a point or segment: around one of its points). Says no
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
