@@ -70,6 +70,30 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
   return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
 }
 
+// How fast a body may rise along m, at most, by its rays: what lies along the lines is no longer
+// than their sum r. The others, their parts across the lines, all have a part of at least
+// Opening::least along one direction, so that there are no more of them than |r| over that: they
+// count as often as the steepest rises.
+double rise_of_rays(const Opening& opening, const Vec3& m) noexcept {
+  if (!(opening.least > 0.0)) return kInfinity;
+  const Vec3 across = opening.across_lines(m);
+  double steepest = 0.0;
+  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  double rate = steepest / opening.least;
+  if (opening.line_count > 0) rate += (m - across).norm() + kSlopeError;
+  return rate;
+}
+
+// The same by its facets: nothing rises along their normals, and along m no faster than m is
+// tilted against one. It says more of bodies that are all but a half-space.
+double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+  double tilt2 = kInfinity;
+  for (const Facet& facet : body.facets) {
+    tilt2 = std::min(tilt2, (m - facet.normal).squaredNorm());
+  }
+  return std::sqrt(tilt2) + kSlopeError;
+}
+
 }  // namespace
 
 Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
@@ -101,19 +125,11 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   return best;
 }
 
-// A point is an anchor plus a sum of rays, r. What lies along the lines is no longer than r. The
-// other rays, their parts across the lines, all have a part of at least Opening::least along one
-// direction, so that there are no more of them than |r| over that: they count as often as the
-// steepest rises.
+// A point is an anchor plus a sum of rays.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  const Opening& opening = body.opening;
-  if (!(opening.least > 0.0)) return kInfinity;
-  const Vec3 across = opening.across_lines(m);
-  double steepest = 0.0;
-  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
-  double rate = steepest / opening.least;
-  if (opening.line_count > 0) rate += (m - across).norm() + kSlopeError;
+  double rate = rise_of_rays(body.opening, m);
+  if (rate > kSlopeError) rate = std::min(rate, rise_above_facets(body, m));
   return rate * (within + body.bounding_radius);
 }
 

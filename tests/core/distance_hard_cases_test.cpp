@@ -136,6 +136,8 @@ constexpr OnceWrong kOnceWrong[] = {
     {"crossing_axes", 3325700003, "points 5e-14 m beside the normal: axes that cross at 1e-3 rad"},
     {"edges", 3335900003, "points 5e-12 m off along the normal, swapped: edges tilted by 3e-12"},
     {"without_end", 3351000003, "a touch bounded from above to 7e-13: edges that meet 200 m away"},
+    {"broad_wedges", 11087800003,
+     "a lower bound 3e-8 too low: a wedge 2e-7 rad short of a half-space bounded by its rays"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
 };
 
