@@ -110,7 +110,7 @@ void look_at_witnesses(const DistanceResult& r, double placed, double beside, Fa
                   text("normal of length %.17g", r.normal.norm()));
   }
   if (r.status == DistanceStatus::kTouching) {
-    faults.unless(between.norm() <= placed,
+    faults.unless(between.norm() <= beside,
                   text("touching, but the witness points are %.3g apart", between.norm()));
     return;
   }
