@@ -327,7 +327,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"crossing_axes", crossing_axes},
                                         {"twisted_images", twisted_images},
                                         {"slender_wedges", slender_wedges},
-                                        {"broad_wedges", broad_wedges}};
+                                        {"broad_wedges", broad_wedges},
+                                        {"broad_cones", broad_cones}};
 
 }  // namespace
 

@@ -44,6 +44,23 @@ Body broad_wedge(Random& random) {
   return out;
 }
 
+// Its sides lean away from the middle alike, or each as it likes; some do not meet in one tip.
+Body broad_cone(Random& random) {
+  const auto slope = [&] { return random.log_uniform(1e-16, 1e-2); };
+  const double alike = random.chance(0.5) ? slope() : 0.0;
+  const int sides = random.integer(3, 8);
+  const bool tip = random.chance(0.7);
+  Body out;
+  for (int k = 0; k < sides; ++k) {
+    const double azimuth = 2 * std::numbers::pi * (k + random.uniform(0.0, 0.5)) / sides;
+    const double leaning = alike > 0.0 ? alike : slope();
+    const double offset = tip ? 0.5 : 0.5 + random.log_uniform(1e-16, 1e-2);
+    out.rows.push_back(
+        {Vec3(leaning * std::cos(azimuth), leaning * std::sin(azimuth), 1.0), offset});
+  }
+  return out;
+}
+
 // In either order; the bodies' origins are up to `apart` from each other along each axis.
 HardCase with_any_bounded(Body wedge, double apart, Random& random) {
   Body other = any_bounded(random);
@@ -95,6 +112,11 @@ HardCase slender_wedges(Random& random) {
 HardCase broad_wedges(Random& random) {
   Body wedge = broad_wedge(random);
   return with_any_bounded(std::move(wedge), random.chance(0.5) ? 3.0 : 10.0, random);
+}
+
+HardCase broad_cones(Random& random) {
+  Body cone = broad_cone(random);
+  return with_any_bounded(std::move(cone), random.chance(0.5) ? 3.0 : 10.0, random);
 }
 
 }  // namespace clearance::hard

@@ -16,5 +16,7 @@ namespace clearance::hard {
 // All but a half-space: a wedge whose two sides are 5e-324 to 1e-2 rad apart, and a bounded body
 // above or in it.
 [[nodiscard]] HardCase broad_wedges(Random& random);
+// The same of cones of three to eight sides, 1e-16 to 1e-2 rad from level.
+[[nodiscard]] HardCase broad_cones(Random& random);
 
 }  // namespace clearance::hard
