@@ -30,6 +30,7 @@ enum class FeatureKind : std::uint8_t {
 };
 inline constexpr std::size_t kFeatureKinds = 9;
 
+// There the witness point stays at the vertex: fill_lane() writes it, the vector code does not.
 constexpr bool at_vertex_of_a(FeatureKind kind) {
   return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kVertexEdge ||
          kind == FeatureKind::kVertexFacet;

@@ -57,19 +57,25 @@ struct Answers {
   LaneMask good;  // tight and positive: distance() would have said the same
 };
 
+// `kept` where `where`, else `v`.
+HWY_INLINE Points unless(LaneMask where, const Points& kept, const Points& v) {
+  return {hn::IfThenElse(where, kept.x, v.x), hn::IfThenElse(where, kept.y, v.y),
+          hn::IfThenElse(where, kept.z, v.z)};
+}
+
 // From the polyhedra's surfaces to the rounded bodies'.
 HWY_INLINE void add_radii(const double* rows, Answers& r) {
   const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
   const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
   const Lanes sum = hn::Add(radius_a, radius_b);
-  const Lanes rounding =
-      hn::IfThenElse(hn::Eq(sum, all(0.0)), sum,
-                     hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
+  const LaneMask bare = hn::Eq(sum, all(0.0));  // whose zeros keep their signs
+  const Lanes rounding = hn::IfThenElse(
+      bare, sum, hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
   r.distance = hn::Sub(r.distance, sum);
   r.lower = hn::Sub(r.lower, hn::Add(sum, rounding));
   r.upper = hn::Sub(r.upper, hn::Sub(sum, rounding));
-  r.point_a = r.point_a + times(radius_a, r.normal);
-  r.point_b = r.point_b - times(radius_b, r.normal);
+  r.point_a = unless(bare, r.point_a, r.point_a + times(radius_a, r.normal));
+  r.point_b = unless(bare, r.point_b, r.point_b - times(radius_b, r.normal));
   r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
 }
 

@@ -36,9 +36,11 @@ std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
   return side.dimension == 2 ? body.facets[side.feature].sides : 0;
 }
 
-// A feature with what vector code needs of it; a facet without sides is one.
+// A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
+// witness point is where it is, as after any query but those that touch: lanes do not write it.
 bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
-  return side.dimension <= 2 && few(repeats(body, side));
+  if (side.dimension > 2 || !few(repeats(body, side))) return false;
+  return side.dimension > 0 || side.point == body.vertices[side.feature].position;
 }
 
 // Vertices, edges and facets as LaneWriters and loops see them, by their dimension.

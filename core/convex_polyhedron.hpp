@@ -142,7 +142,9 @@ struct ConvexPolyhedron {
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
   std::vector<ExactDirection> exact_normals;  // of an unbounded body, a facet each
-  Opening opening;                            // of an unbounded body; made by add_walking_tables()
+  // Of an unbounded body, an edge each: the ray along which it goes on, kNone where it ends.
+  std::vector<std::int32_t> edge_rays;
+  Opening opening;  // of an unbounded body; made by add_walking_tables()
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
   VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex
@@ -169,6 +171,13 @@ struct ConvexPolyhedron {
   double radius = 0.0;
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
+
+  // Exactly along one of `edges`, in its direction; null: that edge ends.
+  [[nodiscard]] const Ray* ray_along(const Edge& edge) const noexcept {
+    if (edge_rays.empty()) return nullptr;
+    const std::int32_t ray = edge_rays[static_cast<std::size_t>(&edge - edges.data())];
+    return ray == kNone ? nullptr : &rays[static_cast<std::size_t>(ray)];
+  }
 
   // Unit, away from the vertex, along the i-th of its edges.
   [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {

@@ -8,9 +8,6 @@ namespace {
 // Of a product of two unit vectors, both rounded.
 constexpr double kArcError = 0x1p-50;
 
-// An edge's direction and a ray's, both rounded.
-constexpr double kSameRay = 0x1p-50;
-
 // Rays nearer to parallel are known better by the way in which they lean apart.
 constexpr double kLeaning = 0x1p-30;
 
@@ -46,17 +43,15 @@ bool DepthSearch::rises_exactly(const Ray& ray, const Arc& arc, std::size_t end,
 }
 
 // A ray that all but runs along the arc's edge is level at directions of the arc that its last
-// digits decide. An edge without end is one of X's rays, and two rays are known precisely enough:
-// off by less than what is allowed for directions beside their arc.
+// digits decide. An edge without end runs along one of X's rays, and two rays are known precisely
+// enough: off by less than what is allowed for directions beside their arc.
 DepthSearch::Rise DepthSearch::rise(const Arc& arc, const Ray& ray) const noexcept {
   const WideVec g = wide_ * (wide(ray.direction) + wide(ray.rest));
-  for (const Ray& own : body_.x().rays) {
-    if (arc.edge.end < kInfinity) break;
-    if (!((own.direction.normalized() - arc.edge.direction).norm() < kSameRay)) continue;
-    const WideVec e = wide(own.direction) + wide(own.rest);
+  if (const Ray* const own = body_.x().ray_along(arc.edge)) {
+    const WideVec e = wide(own->direction) + wide(own->rest);
     const Vec3 across = narrow(g - (dot(g, e) / dot(e, e)) * e);
-    const bool leans = across.norm() < kLeaning * own.direction.norm();
-    return {-arc.project(lean_ && leans ? part_across(own, ray) : across), 0.0};
+    const bool leans = across.norm() < kLeaning * own->direction.norm();
+    return {-arc.project(lean_ && leans ? part_across(*own, ray) : across), 0.0};
   }
   const Vec3 unit = narrow(g).normalized();
   return {-arc.project(unit), kArcError + wide_.error};

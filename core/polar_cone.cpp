@@ -15,9 +15,6 @@ constexpr double kConstraintError = 0x1p-95;
 // A facet's normal is rounded to 2^-53 in each component, and once more where it is turned.
 constexpr double kFacetError = 0x1p-51;
 
-// Rays that differ by less than this from an edge's direction may be the edge's.
-constexpr double kSameLine = 0x1p-40;
-
 // Of the cross product in wide numbers of a ray and one that has been turned, over their lengths.
 constexpr double kTurnedError = 0x1p-99;
 
@@ -71,21 +68,9 @@ WideVec PolarCone::of_ray(const Ray& ray, bool of_b) const noexcept {
   return of_b ? rotation_ * own : own;
 }
 
-// Null: there is none, or which of several it is cannot be told. Which way it runs does not matter.
-const Ray* PolarCone::ray_along(const ConvexPolyhedron& body, const Edge& edge) noexcept {
-  const Ray* found = nullptr;
-  if (edge.end < kInfinity) return nullptr;
-  for (const Ray& ray : body.rays) {
-    if (!(ray.direction.cross(edge.direction).norm() < kSameLine * ray.direction.norm())) continue;
-    if (found && !ray.exactly.is_opposite_to(found->exactly)) return nullptr;
-    found = &ray;
-  }
-  return found;
-}
-
 PolarCone::Direction PolarCone::across_lines(const Edge& of_a, const Edge& of_b) const noexcept {
-  const Ray* along_a = ray_along(a_.body(), of_a);
-  const Ray* along_b = ray_along(b_.body(), of_b);
+  const Ray* along_a = a_.body().ray_along(of_a);
+  const Ray* along_b = b_.body().ray_along(of_b);
   if (along_a == nullptr || along_b == nullptr) return {Vec3::Zero(), kInfinity};
   return across(*along_a, *along_b);
 }
@@ -112,13 +97,12 @@ PolarCone::Direction PolarCone::of_facet(bool of_b, std::int32_t facet) const no
 PolarCone::Slope PolarCone::slope_over_facet(bool of_b, std::int32_t facet,
                                              const Edge& edge) const noexcept {
   const ConvexPolyhedron &under = (of_b ? b_ : a_).body(), &over = (of_b ? a_ : b_).body();
-  const Ray* const ray = ray_along(over, edge);
+  const Ray* const ray = over.ray_along(edge);
   if (ray == nullptr) return {0.0, kInfinity};
   const WideVec normal = rounded(long_vec(under.exact_normals[facet]));
   const WideVec n = of_b ? rotation_ * normal : normal, g = of_ray(*ray, !of_b);
   const double length = narrow(normal).norm() * ray->direction.norm();
-  const double way = ray->direction.dot(edge.direction) < 0.0 ? -1.0 : 1.0;
-  return {way * value(dot(n, g)) / length, error_};
+  return {value(dot(n, g)) / length, error_};
 }
 
 PolarCone::Direction PolarCone::only_direction() const noexcept {

@@ -114,8 +114,6 @@ class PolarCone {
   };
 
   [[nodiscard]] WideVec of_ray(const Ray& ray, bool of_b) const noexcept;
-  [[nodiscard]] static const Ray* ray_along(const ConvexPolyhedron& body,
-                                            const Edge& edge) noexcept;
   [[nodiscard]] Direction across(const Ray& of_a, const Ray& of_b) const noexcept;
   [[nodiscard]] bool collect(const ConvexPolyhedron& body, bool of_b, const Vec3& n,
                              Level& level) const noexcept;

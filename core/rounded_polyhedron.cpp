@@ -71,16 +71,7 @@ class Assembler {
     if (!lines) add_vertices();
     if (solid_.nodes.empty()) anchor_bare_planes();
     place_facet_points();
-    for (const Integer3& ray : solid_.rays) {
-      const RoundedDirection direction = nearest_direction(ray);
-      body_.rays.push_back(
-          {direction.vector, direction.exact, direction.rest, exact_direction(ray)});
-    }
-    if (!solid_.rays.empty()) {
-      for (const Integer4& plane : solid_.planes) {
-        body_.exact_normals.push_back(exact_direction(head(plane)));
-      }
-    }
+    if (!solid_.rays.empty()) go_on_for_ever();
     body_.position_error = rounder_.error();
     return std::move(body_);
   }
@@ -211,6 +202,29 @@ class Assembler {
           rounder_.point({Integer(normal[0] * plane[3]), Integer(normal[1] * plane[3]),
                           Integer(normal[2] * plane[3]), squared_norm(normal)}));
     }
+  }
+
+  // What an unbounded body keeps exactly.
+  void go_on_for_ever() {
+    for (const Integer3& ray : solid_.rays) {
+      const RoundedDirection direction = nearest_direction(ray);
+      body_.rays.push_back(
+          {direction.vector, direction.exact, direction.rest, exact_direction(ray)});
+    }
+    for (const Integer4& plane : solid_.planes) {
+      body_.exact_normals.push_back(exact_direction(head(plane)));
+    }
+    for (const SolidEdge& edge : solid_.edges) body_.edge_rays.push_back(ray_along(edge));
+  }
+
+  std::int32_t ray_along(const SolidEdge& edge) {
+    if (!edge.full_line && edge.end != kNone) return kNone;
+    const Integer3 along =
+        cross(head(solid_.planes[at(edge.left)]), head(solid_.planes[at(edge.right)]));
+    const auto found = std::ranges::find_if(solid_.rays, [&](const Integer3& ray) {
+      return squared_norm(cross(ray, along)) == 0 && sgn(dot(ray, along)) > 0;
+    });
+    return static_cast<std::int32_t>(found - solid_.rays.begin());
   }
 
   // The anchor of each facet that is nearest to the origin: it has the smallest rounding error.

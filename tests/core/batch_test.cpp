@@ -178,6 +178,19 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOnHardCases) {
   }
 }
 
+// A radius of zero adds nothing: not to a zero's sign either.
+TEST(DistanceBatch, KeepsTheSignsOfZeros) {
+  Motion motion;
+  motion.bodies.push_back(test::made({{}, {Vec3(-1.0, -0.0, -0.0), Vec3::UnitX()}, 0.0}));
+  motion.bodies.push_back(test::made({{}, {Vec3::Zero()}, 0.0}));
+  motion.pairs = {{0, 1}};
+  motion.poses.assign(3, {Pose{}, Pose{.position = Vec3(-3.0, 1.0, 1.0)}});
+  for (const std::int64_t target : vector_widths()) {
+    const OnlyWith only(target);
+    EXPECT_LT(follow(motion, "zeros").single_queries, 3U);
+  }
+}
+
 // Boxes two apart, turned so that the given feature of each is closest: 0 a corner, 1 an edge, 2 a
 // face.
 Pose turned_to(int feature, double x) {

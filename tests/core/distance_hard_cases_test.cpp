@@ -223,6 +223,26 @@ TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
   EXPECT_TRUE(faults.empty()) << joined(faults);
 }
 
+// Channels along each other. A side of one leaves them by 5e-324: of its two rays, which no unit
+// vectors tell apart, the one along an edge is known from when the body was made. When the other
+// one was taken, a direction of length zero parted them.
+TEST(Distance, OfChannelsOneSideOfWhichLeavesBySubnormalsIsTheirDepth) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  oracle::Body a, b;
+  for (const double sign : {1.0, -1.0}) {
+    for (oracle::Body* body : {&a, &b}) body->rows.push_back({Vec3(sign, 0.0, 0.0), 0.35});
+  }
+  a.rows.push_back({Vec3(0.0, 1.0, -least), 0.5});
+  b.rows.push_back({Vec3(-0.0084, 1.0, 0.0), 0.5});
+  for (oracle::Body* body : {&a, &b}) {
+    body->rows.push_back({Vec3(0.0, -1.0, 0.0), 0.5});
+    body->rows.push_back({Vec3(0.0, 0.0, -1.0), 0.9});
+  }
+  const Pose beside{.position = Vec3(0.125, 0.0, 1.8)};
+  expect_holds({"channels", 0, "a lower bound of zero, 0.6 m deep"}, a, {}, b, beside);
+  expect_holds({"channels", 0, "the same, swapped"}, b, beside, a, {});
+}
+
 // Turned by the last bit of a quaternion, their lines cross 1e15 m away: there, where nobody can
 // see them, the witness points would meet along the normal.
 TEST(Distance, OfAColumnWithoutEndInItsOwnPlaceIsBoundedToRounding) {

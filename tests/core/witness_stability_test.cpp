@@ -156,7 +156,7 @@ void expect_jumps(const std::vector<double>& tilts, int most_a_turn) {
 TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) { expect_jumps({1e-11, 1e-9, 1e-7}, 1); }
 
 // Rounding decides there which of the steps of a turn are level.
-TEST(Witnesses, OfFacesAtTheBrinkOfLevelJumpThriceAtMostWhenTheTiltTurnsOver) {
+TEST(Witnesses, OfFacesAtTheBrinkOfLevelJumpAtMostThriceATurnOnAverage) {
   expect_jumps({1e-15, 1e-14, 1e-13, 1e-12}, 3);
 }
 

@@ -192,11 +192,24 @@ double DistanceJudge::size(const DistanceResult& r, const ExactDistance& truth, 
   return size(std::abs(depth_is_known(truth) ? truth.upper : r.lower), pose_a, pose_b);
 }
 
-bool DistanceJudge::parted_by(double depth, const Vec3& normal, const Pose& pose_a,
-                              const Pose& pose_b) {
-  Pose parted = pose_b;
-  parted.position += depth * (pose_a.orientation.normalized() * normal);
-  return !oracle::exact_distance(exact_a_, pose_a, exact_b_, parted).cores_meet();
+std::vector<std::string> DistanceJudge::faults_along(const DistanceResult& r, double tolerance,
+                                                     const Pose& pose_a, const Pose& pose_b) {
+  if (!(std::abs(r.normal.norm() - 1.0) <= 1e-14)) return {"an overlap without a normal"};
+  const double placing = 4.0 * kUlp * pose_b.position.norm();  // of B in the world, as doubles
+  const auto parted_by = [&](double depth) {
+    Pose parted = pose_b;
+    parted.position +=
+        (depth - body_a_.radius - body_b_.radius) * (pose_a.orientation.normalized() * r.normal);
+    return !oracle::exact_distance(exact_a_, pose_a, exact_b_, parted).cores_meet();
+  };
+  std::vector<std::string> out;
+  if (!parted_by(-r.lower + tolerance + placing)) {
+    out.push_back(text("LOWER %.17g, but B moved by that along the normal still meets A", r.lower));
+  }
+  if (-r.upper > tolerance + placing && parted_by(-r.upper - tolerance - placing)) {
+    out.push_back(text("UPPER %.17g, but B moved by less along the normal misses A", r.upper));
+  }
+  return out;
 }
 
 bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const {
@@ -238,10 +251,10 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
 
   const double reach = size(r, truth, pose_a, pose_b);
   const double tolerance = kGapTolerance * reach + 4.0 * kUnderflow;
-  const double placing = 4.0 * kUlp * pose_b.position.norm();  // of B in the world, as doubles
-  const double deepest = tolerance + placing - r.lower - body_a_.radius - body_b_.radius;
-  faults.unless(depth_is_known(truth) || parted_by(deepest, r.normal, pose_a, pose_b),
-                text("LOWER %.17g, but B moved by that along the normal still meets A", r.lower));
+  if (!depth_is_known(truth)) {
+    for (const auto& fault : faults_along(r, tolerance, pose_a, pose_b))
+      faults.all.push_back(fault);
+  }
   // Lines of two unbounded bodies that all but run along each other: the closest points are so far
   // away that doubles cannot say where, let alone to the tolerance.
   const double closest_at = where_they_part(r, truth, pose_a, pose_b);

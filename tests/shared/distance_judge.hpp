@@ -30,8 +30,8 @@ class DistanceJudge {
 
   // What the result gets wrong; empty when nothing:
   //  - numbers: finite where they must be, lower <= distance <= upper
-  //  - the bounds, compared exactly; where the depth is not known, only the lower one, by moving B
-  //    that far along the normal and 1e-14 of size(), and its position's rounding, farther
+  //  - the bounds, compared exactly; where the depth is not known, that B moved along the normal
+  //    by as much parts from A, and by less does not, to 1e-14 of size()
   //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
   //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
   //    or touching, are closest beyond what doubles can say; with no lower bound only where two
@@ -54,9 +54,11 @@ class DistanceJudge {
   [[nodiscard]] bool depth_is_known(const oracle::ExactDistance& truth) const;
   // `farthest`: the distance or depth, m.
   [[nodiscard]] double size(double farthest, const Pose& pose_a, const Pose& pose_b) const;
-  // Does B, moved by `depth` along the normal, miss A?
-  [[nodiscard]] bool parted_by(double depth, const Vec3& normal, const Pose& pose_a,
-                               const Pose& pose_b);
+  // What is wrong with an overlap's bounds along its own normal, to `tolerance` and the rounding of
+  // B's position: B has to miss A when it is moved by the lower one, and to meet it by less than
+  // the upper one.
+  [[nodiscard]] std::vector<std::string> faults_along(const DistanceResult& r, double tolerance,
+                                                      const Pose& pose_a, const Pose& pose_b);
   // A ball of this radius fits into both (of a point or segment: around one of its points). Says no
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;

@@ -10,7 +10,8 @@ namespace clearance::bench {
 
 // The rows that the report shows, as a --benchmark_filter.
 inline constexpr const char* kReportRows =
-    "^(tracked|cold|batch|peer|interval|adjacency|variant/(base|dual|aggressive|consistent|all-facets|"
+    "^(tracked|cold|batch|peer|interval|adjacency|variant/"
+    "(base|dual|aggressive|consistent|all-facets|"
     "base-repeated|moved-before|moved/tracked))/";
 
 // Writes DIR/report.md and DIR/pareto.svg. False, and says so on stderr, when it cannot.
