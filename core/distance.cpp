@@ -141,7 +141,7 @@ std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const Co
                                              double far_away) noexcept {
   if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return {};
   const double apart = a_from_b.translation.norm(), size = a.bounding_radius + b.bounding_radius;
-  const double slack = a_from_b.translation_error + 0x1p-50 * (apart + size);
+  const double slack = a_from_b.translation_error + 0x1p-50 * (apart + size) + kUnderflow;
   DistanceResult r;
   r.lower = apart - size - slack;
   r.upper = apart + size + slack;

@@ -6,6 +6,7 @@
 #include "core/certificate.hpp"
 #include "core/simplex.hpp"
 #include "core/support.hpp"
+#include "core/vec.hpp"
 
 namespace clearance {
 namespace {
@@ -149,7 +150,7 @@ void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Pr
     const double level = separation({n}, a, b, p);
     if (level - p.slack > r.lower) {
       r.lower = level - p.slack;
-      r.normal = n;
+      r.normal = unit_along(n);  // of which squares may have underflowed
     }
     if (length - level <= p.tight || !simplex.add(next)) break;
   }

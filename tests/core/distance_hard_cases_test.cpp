@@ -139,6 +139,7 @@ constexpr OnceWrong kOnceWrong[] = {
     {"broad_wedges", 11087800003,
      "a lower bound 3e-8 too low: a wedge 2e-7 rad short of a half-space bounded by its rays"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
+    {"dust", 20095500003, "the same, 1 + 1e-9: by the robust path"},
 };
 
 // Cold and tracked.

@@ -331,6 +331,16 @@ TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
             DistanceStatus::kOverlapping);
 }
 
+TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
+  TrackingState state;
+  for (double unit = 1e-163; unit < 1e-140; unit *= 1.7) {
+    const RelativePose pose = relative_pose(Pose{}, at(3.0 * unit, 0.0, 4.0 * unit));
+    const DistanceResult r = distance(ball(0.0), ball(0.0), pose, state, {.far_away = 1e-200});
+    EXPECT_LE(r.lower, 5.0 * unit * (1.0 + 1e-15)) << unit;
+    EXPECT_GE(r.upper, 5.0 * unit * (1.0 - 1e-15)) << unit;
+  }
+}
+
 TEST(Distance, SaysWhichWayTheAnswerCame) {
   const ConvexPolyhedron column = prism_without_end({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
   TrackingState state;
