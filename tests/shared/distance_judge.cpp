@@ -180,11 +180,11 @@ bool DistanceJudge::depth_is_known(const ExactDistance& truth) const {
 }
 
 double DistanceJudge::size(double farthest, const Pose& pose_a, const Pose& pose_b) const {
-  const double between = (pose_b.position - pose_a.position).norm() + farthest;
+  const double apart = (pose_b.position - pose_a.position).norm();
   const double of_a = a_.bounding_radius + a_.radius, of_b = b_.bounding_radius + b_.radius;
-  const double reach_a = a_.bounded() ? of_a : std::max(of_a, of_b + between);
-  const double reach_b = b_.bounded() ? of_b : std::max(of_b, of_a + between);
-  return reach_a + reach_b + between;
+  const double reach_a = a_.bounded() ? of_a : std::max(of_a, of_b + apart + farthest);
+  const double reach_b = b_.bounded() ? of_b : std::max(of_b, of_a + apart + farthest);
+  return reach_a + reach_b + apart;
 }
 
 double DistanceJudge::size(const DistanceResult& r, const ExactDistance& truth, const Pose& pose_a,

@@ -44,7 +44,7 @@ class DistanceJudge {
                                                 const Pose& pose_a, const Pose& pose_b);
 
   // The lengths that a rounding error is relative to: reach of both bodies (of an unbounded one as
-  // far as the closest points may lie), how far their origins are apart, and the distance itself.
+  // far as the closest points may lie), and how far their origins are apart.
   [[nodiscard]] double size(const DistanceResult& result, const oracle::ExactDistance& truth,
                             const Pose& pose_a, const Pose& pose_b) const;
 
