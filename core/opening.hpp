@@ -31,7 +31,7 @@ struct Opening {
   }
 };
 
-// Of a direction's and a product's rounding.
+// What rounding may hide of a slope: its direction's, its product's and its sum's.
 inline constexpr double kSlopeError = 0x1p-50;
 
 // Sets the body's `opening`, and which of its rays are lines.

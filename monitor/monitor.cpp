@@ -6,6 +6,7 @@
 
 #include "monitor/closest_pair.hpp"
 #include "monitor/enclosing_ball.hpp"
+#include "monitor/input_round.hpp"
 #include "monitor/object_state.hpp"
 #include "monitor/pair_summary.hpp"
 #include "monitor/pair_table.hpp"
@@ -20,19 +21,6 @@ namespace {
 
 constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();  // of queries
 
-class LargestTwo {
- public:
-  void add(double length) noexcept {
-    if (length <= second_) return;
-    second_ = std::min(most_, length);
-    most_ = std::max(most_, length);
-  }
-  [[nodiscard]] double sum() const noexcept { return rounded_up(most_ + second_); }
-
- private:
-  double most_ = 0.0, second_ = 0.0;
-};
-
 }  // namespace
 
 struct Monitor::State {
@@ -42,10 +30,7 @@ struct Monitor::State {
   std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
   std::vector<std::uint32_t> moving;      // objects that are not fixed
   std::vector<std::uint32_t> stirred;     // objects of which this tick knows something else
-  bool any_lost = false;                  // an object is not known, or has leapt
-  // Of any two known objects together: how far they may have moved unseen, and may have been from
-  // where they are now since the last tick, m.
-  double most_unseen = 0.0, most_strayed = 0.0;
+  InputRound inputs;                      // of this tick
   PairTable table;
   WorkerPool pool;
   Triage triage;
@@ -58,7 +43,6 @@ struct Monitor::State {
   void begin(std::int64_t now_ns) noexcept;
   void take_in(std::span<const PoseSample> samples) noexcept;
   void move() noexcept;
-  void look_at_inputs() noexcept;
   void report_pairs() noexcept;
   void report_counts() noexcept;
   void report_whole() noexcept;
@@ -82,7 +66,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   s.begin(now_ns);
   s.take_in(samples);  // samples  -> objects: the pose in use of each
   s.move();            // objects  -> parts: where each is, how far it moved
-  s.look_at_inputs();
+  s.inputs = look_at_inputs(s.objects, s.moving, s.report);
   // parts    -> table: every bound true for these poses, or provably not worth a look
   s.zones.begin(s.report.zones);
   s.report.queries =
@@ -201,30 +185,6 @@ void Monitor::State::move() noexcept {
   }
 }
 
-void Monitor::State::look_at_inputs() noexcept {
-  bool any = false;
-  any_lost = false;
-  LargestTwo unseen, strayed;
-  for (const std::uint32_t i : moving) {
-    const ObjectState& object = objects[i];
-    any_lost = any_lost || !object.known() || object.leapt;
-    if (!object.seen) continue;
-    report.newest_pose_ns =
-        any ? std::max(report.newest_pose_ns, object.stamp_ns) : object.stamp_ns;
-    report.oldest_pose_ns =
-        any ? std::min(report.oldest_pose_ns, object.stamp_ns) : object.stamp_ns;
-    any = true;
-    if (!object.known()) continue;
-    unseen.add(object.may_have_moved);
-    // Of a body that nobody can bound, short of a leap, no pair sleeps.
-    const double travel = object.travel_since();
-    const double bounded = travel < kInfinity ? travel : 0.0;
-    strayed.add(object.leapt ? kInfinity : rounded_up(object.unseen_since + bounded));
-  }
-  most_unseen = unseen.sum();
-  most_strayed = strayed.sum();
-}
-
 // Every pair that was looked at is summed up once.
 void Monitor::State::report_pairs() noexcept {
   closest = {};
@@ -260,8 +220,9 @@ void Monitor::State::report_whole() noexcept {
     const Clearance others = rest();
     closest.add_rest(others.now, others.since);
   }
-  zones.finish(any_lost ? std::span<const ObjectState>(objects) : std::span<const ObjectState>(),
-               pending(), report.cycle, report.zones);
+  zones.finish(
+      inputs.any_lost ? std::span<const ObjectState>(objects) : std::span<const ObjectState>(),
+      pending(), report.cycle, report.zones);
 
   report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
   report.lower_all_since = report.unknown > 0 ? -kInfinity : closest.lower_since();
@@ -275,14 +236,15 @@ void Monitor::State::report_whole() noexcept {
 Clearance Monitor::State::rest() const noexcept {
   const Clearance waiting = pending();
   const double asleep = triage.horizon();
-  return {.now = std::min(rounded_down(asleep - most_unseen), waiting.now),
-          .since = std::min(rounded_down(asleep - most_strayed), waiting.since)};
+  return {.now = std::min(rounded_down(asleep - inputs.most_unseen), waiting.now),
+          .since = std::min(rounded_down(asleep - inputs.most_strayed), waiting.since)};
 }
 
 Clearance Monitor::State::pending() const noexcept {
   if (!triage.pending()) return {};
   const double lower = triage.pending_lower();
-  return {.now = rounded_down(lower - most_unseen), .since = rounded_down(lower - most_strayed)};
+  return {.now = rounded_down(lower - inputs.most_unseen),
+          .since = rounded_down(lower - inputs.most_strayed)};
 }
 
 PairSummary Monitor::State::summary(std::uint32_t pair, bool published) const noexcept {
