@@ -133,6 +133,24 @@ TEST(Daemon, EndsWithStatusZeroAndASummaryOnEitherSignal) {
   }
 }
 
+TEST(Daemon, SaysWhyAZoneWasEntered) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Poses poses(client, scene);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] {
+    return daemon.wrote("zone 'near' entered at cycle 1: left - right unknown");
+  })) << daemon.output();
+  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  poses.send(0.0);  // 0.8 m apart
+  ASSERT_TRUE(eventually([&] { return daemon.wrote("zone 'near' left at cycle"); }))
+      << daemon.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+}
+
 TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {
   const test::CellFile cell(test::small_cell("small"));
   ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--ticks", "7"},
