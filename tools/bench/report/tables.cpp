@@ -186,9 +186,8 @@ std::string tables(const Figures& figures) {
       << peers(figures, "tracked") << "## Cold, against peers\n\n"
       << peers(figures, "cold")
       << "## Many pairs at once\n\n512 tracked pairs, ns a pair: a loop of single queries, and "
-         "batches by instruction set (AVX3 is AVX-512), without what moves the bodies. Failures "
-         "are "
-         "of 102,400.\n\n"
+         "batches by instruction set (AVX3 is AVX-512), without what moves the bodies. "
+         "Failures are of 102,400.\n\n"
       << batches(figures) << "## Table 3.3: against a QP, without tracking\n\n"
       << against_qp(figures, "cold") << "## Table 3.4: against a QP, with tracking\n\n"
       << against_qp(figures, "tracked")
