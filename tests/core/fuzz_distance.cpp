@@ -1,8 +1,10 @@
-// Fuzz target (libFuzzer) of the shape factories and distance().
+// Fuzz target (libFuzzer) of the shape factories, distance() and DistanceBatch.
 //
 // Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
-// tests/shared/distance_judge.hpp; and the sanitizers. The input picks a hard case by family and
-// seed and then changes doubles of it: to neighbours, to zero, to other doubles of the same case.
+// tests/shared/distance_judge.hpp; of a batch, single queries, bit by bit; and the sanitizers. The
+// input picks a hard case by family and seed and then changes doubles of it: to neighbours, to
+// zero, to other doubles of the same case. It is asked with a state that the input makes up, with
+// the state that this leaves where B has moved, and by its spheres only.
 //
 // To build and to run it:
 //
@@ -15,8 +17,11 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/batch.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/nonsense_state.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
@@ -101,24 +106,94 @@ bool has_truth(const hard::HardCase& c) {
   }
 }
 
+// Of one input.
+class Fuzzed {
+ public:
+  Fuzzed(const char* family, const hard::HardCase& c) : family_(family), c_(c), judge_(c.a, c.b) {}
+
+  [[nodiscard]] bool refused() const { return !judge_.refusal().empty(); }
+  [[nodiscard]] const DistanceJudge& judge() const { return judge_; }
+
+  // `state`: any.
+  void ask(TrackingState& state) {
+    const DistanceResult result = judge_.ask(c_.pose_a, c_.pose_b, state);
+    const oracle::ExactDistance truth = judge_.truth(c_.pose_a, c_.pose_b);
+    const auto faults = judge_.faults(result, truth, c_.pose_a, c_.pose_b);
+    for (const std::string& fault : faults) std::fprintf(stderr, "%s\n", fault.c_str());
+    if (!faults.empty()) fail();
+    if (!truth.cores_meet()) ask_spheres(truth);
+  }
+
+  void move(Random& random) {
+    const double reach = judge_.a().bounding_radius + judge_.b().bounding_radius;
+    const double step = random.log_uniform(1e-16, 1.0);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(step, random.direction()));
+    c_.pose_b.position += random.in_box(step * reach);
+    if (random.chance(0.7)) c_.pose_b.orientation = turn * c_.pose_b.orientation;
+  }
+
+  // Twice where they are, so that the second round is one of vector code, and where B has moved.
+  void follow_in_batch(Random& random) {
+    const ConvexPolyhedron* const bodies[] = {&judge_.a(), &judge_.b()};
+    const BodyPair pairs[] = {{0, 1}, {1, 0}};
+    DistanceBatch batch(bodies, pairs);
+    TrackingState states[2];
+    for (int round = 0; round < 4; ++round) {
+      if (round == 2) move(random);
+      const Pose poses[] = {c_.pose_a, c_.pose_b};
+      const auto answers = batch.evaluate(poses);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const auto [a, b] = pairs[i];
+        const DistanceResult expected =
+            distance(*bodies[a], *bodies[b], poses[a], poses[b], states[i]);
+        if (same_bits(answers[i], expected)) continue;
+        std::fprintf(stderr, "batch: round %d, pair %zu: %.17g, not %.17g\n", round, i,
+                     answers[i].distance, expected.distance);
+        fail();
+      }
+    }
+  }
+
+ private:
+  void ask_spheres(const oracle::ExactDistance& truth) {
+    TrackingState state;
+    const DistanceResult r = distance(judge_.a(), judge_.b(), relative_pose(c_.pose_a, c_.pose_b),
+                                      state, {.far_away = 0.5 * truth.lower, .depth = false});
+    if (truth.compare(r.lower) >= 0 && truth.compare(r.upper) <= 0) return;
+    std::fprintf(stderr, "by spheres: [%.17g, %.17g]\n", r.lower, r.upper);
+    fail();
+  }
+
+  [[noreturn]] void fail() const {
+    std::fprintf(stderr, "%s\n", hard::json_line("fuzz", family_, c_).c_str());
+    std::abort();
+  }
+
+  const char* family_;
+  hard::HardCase c_;
+  DistanceJudge judge_;
+};
+
 void run(Bytes bytes) {
   const auto families = hard::case_families();
   const hard::CaseFamily& family = families[bytes.byte() % families.size()];
   Random random(bytes.word());
   hard::HardCase c = family.make(random);
+  const std::uint8_t how = bytes.byte();
   TrackingState state;
-  if (bytes.byte() % 2 == 1) state = {any_side(bytes), any_side(bytes)};
+  if (how % 2 == 1) state = {any_side(bytes), any_side(bytes)};
   state.a.deep = bytes.byte() % 2 == 1;
   change(c, bytes);
   if (!has_truth(c)) return;
-  DistanceJudge judge(c.a, c.b);
-  if (!judge.refusal().empty()) return;
-  const DistanceResult result = judge.ask(c.pose_a, c.pose_b, state);
-  const auto faults = judge.faults(result, judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
-  if (faults.empty()) return;
-  for (const std::string& fault : faults) std::fprintf(stderr, "%s\n", fault.c_str());
-  std::fprintf(stderr, "%s\n", hard::json_line("fuzz", family.name, c).c_str());
-  std::abort();
+  Fuzzed fuzzed(family.name, c);
+  if (fuzzed.refused()) return;
+  if (how % 4 == 2) state = test::nonsense_state(fuzzed.judge().a(), fuzzed.judge().b(), random);
+  fuzzed.ask(state);
+  if (how >= 128) {
+    fuzzed.move(random);
+    fuzzed.ask(state);
+  }
+  fuzzed.follow_in_batch(random);
 }
 
 }  // namespace
