@@ -122,6 +122,25 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
   EXPECT_THAT(refusal(prism(triangle, 1, 1)), HasSubstr("low end"));
 }
 
+// Middles are quotients of moments, products of four lengths: beyond 1e77 m they overflowed, and a
+// ball of infinite radius lay inside.
+TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
+  Random random(1);
+  for (int i = 0; i < 20; ++i) {
+    const hard::Body hull = hard::random_hull(random, 12);
+    const ConvexPolyhedron body = made(polyhedron_from_vertices(hull.points));
+    for (const int exponent : {-400, -250, 250, 270, 330}) {
+      const double size = std::ldexp(1.0, exponent);
+      std::vector<Vec3> points = hull.points;
+      for (Vec3& point : points) point *= size;
+      const ConvexPolyhedron scaled = made(polyhedron_from_vertices(points));
+      EXPECT_THAT(broken_invariants(scaled), IsEmpty()) << exponent;
+      EXPECT_EQ(scaled.interior, size * body.interior) << exponent;
+      EXPECT_EQ(scaled.inner_radius, size * body.inner_radius) << exponent;
+    }
+  }
+}
+
 TEST(Shapes, TheSameInputGivesTheSameBits) {
   Random random(29);
   const std::vector<HalfSpace> rows = hard::random_polytope(random, 40).rows;
