@@ -124,6 +124,9 @@ constexpr OnceWrong kOnceWrong[] = {
     {"leaning", 5232900003, "the same"},
     {"leaning", 21017600007, "the same, by 2e-12, 3e2 m away"},
     {"leaning", 3347700003, "the same"},
+    {"leaning", 22024700003,
+     "bounds 1.13e-14 apart: which of the directions that one body falls along is not across both "
+     "lines, tilted by 1.5e-3 and closest 1,600 m away"},
     {"links", 62800003, "an overlap bounded to 1.02e-14 of its size"},
     {"sizes", 66500003, "the same, to 1.06e-14"},
     {"bare_cores", 4014800003, "the same, to 1.01e-14 with its radius"},
