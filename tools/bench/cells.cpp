@@ -84,7 +84,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
   state.SetItemsProcessed(static_cast<std::int64_t>(queries));
   state.counters["iterations"] = static_cast<double>(iterations) / static_cast<double>(queries);
   state.counters["widest_gap"] = widest;
-  state.counters["ns_per_pair"] =
+  state.counters["ns"] =
       benchmark::Counter(static_cast<double>(queries) * 1e-9,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
@@ -126,7 +126,7 @@ void time_batch(benchmark::State& state, const Workload& load) {
       static_cast<double>(pairs.size()) * static_cast<double>(state.iterations());
   state.counters["single"] = static_cast<double>(single_queries) / queries;
   state.counters["widest_gap"] = widest;
-  state.counters["ns_per_pair"] =
+  state.counters["ns"] =
       benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
@@ -144,8 +144,13 @@ void register_cell(const std::string& name, Scene scene) {
 
 void register_cells(const std::filesystem::path& folder) {
   std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, gone)) {
     if (entry.path().extension() == ".yaml") files.insert(entry.path());
+  }
+  if (gone) {
+    std::fprintf(stderr, "clearance-bench: no rows of cells: %s cannot be read: %s\n",
+                 folder.c_str(), gone.message().c_str());
   }
   for (const auto& file : files) {
     CellResult cell = read_cell(file);

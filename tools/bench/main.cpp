@@ -12,6 +12,7 @@
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
+#include "tools/bench/overlaps.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/ticks.hpp"
@@ -29,6 +30,8 @@ constexpr const char* kHelp =
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set\n"
+    "  overlap/tracked/KIND/HOW, overlap/cold/...  how deep: boxes, links, f10, v10, f40, v40;\n"
+    "                     shallow, half, near, nearer, middle (core/OVERLAP.md); no reference\n"
     "  variant/WHICH/...  the thesis's loop without certificates: base, dual, consistent,\n"
     "                     aggressive, all-facets, moved (its tables, at every query);\n"
     "                     moved-before and base-repeated: what a query takes without that, and\n"
@@ -38,7 +41,7 @@ constexpr const char* kHelp =
     "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
     "tracked\n"
     "  cell/cold/NAME     the same without what the last query left\n"
-    "  cell/batch/NAME    a round of all the cell's part pairs at once; ns_per_pair\n"
+    "  cell/batch/NAME    a round of all the cell's part pairs at once\n"
     "  tick/NAME          one Monitor::tick: the shipped cells, and generated ones of thousands "
     "to\n"
     "                     millions of pairs; control_..._us: the machine's own noise, plain\n"
@@ -57,20 +60,22 @@ constexpr const char* kHelp =
     "among the 4,000 queries (of a batch 102,400); iterations, mean, 0 where not told; truth_gap,\n"
     "how far the reference itself may be off; overlapping, how many pairs are; widest_gap, m: of\n"
     "our bounds. The console shortens them: 4f is 4e-15, 4a 4e-18. Of adjacency: wrong, pairs of "
-    "facets too many or missing. Of cells: ns_per_pair\n"
-    "and widest_gap; the poses are the cell's own, and nothing judges them.\n"
+    "facets too many or missing. Of cells: ns\n"
+    "and widest_gap; the poses are the cell's own, and nothing judges them. libccd has no "
+    "distance\n"
+    "and no max_error.\n"
     "\n"
     "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
     "  --version          says which one it is\n"
-    "  --report DIR       runs all but cells, ticks and variant/moved/cold, in two to three "
-    "minutes,\n"
+    "  --report DIR       runs all but cells, ticks, variants of the duals and\n"
+    "                     variant/moved/cold, in three to four minutes,\n"
     "                     and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
     "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
     "and\n"
     "                     DIR/ticks.svg, cost against the number of pairs, speed and density\n"
     "\n"
-    "example: clearance-bench --benchmark_filter='tracked/(f|v)' --benchmark_repetitions=5\n"
+    "example: clearance-bench --benchmark_filter='^tracked/(f|v)' --benchmark_repetitions=5\n"
     "         clearance-bench --report build/report\n"
     "\n"
     "Options of Google Benchmark:\n";
@@ -79,6 +84,7 @@ void register_all() {
   using namespace clearance::bench;
   register_ours();
   register_batches();
+  register_overlaps();
   register_variants();
   register_adjacency();
   register_peers();

@@ -41,6 +41,7 @@ struct Verdict {
   double widest_gap = 0.0;  // m: of the solver's own bounds
   double truth_gap = 0.0;   // m: how far the truth itself may be off
   double overlapping = 0.0;
+  bool measures = false;  // an answer was more than that they do not overlap
 
   void add(const Answer& answer, const Truth& truth) {
     const bool only_apart = answer.distance == kInfinity && truth.distance > 0.0;
@@ -48,6 +49,7 @@ struct Verdict {
         only_apart ? 0.0 : std::abs(std::max(0.0, answer.distance) - truth.distance);
     failures += !answer.ok || !(error <= kFailure) || std::isnan(answer.distance);
     if (answer.ok && !std::isnan(answer.distance)) max_error = std::max(max_error, error);
+    measures = measures || (answer.distance > 0.0 && answer.distance < kInfinity);
     iterations += answer.iterations;
     widest_gap = std::max(widest_gap, answer.width);
     truth_gap = std::max(truth_gap, truth.gap);
@@ -57,7 +59,7 @@ struct Verdict {
 
 // Its counters.
 inline void count(benchmark::State& state, const Verdict& verdict) {
-  state.counters["max_error"] = verdict.max_error;
+  if (verdict.measures) state.counters["max_error"] = verdict.max_error;
   state.counters["failures"] = verdict.failures;
   state.counters["iterations"] = verdict.iterations;
   state.counters["truth_gap"] = verdict.truth_gap;

@@ -138,7 +138,6 @@ void register_repeated(const std::string& name) {
 template <class Solver>
 void register_variant(const std::string& name) {
   for (const std::string& load : workload_names()) {
-    if (load[0] == 'v') continue;
     register_row<Solver>("variant/" + name + "/tracked/" + load, load, kTracked);
     register_row<Solver>("variant/" + name + "/cold/" + load, load, kCold);
   }

@@ -10,9 +10,9 @@ namespace clearance::bench {
 
 // The rows that the report shows, as a --benchmark_filter.
 inline constexpr const char* kReportRows =
-    "^(tracked|cold|batch|peer|interval|adjacency|variant/"
-    "(base|dual|aggressive|consistent|all-facets|"
-    "base-repeated|moved-before|moved/tracked))/";
+    "^(tracked/|cold/|batch/|peer/|overlap/|interval/|adjacency/|variant/"
+    "((base|dual|aggressive|consistent|all-facets)/(tracked|cold)|"
+    "(base-repeated|moved-before|moved)/tracked)/f)";
 
 // Writes DIR/report.md and DIR/pareto.svg. False, and says so on stderr, when it cannot.
 [[nodiscard]] bool write_report(const std::filesystem::path& folder, const Figures& figures);

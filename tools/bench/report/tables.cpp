@@ -107,12 +107,37 @@ std::string variants(const Figures& figures, const std::string& mode) {
 }
 
 std::string moving(const Figures& figures) {
-  Table table({"N1+N2", "tables moved before", "poses inside", "tables moved, that counted"});
+  Table table(
+      {"N1+N2", "repeated: moved before", "poses inside", "once: moving counted", "poses inside"});
   for (const int order : kOrders) {
     const std::string load = "/tracked/" + ball_name(order);
     table.row({both_sizes(order), ns(figures.at("variant/moved-before" + load)),
                ns(figures.at("variant/base-repeated" + load)),
-               ns(figures.at("variant/moved" + load))});
+               ns(figures.at("variant/moved" + load)), ns(figures.at("variant/base" + load))});
+  }
+  return table.text();
+}
+
+// Tracked and, in brackets, cold.
+std::string overlaps(const Figures& figures) {
+  const char* const how[] = {"shallow", "half", "near", "nearer", "middle"};
+  Cells head{""};
+  head.insert(head.end(), std::begin(how), std::end(how));
+  head.emplace_back("widest gap, m");
+  Table table(head);
+  for (const std::string kind : {"boxes", "links", "f10", "v10", "f40", "v40"}) {
+    Cells cells{kind};
+    double widest = 0.0;
+    for (const char* deep : how) {
+      const std::string load = kind + "/" + deep;
+      const Figure* tracked = figures.at("overlap/tracked/" + load);
+      const Figure* cold = figures.at("overlap/cold/" + load);
+      cells.push_back(tracked && cold ? print("%.2f (%.2f)", 1e-3 * tracked->ns, 1e-3 * cold->ns)
+                                      : "-");
+      if (tracked) widest = std::max(widest, tracked->counted("widest_gap"));
+    }
+    cells.push_back(print("%.0e", widest));
+    table.row(cells);
   }
   return table.text();
 }
@@ -188,7 +213,11 @@ std::string tables(const Figures& figures) {
       << "## Many pairs at once\n\n512 tracked pairs, ns a pair: a loop of single queries, and "
          "batches by instruction set (AVX3 is AVX-512), without what moves the bodies. "
          "Failures are of 102,400.\n\n"
-      << batches(figures) << "## Table 3.3: against a QP, without tracking\n\n"
+      << batches(figures)
+      << "## Overlapping\n\nHow deep, us a query, tracked and in brackets cold; the columns are "
+         "how "
+         "near the centres are (core/OVERLAP.md), the last one how far apart our bounds are.\n\n"
+      << overlaps(figures) << "## Table 3.3: against a QP, without tracking\n\n"
       << against_qp(figures, "cold") << "## Table 3.4: against a QP, with tracking\n\n"
       << against_qp(figures, "tracked")
       << "## Table 4.1: variants of the loop, without tracking\n\n"

@@ -1,0 +1,65 @@
+// The names and counters of clearance-bench's rows, which others' scripts read.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "tests/shared/child_process.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+const std::string kBench = std::string(CLEARANCE_BIN) + "/clearance-bench";
+
+std::set<std::string> names() {
+  test::ChildProcess bench(kBench, {"--benchmark_list_tests"});
+  EXPECT_EQ(bench.wait(), 0) << bench.output();
+  std::istringstream lines(bench.output());
+  std::set<std::string> out;
+  for (std::string line; std::getline(lines, line);) out.insert(line);
+  return out;
+}
+
+TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
+  const std::set<std::string> there = names();
+  for (const char* kind : {"f", "v"}) {
+    for (const char* order : {"2", "4", "6", "8", "10", "15", "20", "30", "40"}) {
+      for (const std::string how : {"tracked/", "cold/", "variant/base/tracked/"}) {
+        EXPECT_TRUE(there.contains(how + kind + order)) << how << kind << order;
+      }
+    }
+  }
+  for (const char* name : {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes",
+                           "batch/links", "peer/qp/tracked/f2", "interval/100/f2",
+                           "overlap/tracked/boxes/middle", "cell/batch/two_arms"}) {
+    EXPECT_TRUE(there.contains(name)) << name;
+  }
+}
+
+TEST(BenchRows, SayTimeErrorAndFailuresInJson) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "rows.json").string();
+  test::ChildProcess bench(
+      kBench, {"--benchmark_filter=^(tracked|cold|batch)/boxes$", "--benchmark_min_time=0.001",
+               "--benchmark_out=" + file, "--benchmark_out_format=json"});
+  ASSERT_EQ(bench.wait(), 0) << bench.output();
+  const auto rows = nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
+  ASSERT_EQ(rows.size(), 3u);
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_GT(row.at("ns").get<double>(), 0.0);
+    EXPECT_GT(row.at("max_error").get<double>(), 0.0);
+    EXPECT_LT(row.at("max_error").get<double>(), 1e-14);
+    EXPECT_LT(row.at("widest_gap").get<double>(), 1e-13);
+    EXPECT_EQ(row.at("failures").get<double>(), 0.0);
+    EXPECT_GE(row.at("iterations").get<double>(), 1.0);
+    EXPECT_LT(row.at("iterations").get<double>(), 10.0);
+  }
+}
+
+}  // namespace
+}  // namespace clearance
