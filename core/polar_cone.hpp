@@ -75,7 +75,7 @@ class PolarCone {
   }
 
  private:
-  static constexpr double kParallel = 0x1p-90, kNearlyParallel = 0x1p-6;
+  static constexpr double kParallel = 0x1p-90, kNearlyParallel = 0x1p-18;
   static constexpr std::size_t kMostPairs = 0x1p16;
 
   // n.g <= 0 for all directions n of the cone, g being a ray. Along n + x t + y u it rises by

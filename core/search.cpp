@@ -42,8 +42,19 @@ void prove_from_below(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
     if (bounds.certain_upper() - bounds.lower <= p.tight) return;
   }
   if (a.body().bounded() || b.body().bounded()) return;
-  PolarCone(a, b).across_near_parallels(
-      [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); });
+  const auto raise = [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); };
+  const PolarCone cone(a, b);
+  // Doubles know the direction across lines at an angle f to 1/f ulps, and may prefer one to it
+  // along which one of them falls, by what that comes to where they are closest.
+  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+    const auto across = cone.across_lines(a.edge(), b.edge());
+    if (across.off < kInfinity) {
+      raise({across.n});
+      raise({-across.n});
+      if (bounds.certain_upper() - bounds.lower <= p.tight) return;
+    }
+  }
+  cone.across_near_parallels(raise);
 }
 
 DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {

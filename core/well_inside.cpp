@@ -17,10 +17,6 @@ double depth(const ConvexPolyhedron& body, const Vec3& point) {
   return least;
 }
 
-Vec3 times_power_of_two(const Vec3& v, int exponent) {
-  return v.unaryExpr([exponent](double x) { return std::scalbn(x, exponent); });
-}
-
 // The centre of volume, by a fan of tetrahedra from the first anchor. Bounded bodies only.
 Vec3 centroid(const ConvexPolyhedron& body) {
   const Vec3& apex = body.anchors[0];
@@ -31,7 +27,9 @@ Vec3 centroid(const ConvexPolyhedron& body) {
   if (size == 0.0) return apex;
   // Moments are products of four lengths, which over- or underflow soon.
   const int exponent = std::ilogb(size);
-  const auto from_apex = [&](const Vec3& p) { return times_power_of_two(p - apex, -exponent); };
+  const auto from_apex = [&](const Vec3& p) {
+    return times_power_of_two(Vec3(p - apex), -exponent);
+  };
   Vec3 moment = Vec3::Zero();
   double volume = 0.0;
   for (const Facet& facet : body.facets) {
@@ -45,7 +43,8 @@ Vec3 centroid(const ConvexPolyhedron& body) {
       moment += share * (a + b + c);
     }
   }
-  return volume > 0.0 ? Vec3(apex + times_power_of_two(moment / (4.0 * volume), exponent)) : apex;
+  return volume > 0.0 ? Vec3(apex + times_power_of_two(Vec3(moment / (4.0 * volume)), exponent))
+                      : apex;
 }
 
 // From the mean of the anchors along the rays' mean, as far as the anchors are spread.
