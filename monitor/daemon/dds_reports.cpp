@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <string>
+
 #include "monitor/daemon/realtime.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
@@ -24,12 +26,13 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
       topic, status.last_policy_id);
 }
 
-// "entered at cycle 12: hand - box, 0.043 m clear".
+// "entered at cycle 12: hand - box, 0.043 m clear, 0.041 m since the tick before".
 std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
   const std::string at_cycle = "at cycle " + std::to_string(cycle);
   if (!zone.active) return "left " + at_cycle;
   const std::string pair = "entered " + at_cycle + ": " + pair_name(scene, zone.pair);
-  if (zone.clearance == -kInfinity) return pair + " unknown, no pose in use of one of them";
+  if (zone.clearance == -kInfinity) return pair + " unknown: no pose of one of them, or too old";
+  if (zone.clearance_since == -kInfinity) return pair + ", which may have been anywhere: one leapt";
   return fmt::format("{}, {:.3f} m clear, {:.3f} m since the tick before", pair, zone.clearance,
                      zone.clearance_since);
 }

@@ -4,7 +4,7 @@
 // tests/shared/distance_judge.hpp; of a batch, single queries, bit by bit; and the sanitizers. The
 // input picks a hard case by family and seed and then changes doubles of it: to neighbours, to
 // zero, to other doubles of the same case. It is asked with a state that the input makes up, with
-// the state that this leaves where B has moved, and by its spheres only.
+// the state that this leaves where B has moved, and with `far_away` at half the distance.
 //
 // To build and to run it:
 //
@@ -16,8 +16,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "core/batch.hpp"
+#include "core/distance.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/nonsense_state.hpp"
@@ -121,7 +124,7 @@ class Fuzzed {
     const auto faults = judge_.faults(result, truth, c_.pose_a, c_.pose_b);
     for (const std::string& fault : faults) std::fprintf(stderr, "%s\n", fault.c_str());
     if (!faults.empty()) fail();
-    if (!truth.cores_meet()) ask_spheres(truth);
+    if (!truth.cores_meet()) ask_whether_far(truth);
   }
 
   void move(Random& random) {
@@ -155,12 +158,12 @@ class Fuzzed {
   }
 
  private:
-  void ask_spheres(const oracle::ExactDistance& truth) {
+  void ask_whether_far(const oracle::ExactDistance& truth) {
     TrackingState state;
     const DistanceResult r = distance(judge_.a(), judge_.b(), relative_pose(c_.pose_a, c_.pose_b),
                                       state, {.far_away = 0.5 * truth.lower, .depth = false});
     if (truth.compare(r.lower) >= 0 && truth.compare(r.upper) <= 0) return;
-    std::fprintf(stderr, "by spheres: [%.17g, %.17g]\n", r.lower, r.upper);
+    std::fprintf(stderr, "far away: [%.17g, %.17g]\n", r.lower, r.upper);
     fail();
   }
 

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/core/made_shapes.hpp"
 #include "tests/shared/hard_bodies.hpp"

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "tests/shared/exact_oracle.hpp"
 #include "tools/bench/workload.hpp"
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 
 #include "config/cell_file.hpp"
 #include "core/batch.hpp"

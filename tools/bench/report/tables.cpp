@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include "tools/bench/bodies.hpp"
@@ -134,9 +137,11 @@ std::string overlaps(const Figures& figures) {
       const Figure* cold = figures.at("overlap/cold/" + load);
       cells.push_back(tracked && cold ? print("%.2f (%.2f)", 1e-3 * tracked->ns, 1e-3 * cold->ns)
                                       : "-");
-      if (tracked) widest = std::max(widest, tracked->counted("widest_gap"));
+      for (const Figure* f : {tracked, cold}) {
+        if (f) widest = std::max(widest, f->counted("widest_gap"));
+      }
     }
-    cells.push_back(print("%.0e", widest));
+    cells.push_back(widest > 0.0 ? print("%.0e", widest) : "-");
     table.row(cells);
   }
   return table.text();
