@@ -8,6 +8,7 @@
 #include <numbers>
 #include <variant>
 
+#include "core/rounding.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
@@ -338,7 +339,7 @@ TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
     const DistanceResult r = distance(ball(0.0), ball(0.0), pose, state, {.far_away = 1e-200});
     EXPECT_LE(r.lower, 5.0 * unit * (1.0 + 1e-15)) << unit;
     EXPECT_GE(r.upper, 5.0 * unit * (1.0 - 1e-15)) << unit;
-    EXPECT_EQ(r.path == DistancePath::kSpheres, unit > 1e-150) << unit;
+    EXPECT_EQ(r.path == DistancePath::kSpheres, 5.0 * unit > kUnderflow) << unit;
   }
 }
 
