@@ -115,10 +115,7 @@ void McapReader::take(const Record& record, McapMessage& message, bool& found) {
     default:
       return pass_over(record);
   }
-  if (!read_body(record)) {
-    if (!done_) cut_off(record.offset);
-    return;
-  }
+  if (!read_body(record)) return;
   const bool sound = record.kind == McapKind::kMessage ? take_message(body_, message, found)
                                                        : take_definition(record.kind, body_);
   if (!sound && !done_) damage(record.offset, "a record whose content does not fit its length");
@@ -130,10 +127,7 @@ void McapReader::open_chunk(const Record& record) {
   has_chunks_ = true;
   chunk_cut_off_ = record.length > there;
   const Record present{record.kind, record.offset, std::min(record.length, there)};
-  if (!read_body(present)) {
-    if (!done_) cut_off(record.offset);
-    return;
-  }
+  if (!read_body(present)) return;
   McapFields fields(body_);
   static_cast<void>(fields.get<std::uint64_t>());  // smallest log time
   static_cast<void>(fields.get<std::uint64_t>());  // largest

@@ -84,6 +84,7 @@ class McapReader {
   [[nodiscard]] bool read_magic();
   [[nodiscard]] bool next_record(Record& record);
   [[nodiscard]] bool next_indexed_chunk(Record& record);
+  // False, and the reading has ended: it is cut off, or too long.
   [[nodiscard]] bool read_body(const Record& record);
   void pass_over(const Record& record);
   void take(const Record& record, McapMessage& message, bool& found);

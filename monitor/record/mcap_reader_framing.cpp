@@ -55,15 +55,20 @@ bool McapReader::next_indexed_chunk(Record& record) {
 }
 
 bool McapReader::read_body(const Record& record) {
-  const std::uint64_t there = file_.size() - offset_;
-  if (record.length > there) return false;
+  if (record.length > file_.size() - offset_) {
+    cut_off(record.offset);
+    return false;
+  }
   if (record.length > kLargestRecord) {
     damage(record.offset, "a record of " + std::to_string(record.length) +
                               " bytes is more than this reader takes (1 GiB)");
     return false;
   }
   body_.resize(static_cast<std::size_t>(record.length));
-  if (!file_.read(offset_, body_)) return false;
+  if (!file_.read(offset_, body_)) {
+    cut_off(record.offset);
+    return false;
+  }
   offset_ += record.length;
   if (record.kind != McapKind::kDataEnd) crc_ = mcap_crc(crc_, body_);
   return true;
@@ -85,10 +90,7 @@ void McapReader::pass_over(const Record& record) {
 }
 
 void McapReader::end_data(const Record& record) {
-  if (!read_body(record)) {
-    if (!done_) cut_off(record.offset);
-    return;
-  }
+  if (!read_body(record)) return;
   McapFields fields(body_);
   const auto crc = fields.get<std::uint32_t>();
   if (!fields.ok()) return damage(record.offset, "a record whose content does not fit its length");
@@ -104,10 +106,7 @@ void McapReader::end_file(const Record& record) {
   if (!data_ended_)
     return damage(record.offset, "the closing record stands before the end of the data");
   const std::uint32_t before = crc_;
-  if (!read_body(record)) {
-    if (!done_) cut_off(record.offset);
-    return;
-  }
+  if (!read_body(record)) return;
   McapFields fields(body_);
   const auto starts = fields.get_raw(2 * sizeof(std::uint64_t));  // of the summary's parts
   const auto crc = fields.get<std::uint32_t>();

@@ -109,7 +109,6 @@ bool has_truth(const hard::HardCase& c) {
   }
 }
 
-// Of one input.
 class Fuzzed {
  public:
   Fuzzed(const char* family, const hard::HardCase& c) : family_(family), c_(c), judge_(c.a, c.b) {}
@@ -183,16 +182,17 @@ void run(Bytes bytes) {
   Random random(bytes.word());
   hard::HardCase c = family.make(random);
   const std::uint8_t how = bytes.byte();
+  const bool by_input = how % 2 == 1, at_random = how % 4 == 2, moves = how >= 128;
   TrackingState state;
-  if (how % 2 == 1) state = {any_side(bytes), any_side(bytes)};
+  if (by_input) state = {any_side(bytes), any_side(bytes)};
   state.a.deep = bytes.byte() % 2 == 1;
   change(c, bytes);
   if (!has_truth(c)) return;
   Fuzzed fuzzed(family.name, c);
   if (fuzzed.refused()) return;
-  if (how % 4 == 2) state = test::nonsense_state(fuzzed.judge().a(), fuzzed.judge().b(), random);
+  if (at_random) state = test::nonsense_state(fuzzed.judge().a(), fuzzed.judge().b(), random);
   fuzzed.ask(state);
-  if (how >= 128) {
+  if (moves) {
     fuzzed.move(random);
     fuzzed.ask(state);
   }

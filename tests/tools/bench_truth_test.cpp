@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <string>
 
 #include "tests/shared/exact_oracle.hpp"
@@ -35,10 +37,14 @@ TEST_P(BenchTruth, IsOneOfTheDoublesAroundTheExactDistance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, BenchTruth,
-                         testing::Values("f2", "v4", "f6", "boxes", "parallel-boxes", "links"),
+                         testing::Values("f2", "v4", "f6", "boxes", "parallel-boxes", "links",
+                                         "boxes/shallow", "links/middle"),
                          [](const auto& name) {
                            std::string word = name.param;
-                           return word.substr(0, word.find('-'));
+                           std::replace_if(
+                               word.begin(), word.end(),
+                               [](unsigned char c) { return std::ispunct(c) != 0; }, '_');
+                           return word;
                          });
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/ours.hpp"
-#include "tools/bench/overlaps.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/ticks.hpp"
@@ -82,7 +81,6 @@ void register_all() {
   using namespace clearance::bench;
   register_ours();
   register_batches();
-  register_overlaps();
   register_variants();
   register_adjacency();
   register_peers();

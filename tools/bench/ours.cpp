@@ -3,6 +3,7 @@
 #include "core/distance.hpp"
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
+#include "tools/bench/overlaps.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -31,6 +32,10 @@ class Ours {
 void register_ours() {
   register_rows<Ours>("");
   register_intervals<Ours>("");
+  for (const std::string& load : overlap_names()) {
+    register_row<Ours>("overlap/tracked/" + load, load, kTracked);
+    register_row<Ours>("overlap/cold/" + load, load, kCold);
+  }
 }
 
 }  // namespace clearance::bench

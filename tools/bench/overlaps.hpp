@@ -1,10 +1,28 @@
-// overlap/tracked/KIND/HOW and overlap/cold/KIND/HOW: what a depth costs (core/OVERLAP.md). KIND is
-// a workload's kind of bodies; HOW says how far their origins are apart, as a part of what they are
-// when they touch: shallow 97 %, half 50 %, near 10 %, nearer 1 %, middle 0.
+// Pairs of bodies that overlap, for what a depth costs (core/OVERLAP.md).
 #pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/bench/workload.hpp"
 
 namespace clearance::bench {
 
-void register_overlaps();
+inline constexpr const char* kOverlapKinds[] = {"boxes", "links", "f10", "v10", "f40", "v40"};
+
+// How far the bodies' origins are apart.
+struct OverlapDepth {
+  const char* name;
+  double apart;  // of what it is when the bodies touch
+};
+inline constexpr OverlapDepth kOverlapDepths[] = {
+    {"shallow", 0.97}, {"half", 0.5}, {"near", 0.1}, {"nearer", 0.01}, {"middle", 0.0}};
+
+// Ten ways of 100 steps, in which B swings by a hundredth of the distance and by 0.01 rad.
+[[nodiscard]] std::vector<Trajectory> overlapping(const std::string& kind,
+                                                  const OverlapDepth& depth);
+
+// Of all kinds and depths, as workload() takes them: "boxes/shallow", ...
+[[nodiscard]] std::vector<std::string> overlap_names();
 
 }  // namespace clearance::bench

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tools/bench/bodies.hpp"
+#include "tools/bench/overlaps.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -109,6 +110,11 @@ std::vector<Trajectory> trajectories(const std::string& name) {
   for (const int order : kOrders) {
     if (name.substr(1) != std::to_string(order)) continue;
     if (name[0] == 'f' || name[0] == 'v') return balls(name[0], order);
+  }
+  for (const char* kind : kOverlapKinds) {
+    for (const OverlapDepth& depth : kOverlapDepths) {
+      if (name == std::string(kind) + "/" + depth.name) return overlapping(kind, depth);
+    }
   }
   throw std::invalid_argument("there is no workload named '" + name + "'");
 }

@@ -28,7 +28,7 @@ struct Workload {
   [[nodiscard]] std::size_t queries() const;
 };
 
-// All have 40 trajectories of 100 steps and are the same on every machine:
+// The same on every machine; 40 trajectories of 100 steps, but for those of overlaps.hpp:
 //   fN, vN          §3.5, §4.1: two facet-balls of order N, or their duals; each moves 0.02 radius
 //                   and turns 0.01 rad a step; centres come as close as 2.6 to 7 radii
 //   boxes           random boxes on the same kind of way, centres 0.8 to 2 m apart at closest
@@ -41,7 +41,7 @@ struct Workload {
 // The orders of §3.5.
 inline constexpr int kOrders[] = {2, 4, 6, 8, 10, 15, 20, 30, 40};
 
-// Every name, in the order of the tables.
+// Every name but those of overlaps.hpp, in the order of the tables.
 [[nodiscard]] std::vector<std::string> workload_names();
 
 }  // namespace clearance::bench

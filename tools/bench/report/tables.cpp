@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/intervals.hpp"
+#include "tools/bench/overlaps.hpp"
 #include "tools/bench/report/print.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/report/table.hpp"
@@ -123,16 +123,15 @@ std::string moving(const Figures& figures) {
 
 // Tracked and, in brackets, cold.
 std::string overlaps(const Figures& figures) {
-  const char* const how[] = {"shallow", "half", "near", "nearer", "middle"};
   Cells head{""};
-  head.insert(head.end(), std::begin(how), std::end(how));
+  for (const OverlapDepth& depth : kOverlapDepths) head.emplace_back(depth.name);
   head.emplace_back("widest gap, m");
   Table table(head);
-  for (const std::string kind : {"boxes", "links", "f10", "v10", "f40", "v40"}) {
+  for (const std::string kind : kOverlapKinds) {
     Cells cells{kind};
     double widest = 0.0;
-    for (const char* deep : how) {
-      const std::string load = kind + "/" + deep;
+    for (const OverlapDepth& depth : kOverlapDepths) {
+      const std::string load = kind + "/" + depth.name;
       const Figure* tracked = figures.at("overlap/tracked/" + load);
       const Figure* cold = figures.at("overlap/cold/" + load);
       cells.push_back(tracked && cold ? print("%.2f (%.2f)", 1e-3 * tracked->ns, 1e-3 * cold->ns)
@@ -220,8 +219,8 @@ std::string tables(const Figures& figures) {
          "Failures are of 102,400.\n\n"
       << batches(figures)
       << "## Overlapping\n\nHow deep, us a query, tracked and in brackets cold; the columns are "
-         "how "
-         "near the centres are (core/OVERLAP.md), the last one how far apart our bounds are.\n\n"
+         "how near the origins are (core/OVERLAP.md), the last one how far apart our bounds "
+         "are.\n\n"
       << overlaps(figures) << "## Table 3.3: against a QP, without tracking\n\n"
       << against_qp(figures, "cold") << "## Table 3.4: against a QP, with tracking\n\n"
       << against_qp(figures, "tracked")
