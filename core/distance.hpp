@@ -43,15 +43,16 @@ enum class DistancePath : std::uint8_t {
 // up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
 // Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
-// vouch for: lower is -infinity then, distance and normal are NaN, the points lie in both bodies,
-// and upper still bounds the depth (-infinity: certainly no translation).
+// vouch for: lower and distance are -infinity then, the normal is zero, the points lie in both
+// bodies, and upper still bounds the depth (-infinity: certainly no translation).
 //
 // Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing
-// is known: the bounds are infinite, all other numbers NaN, and the status is kIterationLimit.
+// is known: the bounds are infinite, the distance -infinity, normal and points zero, and the status
+// is kIterationLimit. No number is ever a NaN.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;
-  Vec3 normal = Vec3::Zero();  // unit, from A towards B; NaN when unknown
+  Vec3 normal = Vec3::Zero();  // unit, from A towards B; zero when unknown
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // witness points, both in frame A
   DistanceStatus status = DistanceStatus::kIterationLimit;
   DistancePath path = DistancePath::kWalk;

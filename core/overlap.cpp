@@ -228,8 +228,8 @@ void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   r.lower = -found.upper;
   r.upper = -found.lower;
   if (!(found.value < kInfinity)) {
-    r.distance = std::nan("");
-    r.normal = Vec3::Constant(std::nan(""));
+    r.distance = -kInfinity;
+    r.normal = Vec3::Zero();
     return;
   }
   r.distance = std::clamp(-found.value, r.lower, r.upper);

@@ -29,7 +29,7 @@ namespace clearance {
 // normal in the same frame.
 [[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_core, const Vec3& normal,
                                        const ConvexPolyhedron& b) noexcept {
-  return std::isfinite(normal.x()) ? Vec3(on_core - b.radius * normal) : on_core;
+  return on_core - b.radius * normal;
 }
 
 // Witness points move from the cores' surfaces to the rounded bodies'.
@@ -41,10 +41,8 @@ inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
   r.distance -= sum;
   r.lower -= sum + rounding;
   r.upper -= sum - rounding;
-  if (std::isfinite(r.normal.x())) {
-    r.point_on_a += a.radius * r.normal;
-    r.point_on_b = on_rounded_b(r.point_on_b, r.normal, b);
-  }
+  r.point_on_a += a.radius * r.normal;
+  r.point_on_b = on_rounded_b(r.point_on_b, r.normal, b);
   if (r.upper < 0.0) {
     r.status = DistanceStatus::kOverlapping;
   } else if (r.lower <= 0.0 && r.status == DistanceStatus::kConverged) {

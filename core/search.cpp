@@ -24,7 +24,7 @@ struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
   double beyond = 0.0;  // what the points' places may cost beyond the slack
-  Vec3 normal = Vec3::Constant(std::nan(""));
+  Vec3 normal = Vec3::Zero();
 
   [[nodiscard]] double certain_upper() const noexcept { return upper + beyond; }
   void raise(double value, const Vec3& n) noexcept {
@@ -70,7 +70,7 @@ DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& 
   r.lower = bounds.lower - p.slack;
   r.upper = bounds.certain_upper() + p.slack;
   r.distance = bounds.upper;
-  r.normal = bounds.lower > -kInfinity ? unit_along(bounds.normal) : bounds.normal;
+  r.normal = unit_along(bounds.normal);
   r.point_on_a = a.common();
   r.point_on_b = b.common();
   r.status = judge(bounds, p, r);
@@ -202,8 +202,8 @@ void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 // Lengths that overflow leave numbers that are none.
 bool says_something(const DistanceResult& r) noexcept {
-  if (r.status == DistanceStatus::kOverlapping) return r.lower <= r.upper;
-  return r.lower <= r.distance && r.distance <= r.upper && std::isfinite(r.distance);
+  return r.lower <= r.distance && r.distance <= r.upper && r.upper < kInfinity &&
+         r.normal.allFinite() && r.point_on_a.allFinite() && r.point_on_b.allFinite();
 }
 
 }  // namespace
@@ -213,13 +213,7 @@ bool is_a_place(const RelativePose& pose) noexcept {
 }
 
 DistanceResult nothing_known() noexcept {
-  const Vec3 nowhere = Vec3::Constant(std::nan(""));
-  return {.distance = std::nan(""),
-          .lower = -kInfinity,
-          .upper = kInfinity,
-          .normal = nowhere,
-          .point_on_a = nowhere,
-          .point_on_b = nowhere};
+  return {.distance = -kInfinity, .lower = -kInfinity, .upper = kInfinity};
 }
 
 void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& r) noexcept {

@@ -19,7 +19,7 @@ double rounding_of(double gap, double turning, const PlacedPart& a, const Placed
 
 double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
                 const PlacedPart& b) noexcept {
-  if (!a.keeps_direction || !b.keeps_direction) return -kInfinity;
+  if (!a.keeps_direction || !b.keeps_direction || normal.isZero(0.0)) return -kInfinity;
   const double turning = a.turning + b.turning;
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
   const double gap = lower - middles + turning - rounding_of(lower, turning, a, b);

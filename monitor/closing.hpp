@@ -20,7 +20,7 @@ namespace clearance {
           twist.linear.z() + (w.x() * y - w.y() * x)};
 }
 
-// m/s, positive when approaching; `normal` is a unit vector from A towards B. NaN without a normal.
+// m/s, positive when approaching; `normal` is a unit vector from A towards B.
 [[nodiscard]] inline double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b,
                                           const Vec3& normal) noexcept {
   return normal.x() * (velocity_a.x() - velocity_b.x()) +

@@ -200,11 +200,11 @@ void report_on(std::uint32_t pair, const PairSummary& summary,
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;
   report.normal = closest.normal;
+  const bool has_speed = a.velocity_known() && b.velocity_known() && !closest.normal.isZero(0.0);
   report.closing_speed =
-      a.velocity_known() && b.velocity_known()
-          ? closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
-                          velocity_at(closest.witness_b, b.pose, b.twist), closest.normal)
-          : kNan;
+      has_speed ? closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
+                                velocity_at(closest.witness_b, b.pose, b.twist), closest.normal)
+                : kNan;
   report.time_to_contact = time_to_contact(report.distance, report.closing_speed);
   report.evaluated_cycle = summary.evaluated_cycle;
 }

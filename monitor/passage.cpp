@@ -81,7 +81,7 @@ Passage::Instant Passage::look(double s, Evaluation& evaluation) noexcept {
   const Pose frame = pose_on_way(from_b_ ? way_b_ : way_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
   instant.middle = into * (other.ball_in_world.centre - frame.position);
-  if (directed_ && found.normal.allFinite()) {
+  if (directed_) {
     instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
   }
   return instant;

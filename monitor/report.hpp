@@ -42,7 +42,7 @@ struct PairReport {
   // tick: as `lower`. -infinity when unknown, or when an object leapt 10 km.
   double lower_since = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where there is none
+  Vec3 normal = Vec3::Zero();  // unit, from A to B; zero where no translation parts them
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
   // when either velocity is not known: after a first pose without twist, or one that follows a gap
   // longer than twice the age limit, and while a pose is late. Fixed objects are at rest.

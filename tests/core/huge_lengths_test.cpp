@@ -75,11 +75,14 @@ Pose any_pose(Random& random) {
 std::string fault_of(const DistanceResult& r, const oracle::ExactDistance& truth,
                      bool depth_known) {
   if (std::isnan(r.lower) || std::isnan(r.upper)) return "a bound is a NaN";
+  if (!r.normal.allFinite()) return "the normal is not finite";
+  if (!r.point_on_a.allFinite() || !r.point_on_b.allFinite()) return "a point is not finite";
+  const bool unknown = r.upper == kInfinity;
+  if (unknown && r.status != DistanceStatus::kIterationLimit) return "unknown, but has a status";
   if (!(r.lower <= r.upper)) return "the bounds are the wrong way round";
   if (truth.compare(r.lower) < 0) return "the lower bound is above the truth";
   if (depth_known && truth.compare(r.upper) > 0) return "the upper bound is below the truth";
   const bool converged = r.status == DistanceStatus::kConverged;
-  if (std::isnan(r.distance)) return converged ? "converged, but no distance" : "";
   if (!(r.lower <= r.distance && r.distance <= r.upper)) return "the distance is not in the bounds";
   if (converged && !(r.lower > 0.0)) return "converged, but not apart";
   if (r.status == DistanceStatus::kOverlapping && !(r.upper < 0.0)) return "overlapping, it says";

@@ -43,6 +43,27 @@ TEST(MonitorInputs, ClosingSpeedIsUnknownWhileAVelocityIs) {
   EXPECT_FALSE(unknown(tick_with(monitor, 0, test::at(0.1, 0, 0), kStart + 61 * kTick)));
 }
 
+// A floor that is tilted against a fixed one: they overlap without end, and no direction parts
+// them.
+TEST(MonitorInputs, ClosingSpeedIsUnknownWhereNoTranslationParts) {
+  const Scene scene = test::cell_of(
+      {test::moving("ramp", {test::floor()}), test::fixed("floor", {test::floor()}, Pose{})});
+  Monitor monitor(scene);
+  for (int k = 0; k < 3; ++k) {
+    const Report& report =
+        tick_with(monitor, 0, {Vec3::Zero(), test::turned(Vec3::UnitX(), 0.5 + 0.01 * k)},
+                  kStart + k * kTick);
+    EXPECT_TRUE(report.minimum_known);
+    EXPECT_EQ(report.minimum.status, PairStatus::kOverlapping);
+    EXPECT_EQ(report.minimum.distance, -kInfinity);
+    EXPECT_EQ(report.minimum.lower, -kInfinity);
+    EXPECT_EQ(report.minimum.normal, Vec3::Zero());
+    EXPECT_TRUE(report.minimum.witness_a.allFinite());
+    EXPECT_TRUE(std::isnan(report.minimum.closing_speed));
+    EXPECT_EQ(report.minimum.time_to_contact, 0.0);
+  }
+}
+
 TEST(MonitorInputs, VelocitySentWithTheFirstPoseIsKnownAtOnce) {
   const Scene scene = two_balls();
   Monitor monitor(scene);

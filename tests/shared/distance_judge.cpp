@@ -56,7 +56,7 @@ struct Faults {
 
 bool are_numbers(const DistanceResult& r, Faults& faults) {
   const bool finite = std::isfinite(r.distance) && std::isfinite(r.lower) &&
-                      std::isfinite(r.upper) && r.point_on_a.allFinite() &&
+                      std::isfinite(r.upper) && r.normal.allFinite() && r.point_on_a.allFinite() &&
                       r.point_on_b.allFinite();
   faults.unless(finite, text("a figure is not finite: distance %g in [%g, %g]", r.distance, r.lower,
                              r.upper));
@@ -105,10 +105,8 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
 // `beside`: and to where the bodies meet across the normal.
 void look_at_witnesses(const DistanceResult& r, double placed, double beside, Faults& faults) {
   const Vec3 between = r.point_on_b - r.point_on_a;
-  if (r.normal.allFinite()) {
-    faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
-                  text("normal of length %.17g", r.normal.norm()));
-  }
+  faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
+                text("normal of length %.17g", r.normal.norm()));
   if (r.status == DistanceStatus::kTouching) {
     faults.unless(between.norm() <= beside,
                   text("touching, but the witness points are %.3g apart", between.norm()));
@@ -244,6 +242,10 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
                        truth.lower));
     faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
                   text("status %s without a lower bound", name(r.status)));
+    faults.unless(r.distance == -kInfinity && r.normal.isZero(0.0),
+                  text("no lower bound, but a distance of %g", r.distance));
+    faults.unless(r.point_on_a.allFinite() && r.point_on_b.allFinite(),
+                  "no lower bound, and points that are none");
     return faults.all;
   }
   if (!are_numbers(r, faults)) return faults.all;

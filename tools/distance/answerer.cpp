@@ -48,9 +48,7 @@ OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
   out["upper"] = positive(r.upper);
   out["witness_a"] = entry(overlapping ? shared : on_a);
   out["witness_b"] = entry(overlapping ? shared : on_b);
-  out["penetration"] = r.lower > 0.0            ? 0.0
-                       : std::isnan(r.distance) ? r.distance
-                                                : positive(-r.distance);
+  out["penetration"] = r.lower > 0.0 ? 0.0 : positive(-r.distance);
   out["penetration_lower"] = positive(-r.upper);
   out["penetration_upper"] = positive(-r.lower);
   out["normal"] = entry(normal);
