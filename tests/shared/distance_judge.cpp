@@ -221,6 +221,44 @@ bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pos
   }
 }
 
+std::vector<std::string> DistanceJudge::faults_of_no_way_out(const DistanceResult& r,
+                                                             const ExactDistance& truth,
+                                                             const Pose& pose_a,
+                                                             const Pose& pose_b) {
+  Faults faults;
+  faults.unless(truth.cores_meet(), "no lower bound, but they are apart");
+  faults.unless(truth.squared_depth == 0,
+                text("no lower bound and an upper one of %.17g, but the truth is %.17g", r.upper,
+                     truth.lower));
+  faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
+                text("status %s without a lower bound", name(r.status)));
+  const bool overlapping = r.status == DistanceStatus::kOverlapping;
+  faults.unless(overlapping ? r.distance == -kInfinity && r.normal.isZero(0.0)
+                            : r.distance <= r.upper && r.normal.allFinite(),
+                text("no lower bound, but a distance of %g", r.distance));
+  if (!r.point_on_a.allFinite() || !r.point_on_b.allFinite()) {
+    return {"no lower bound, and a point that is none"};
+  }
+  const double reach = size(r, truth, pose_a, pose_b);
+  const double met_at = (oracle::to_vec(truth.point_on_a) - pose_a.position).norm();
+  const bool out_of_sight = kUlp * met_at > kGapTolerance * reach;
+  const auto look = [&](bool in_a, const Vec3& point) {
+    const double placed = kPointTolerance * std::max(reach, point.norm()) + 4.0 * kUnderflow;
+    const double off = in_a ? outside(exact_a_, pose_a, body_a_.radius, point, pose_a)
+                            : outside(exact_b_, pose_b, body_b_.radius, point, pose_a);
+    faults.unless(off <= placed,
+                  text("no lower bound, but a point is %.3g outside %s, tolerance %.3g", off,
+                       in_a ? "A" : "B", placed));
+  };
+  look(true, r.point_on_a);
+  look(false, r.point_on_b);
+  if (!out_of_sight) {
+    look(false, r.point_on_a);
+    look(true, r.point_on_b);
+  }
+  return faults.all;
+}
+
 double DistanceJudge::where_they_part(const DistanceResult& r, const ExactDistance& truth,
                                       const Pose& pose_a, const Pose& pose_b) {
   const auto out_there = [&](const ExactDistance& d) {
@@ -234,20 +272,10 @@ double DistanceJudge::where_they_part(const DistanceResult& r, const ExactDistan
 
 std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const ExactDistance& truth,
                                                const Pose& pose_a, const Pose& pose_b) {
-  Faults faults;
   if (!a_.bounded() && !b_.bounded() && r.lower == -kInfinity) {
-    faults.unless(truth.cores_meet(), "no lower bound, but they are apart");
-    faults.unless(truth.squared_depth == 0,
-                  text("no lower bound and an upper one of %.17g, but the truth is %.17g", r.upper,
-                       truth.lower));
-    faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
-                  text("status %s without a lower bound", name(r.status)));
-    faults.unless(r.distance == -kInfinity && r.normal.isZero(0.0),
-                  text("no lower bound, but a distance of %g", r.distance));
-    faults.unless(r.point_on_a.allFinite() && r.point_on_b.allFinite(),
-                  "no lower bound, and points that are none");
-    return faults.all;
+    return faults_of_no_way_out(r, truth, pose_a, pose_b);
   }
+  Faults faults;
   if (!are_numbers(r, faults)) return faults.all;
   look_at_bounds(r, truth, depth_is_known(truth), faults);
 

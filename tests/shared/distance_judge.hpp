@@ -35,7 +35,8 @@ class DistanceJudge {
   //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
   //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
   //    or touching, are closest beyond what doubles can say; with no lower bound only where two
-  //    unbounded bodies overlap that no translation parts
+  //    unbounded bodies overlap that no translation parts, and then with points in both unless
+  //    they meet beyond what doubles can say
   //  - the witness points, to 1.5e-14: on their bodies, and `distance` apart along the normal; of
   //    two unbounded bodies that meet beyond what doubles can say, beside each other by no more
   //    than the normal's rounding moves them there, and than their size; the normal: unit
@@ -63,6 +64,11 @@ class DistanceJudge {
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
 
+  // Of two unbounded bodies, where the result says that no translation parts them.
+  [[nodiscard]] std::vector<std::string> faults_of_no_way_out(const DistanceResult& r,
+                                                              const oracle::ExactDistance& truth,
+                                                              const Pose& pose_a,
+                                                              const Pose& pose_b);
   // How far from A's origin the closest points are (m); of two unbounded bodies that overlap, of B
   // moved out along the normal: there they would meet.
   [[nodiscard]] double where_they_part(const DistanceResult& r, const oracle::ExactDistance& truth,
