@@ -53,13 +53,13 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
 
 // How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
 // edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
-// that leaves open whether they overlap at all, every ulp counts, and both ways are gone.
+// that comes out too far from `lower`, Depth's, every ulp counts, and both ways are gone.
 double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
-                 const ActiveSide& a, const ActiveSide& b, const Precision& p,
-                 double rounding) noexcept {
+                 const ActiveSide& a, const ActiveSide& b, const Precision& p, double rounding,
+                 double lower) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
   const double by_feature = feature_of_x && body.y().bounded() ? best.height + rounding : kInfinity;
-  if (best.height > rounding && by_feature < kInfinity) return by_feature;
+  if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
   return std::min(by_feature, -separation(s, a, b, p) + p.slack);
 }
 
@@ -181,14 +181,15 @@ Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
   const Separator s = separator(body, best, a, b);
   out.normal = s.normal;
-  out.upper = certified(body, best, s, a, b, p, rounding_of_height(a_from_b, start, best.height));
+  if (!search.ended_early()) {
+    out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
+  }
+  out.upper = certified(body, best, s, a, b, p, rounding_of_height(a_from_b, start, best.height),
+                        out.lower);
   if (!(out.upper < kInfinity)) {
     out.value = kInfinity;
   } else {
     out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
-  }
-  if (!search.ended_early()) {
-    out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
   if (!body.y().bounded()) try_further_directions(a, b, p, out);
   return out;

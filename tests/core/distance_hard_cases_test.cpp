@@ -131,6 +131,8 @@ constexpr OnceWrong kOnceWrong[] = {
     {"sizes", 66500003, "the same, to 1.06e-14"},
     {"bare_cores", 4014800003, "the same, to 1.01e-14 with its radius"},
     {"far_from_origin", 69900003, "a touch bounded to 1.34e-14, asked for the other way round"},
+    {"far_from_origin", 13018900003, "a touch bounded to 1.0035e-14"},
+    {"far_from_origin", 26003500003, "a touch bounded to 1.02e-14, asked for the other way round"},
     {"faint_normals", 12044800007,
      "half of a depth's bounds: which part of an arc neither body goes on along hangs on 1e-130"},
     {"faint_normals", 21184200007, "the same, swapped"},
