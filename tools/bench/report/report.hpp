@@ -24,6 +24,7 @@ inline constexpr const char* kTickRows = "^(tick|sweep)/";
 
 // The parts of them.
 [[nodiscard]] std::string tables(const Figures& figures);
+[[nodiscard]] std::string thesis_tables(const Figures& figures);
 [[nodiscard]] std::string pareto(const Figures& figures);
 [[nodiscard]] std::string tick_tables(const Figures& figures);
 [[nodiscard]] std::string tick_curves(const Figures& figures);
