@@ -91,15 +91,19 @@ HWY_INLINE DistanceResult walked_straight(const ConvexPolyhedron& a, const Conve
 }
 
 // Two of each: another argument costs a query that begins at the beginning 1 ns.
-DistanceResult tracked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                const Pose& world_from_a, const Pose& world_from_b,
-                                TrackingState& state) {
-  return walked_straight(a, b, world_from_a, world_from_b, state, {});
-}
 DistanceResult tracked_anyhow(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                               const Pose& world_from_a, const Pose& world_from_b,
                               TrackingState& state) {
   return walked_anyhow(a, b, world_from_a, world_from_b, state, {});
+}
+// From features that are straight.
+DistanceResult tracked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                const Pose& world_from_a, const Pose& world_from_b,
+                                TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_walked(a, b, state))) {
+    return tracked_anyhow(a, b, world_from_a, world_from_b, state);
+  }
+  return walked_straight(a, b, world_from_a, world_from_b, state, {});
 }
 inline HWY_NOINLINE DistanceResult departed_anyhow(const ConvexPolyhedron& a,
                                                    const ConvexPolyhedron& b,
@@ -111,7 +115,7 @@ inline HWY_NOINLINE DistanceResult departed_anyhow(const ConvexPolyhedron& a,
 DistanceResult departed_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                  const Pose& world_from_a, const Pose& world_from_b,
                                  TrackingState& state, WalkStart start) {
-  if (!begins_straight(a, b, state)) {
+  if (!is_straight(state) || !can_be_walked(a, b, state)) {
     return departed_anyhow(a, b, world_from_a, world_from_b, state, start);
   }
   return walked_straight(a, b, world_from_a, world_from_b, state, start);
@@ -194,7 +198,7 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const Pose& world_from_a, const Pose& world_from_b,
                         TrackingState& state) noexcept {
-  return begins_straight(a, b, state)
+  return is_straight(state)
              ? HWY_STATIC_DISPATCH(tracked_straight)(a, b, world_from_a, world_from_b, state)
              : HWY_STATIC_DISPATCH(tracked_anyhow)(a, b, world_from_a, world_from_b, state);
 }
@@ -222,8 +226,8 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
-  const auto& queries = begins_straight(a, b, state) ? HWY_DISPATCH_TABLE(tracked_straight)
-                                                     : HWY_DISPATCH_TABLE(tracked_anyhow);
+  const auto& queries = is_straight(state) ? HWY_DISPATCH_TABLE(tracked_straight)
+                                           : HWY_DISPATCH_TABLE(tracked_anyhow);
   return queries[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
 

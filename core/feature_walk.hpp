@@ -30,11 +30,14 @@ enum class WalkEnd : std::uint8_t {
          static_cast<std::uint32_t>(side.feature) < body.features[side.dimension];
 }
 
-// Are there such features, of bodies that are apart, and does straight-line code judge them?
-[[nodiscard]] inline bool begins_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                          const TrackingState& state) noexcept {
-  return !state.a.deep && state.a.dimension + state.b.dimension <= 2 &&
-         (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
+// Does straight-line code judge such features, of bodies that are apart,
+[[nodiscard]] inline bool is_straight(const TrackingState& state) noexcept {
+  return !state.a.deep && state.a.dimension + state.b.dimension <= 2;
+}
+// and have these bodies such?
+[[nodiscard]] inline bool can_be_walked(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                        const TrackingState& state) noexcept {
+  return (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
 }
 
 // Moves the features of `state` as far as it gets. Unless it is lost, `result` (of the cores,
