@@ -43,10 +43,10 @@ enum class DistancePath : std::uint8_t {
 // up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
 // Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
-// vouch for: lower is -infinity then, and once they are proved to overlap so is the distance, and
-// the normal is zero. The points lie in both bodies (each in its own, where they meet so far away
-// that doubles cannot say where), and upper still bounds the depth (-infinity: certainly no
-// translation).
+// vouch for: lower is -infinity then, and upper still bounds the depth (-infinity: certainly no
+// translation). Where they are proved to overlap, the distance is -infinity, too, the normal is
+// zero, and the points lie in both bodies, or each in its own, where they meet only farther out
+// than their vertices and origins are.
 //
 // Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing
 // is known: the bounds are infinite, the distance -infinity, normal and points zero, and the status

@@ -30,11 +30,12 @@ enum class WalkEnd : std::uint8_t {
          static_cast<std::uint32_t>(side.feature) < body.features[side.dimension];
 }
 
-// Does straight-line code judge such features, of bodies that are apart,
+// Are the state's features of kinds that straight-line code judges, of bodies that were apart? Does
+// not look at the bodies.
 [[nodiscard]] inline bool is_straight(const TrackingState& state) noexcept {
   return !state.a.deep && state.a.dimension + state.b.dimension <= 2;
 }
-// and have these bodies such?
+// Have the bodies these features, and is one of them bounded?
 [[nodiscard]] inline bool can_be_walked(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                         const TrackingState& state) noexcept {
   return (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);

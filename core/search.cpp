@@ -178,8 +178,9 @@ void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   const double gap = r.upper - r.lower;
   const bool overlapping = r.status == DistanceStatus::kOverlapping;
   if (!overlapping && r.status != DistanceStatus::kTouching) return;
+  if (!(gap < kInfinity)) return;
   const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
-  if (is_as_promised(a, b, p.size, r.upper, gap) || !(gap < kInfinity)) return;
+  if (is_as_promised(a, b, p.size, r.upper, gap)) return;
   const std::optional<RelativePose> nearer = rounded_once(a_from_b);
   if (!nearer) return;
   TrackingState again = state;

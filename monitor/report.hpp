@@ -33,6 +33,7 @@ struct PairReport {
   std::uint32_t part_a = 0, part_b = 0;  // which parts are closest, indices into Object::parts
   PairStatus status = PairStatus::kUnknown;
   // Signed, margins not subtracted. Distance, witnesses and normal are those of `evaluated_cycle`.
+  // -infinity, and so is `lower`, where no translation parts two objects without end.
   double distance = 0.0;
   double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
   // Holds at every instant since the last tick, for objects that went from the pose in use then to

@@ -1,5 +1,6 @@
 // The part of triage that finds the minimum: the horizon, and the search in order of lower bounds.
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "monitor/triage.hpp"
@@ -16,9 +17,10 @@ constexpr int kMostRaises = 8;  // a tick
 
 }  // namespace
 
-// The horizon stays a little above the minimum of the last tick.
+// The horizon stays a little above the minimum of the last tick. What no translation parts
+// (-infinity) moves it nowhere: every minimum is below it.
 void Triage::follow_minimum() noexcept {
-  if (!(smallest_upper_ < kInfinity)) return;
+  if (!std::isfinite(smallest_upper_)) return;
   const double horizon = broad_phase_.horizon();
   const double best = smallest_upper_ + kHeadroom;
   if (!(horizon > -kInfinity) || best < horizon - kHeadroom) {

@@ -165,7 +165,7 @@ TEST(Penetration, OfFacingHalfSpacesIsHowFarTheyReachIntoEachOther) {
   expect_depth(cold(floor, ceiling, at(5, 6, 0)), 2.0, 20);
 }
 
-TEST(Penetration, IsUnknownWhereNoTranslationParts) {
+TEST(Penetration, IsWithoutEndWhereNoTranslationParts) {
   ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
   const ConvexPolyhedron wall = test::half_space({1, 0, 0}, 0.0);
   for (const double radius : {0.0, 0.25}) {
@@ -177,6 +177,7 @@ TEST(Penetration, IsUnknownWhereNoTranslationParts) {
     EXPECT_LT(r.upper, 0.0);
     EXPECT_TRUE(r.normal.isZero(0.0));
     EXPECT_TRUE(r.point_on_a.allFinite());
+    EXPECT_TRUE(r.point_on_b.allFinite());
   }
 }
 

@@ -235,13 +235,12 @@ std::vector<std::string> DistanceJudge::faults_of_no_way_out(const DistanceResul
   const bool overlapping = r.status == DistanceStatus::kOverlapping;
   faults.unless(overlapping ? r.distance == -kInfinity && r.normal.isZero(0.0)
                             : r.distance <= r.upper && r.normal.allFinite(),
-                text("no lower bound, but a distance of %g", r.distance));
-  if (!r.point_on_a.allFinite() || !r.point_on_b.allFinite()) {
-    return {"no lower bound, and a point that is none"};
-  }
-  const double reach = size(r, truth, pose_a, pose_b);
+                text("no lower bound, but a distance of %g, or a normal", r.distance));
+  const bool points = r.point_on_a.allFinite() && r.point_on_b.allFinite();
+  faults.unless(points, "no lower bound, and a point that is none");
+  if (!points) return faults.all;
+  const double reach = size(0.0, pose_a, pose_b);
   const double met_at = (oracle::to_vec(truth.point_on_a) - pose_a.position).norm();
-  const bool out_of_sight = kUlp * met_at > kGapTolerance * reach;
   const auto look = [&](bool in_a, const Vec3& point) {
     const double placed = kPointTolerance * std::max(reach, point.norm()) + 4.0 * kUnderflow;
     const double off = in_a ? outside(exact_a_, pose_a, body_a_.radius, point, pose_a)
@@ -252,7 +251,7 @@ std::vector<std::string> DistanceJudge::faults_of_no_way_out(const DistanceResul
   };
   look(true, r.point_on_a);
   look(false, r.point_on_b);
-  if (!out_of_sight) {
+  if (overlapping && met_at <= reach) {
     look(false, r.point_on_a);
     look(true, r.point_on_b);
   }

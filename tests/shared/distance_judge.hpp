@@ -35,8 +35,8 @@ class DistanceJudge {
   //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
   //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
   //    or touching, are closest beyond what doubles can say; with no lower bound only where two
-  //    unbounded bodies overlap that no translation parts, and then with points in both unless
-  //    they meet beyond what doubles can say
+  //    unbounded bodies overlap that no translation parts; proved so, with points in both unless
+  //    they meet farther out than they are apart and reach
   //  - the witness points, to 1.5e-14: on their bodies, and `distance` apart along the normal; of
   //    two unbounded bodies that meet beyond what doubles can say, beside each other by no more
   //    than the normal's rounding moves them there, and than their size; the normal: unit

@@ -118,6 +118,21 @@ TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
   }
 }
 
+TEST_F(DistanceTool, SaysNullWhereNoTranslationParts) {
+  const Outcome r =
+      run("--cases - --out -", R"({"id":"corner","a":{"halfspaces":[[0,0,1,0]]},"b":{"halfspaces":)"
+                               R"([[1,0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})"
+                               "\n");
+  EXPECT_EQ(r.status, 0) << r.err;
+  ASSERT_EQ(r.lines.size(), 1u);
+  EXPECT_EQ(r.lines[0]["distance"], 0.0);
+  for (const char* length : {"penetration", "penetration_lower", "penetration_upper"}) {
+    EXPECT_TRUE(r.lines[0][length].is_null()) << length << ' ' << r.out;
+  }
+  EXPECT_EQ(r.lines[0]["normal"], Json::array({0.0, 0.0, 0.0}));
+  EXPECT_TRUE(r.lines[0]["deepest_a"][0].is_number()) << r.out;
+}
+
 TEST_F(DistanceTool, PutsTheWitnessPointOfABodyFarFromTheOtherOneOnItToItsOwnRounding) {
   const Outcome r =
       run("--cases - --out -", R"({"id":"far","a":{"vertices":[[0,0,0]],"radius":0.5},)"
