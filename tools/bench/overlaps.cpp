@@ -10,7 +10,7 @@
 namespace clearance::bench {
 namespace {
 
-constexpr int kMotions = 10, kSteps = 100;
+constexpr int kMotions = 10;
 
 Body body(const std::string& kind, Random& random) {
   if (kind == "boxes") return std::make_shared<const ConvexPolyhedron>(random_box(random));
@@ -39,8 +39,8 @@ Trajectory swing(const std::string& kind, const OverlapDepth& depth, Random& ran
   const Pose a{Vec3::Zero(), random.turn()}, b{Vec3::Zero(), random.turn()};
   const Vec3 along = random.direction(), across = random.direction(), axis = random.direction();
   const double apart = depth.apart * apart_at_touch(pair, a, b, along);
-  for (int k = 0; k < kSteps; ++k) {
-    const double part = 0.01 * std::sin(2.0 * std::numbers::pi * k / kSteps);
+  for (int k = 0; k < kTrajectorySteps; ++k) {
+    const double part = 0.01 * std::sin(2.0 * std::numbers::pi * k / kTrajectorySteps);
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(part, axis));
     pair.poses.emplace_back(a, Pose{apart * (along + part * across), turn * b.orientation});
   }

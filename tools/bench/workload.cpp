@@ -11,7 +11,6 @@ namespace clearance::bench {
 namespace {
 
 constexpr int kTrajectories = 40;
-constexpr int kSteps = 100;
 
 struct Drift {
   double step, turn;  // m, rad, of each body at each step
@@ -28,8 +27,8 @@ std::vector<Pose> drift(Random& random, const Vec3& middle, const Drift& by) {
   const Vec3 along = random.direction(), axis = random.direction();
   const Eigen::Quaterniond start = random.turn();
   std::vector<Pose> poses;
-  for (int k = 0; k < kSteps; ++k) {
-    const Vec3 position = middle + by.step * (k - kSteps / 2) * along;
+  for (int k = 0; k < kTrajectorySteps; ++k) {
+    const Vec3 position = middle + by.step * (k - kTrajectorySteps / 2) * along;
     poses.push_back({position, (turn(axis, by.turn * k) * start).normalized()});
   }
   return poses;
@@ -52,7 +51,7 @@ std::vector<std::pair<Pose, Pose>> pass(Random& random, const Drift& by, double 
     const std::vector<Pose> b = drift(random, random.uniform(nearest, farthest) * direction, by);
     if (closest_centres(a, b) < nearest) continue;
     std::vector<std::pair<Pose, Pose>> poses;
-    for (int k = 0; k < kSteps; ++k) poses.emplace_back(a[k], b[k]);
+    for (int k = 0; k < kTrajectorySteps; ++k) poses.emplace_back(a[k], b[k]);
     return poses;
   }
 }
@@ -93,8 +92,8 @@ std::vector<Trajectory> sliding_boxes() {
     way[across] = 0.0;
     const double apart = a->bounding_radius + b->bounding_radius + random.uniform(0.0, 0.5);
     Trajectory t{a, b, {}};
-    for (int k = 0; k < kSteps; ++k) {
-      Vec3 centre = 0.02 * (k - kSteps / 2) * way;
+    for (int k = 0; k < kTrajectorySteps; ++k) {
+      Vec3 centre = 0.02 * (k - kTrajectorySteps / 2) * way;
       centre[across] = apart;
       t.poses.push_back({{Vec3::Zero(), both}, {both * centre, both}});
     }

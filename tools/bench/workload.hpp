@@ -38,6 +38,8 @@ struct Workload {
 // Made at first use and kept. Throws std::invalid_argument for any other name.
 [[nodiscard]] const Workload& workload(const std::string& name);
 
+inline constexpr int kTrajectorySteps = 100;
+
 // The orders of §3.5.
 inline constexpr int kOrders[] = {2, 4, 6, 8, 10, 15, 20, 30, 40};
 
