@@ -65,7 +65,7 @@ constexpr const char* kHelp =
     "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
     "  --version          says which one it is\n"
     "  --report DIR       runs all but cells, ticks, sweeps, variants of all but\n"
-    "                     facet-balls and variant/moved/cold, in three to four minutes,\n"
+    "                     facet-balls and variant/moved/cold, in two to four minutes,\n"
     "                     and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
     "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
