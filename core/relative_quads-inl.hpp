@@ -42,14 +42,14 @@ HWY_INLINE Quad point_to_b(const RelativeQuads& r, Quad p) {
   return direction_to_b(r, p - r.translation);
 }
 
-// conj(a) * b: the orientation of B as seen from A.
-HWY_INLINE Quad relative(Quad a, Quad b) {
+// conj(a) * b: the orientation of B as seen from A. b is spread as it is loaded: permutations of
+// registers are what queries wait for.
+HWY_INLINE Quad relative(Quad a, const double* b) {
   const Quad by_x = with_signs(pick<3, 2, 1, 0>(a), quad(0.0, -0.0, 0.0, 0.0));
   const Quad by_y = with_signs(pick<2, 3, 0, 1>(a), quad(0.0, 0.0, -0.0, 0.0));
   const Quad by_z = with_signs(pick<1, 0, 3, 2>(a), quad(-0.0, 0.0, 0.0, 0.0));
   const Quad by_w = with_signs(a, quad(-0.0, -0.0, -0.0, 0.0));
-  return (spread(lane(b, 0)) * by_x + spread(lane(b, 1)) * by_y) +
-         (spread(lane(b, 2)) * by_z + spread(lane(b, 3)) * by_w);
+  return (spread(b[0]) * by_x + spread(b[1]) * by_y) + (spread(b[2]) * by_z + spread(b[3]) * by_w);
 }
 
 HWY_INLINE double square_of(Quad q) {
@@ -110,7 +110,7 @@ inline HWY_NOINLINE RelativeQuads rescaled_quads(const Pose& world_from_a,
 template <bool kRescaled>
 HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b) {
   const Quad a = load4(world_from_a.orientation.coeffs().data());
-  const Quad q = relative(a, load4(world_from_b.orientation.coeffs().data()));
+  const Quad q = relative(a, world_from_b.orientation.coeffs().data());
   if (!kRescaled && (is_out_of_range(a) || is_out_of_range(q))) {
     return rescaled_quads(world_from_a, world_from_b);
   }
