@@ -18,11 +18,12 @@ namespace clearance {
 }
 
 // Will bounds of the cores' distance, `gap` from each other, be as near as a converged answer's
-// when the radii are taken off? `size`: Precision::size.
+// when the radii are taken off? Each is widened by what that may round, and then rounded, by as
+// much at most. `size`: Precision::size.
 [[nodiscard]] inline bool is_as_promised(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                          double size, double distance, double gap) noexcept {
   const double sum = radii(a, b);
-  return gap + 2.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
+  return gap + 4.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
 }
 
 // B's witness point of a result with radii, from the core's (TrackingState); both and the result's

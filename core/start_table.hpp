@@ -12,7 +12,7 @@ namespace clearance {
 
 // A cube around the origin, each face a grid; a direction's cell names the vertex that is farthest
 // along the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the walk from there is
-// 3 edges long on average, and the table is smaller than the vertices of a body of 40 facets.
+// 3 edges long on average, and the table is no larger than the vertices of a body of 26 facets.
 class StartTable {
  public:
   static constexpr int kGrid = 8;
@@ -22,7 +22,7 @@ class StartTable {
     return cells_[static_cast<std::size_t>(cell(direction))];
   }
   void set(int cell, std::int32_t vertex) noexcept {
-    cells_[static_cast<std::size_t>(cell)] = static_cast<std::uint16_t>(vertex);
+    cells_[static_cast<std::size_t>(cell)] = vertex;
   }
 
   // Any direction, zero and NaN included, has a cell.
@@ -48,7 +48,7 @@ class StartTable {
     const double s = from_middle + 0.5 * kGrid;
     return s > 0.0 ? (s < kGrid ? static_cast<int>(s) : kGrid - 1) : 0;
   }
-  std::array<std::uint16_t, kCells> cells_{};
+  std::array<std::int32_t, kCells> cells_{};
 };
 
 }  // namespace clearance

@@ -1,7 +1,6 @@
 #include "core/walking_tables.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/rounding.hpp"
 
@@ -97,9 +96,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
   add_neighbours(body);
   add_facet_sides(body);
   add_planes(body);
-  if (body.vertices.empty() || body.vertices.size() > std::numeric_limits<std::uint16_t>::max()) {
-    return;
-  }
+  if (body.vertices.empty()) return;
   std::int32_t at = 0;
   for (int cell = 0; cell < StartTable::kCells; ++cell) {
     at = farthest(body, StartTable::middle(cell), at);

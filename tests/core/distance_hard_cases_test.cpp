@@ -216,6 +216,19 @@ TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
   EXPECT_TRUE(faults.empty()) << joined(faults);
 }
 
+// What taking the radius off its bounds rounds was not counted in how far they may be apart: 98
+// ulps, of 97.6 that are promised.
+TEST(Distance, OfASphereInTheMiddleOfABodyIsBoundedToRounding) {
+  DistanceJudge judge({{}, {Vec3::Zero()}, 0.006242449012769245}, hard::facet_ball(6));
+  const Pose pose_b{Vec3(3.1709858964243656e-12, -1.9753015121804393e-13, 8.056155278403053e-13),
+                    Eigen::Quaterniond(0.47058040852605704, -0.5260449001682321,
+                                       0.6104855025525734, -0.3593581685332556)};
+  TrackingState state;
+  const auto faults =
+      judge.faults(judge.ask({}, pose_b, state), judge.truth({}, pose_b), {}, pose_b);
+  EXPECT_TRUE(faults.empty()) << joined(faults);
+}
+
 // A move through the inside ended on the plane of a facet that is level with another to rounding, a
 // metre beside it: the next one left the body, and the upper bound was 1.7e-5 m too low.
 TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {

@@ -54,6 +54,7 @@ std::vector<double*> doubles_of(hard::HardCase& c) {
     for (Vec3& point : body->points) {
       for (int k = 0; k < 3; ++k) out.push_back(&point[k]);
     }
+    out.push_back(&body->radius);
   }
   for (Pose* pose : {&c.pose_a, &c.pose_b}) {
     for (int k = 0; k < 3; ++k) out.push_back(&pose->position[k]);
@@ -98,8 +99,10 @@ TrackingState::Side any_side(Bytes& bytes) {
   return out;
 }
 
-// Empty bodies and zero quaternions have no truth to be held against.
+// Empty bodies, radii that none has and zero quaternions have no truth to be held against.
 bool has_truth(const hard::HardCase& c) {
+  const auto is_radius = [](double r) { return r >= 0.0 && r <= kLargestCoordinate; };
+  if (!is_radius(c.a.radius) || !is_radius(c.b.radius)) return false;
   if (c.pose_a.orientation.norm() == 0.0 || c.pose_b.orientation.norm() == 0.0) return false;
   try {
     oracle::ExactBody a(c.a), b(c.b);
