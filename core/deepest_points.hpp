@@ -16,7 +16,7 @@ namespace clearance {
 // Facets n.x <= d of a body, of no more than kMostFacets.
 class DeepestPoints {
  public:
-  static constexpr std::size_t kMostFacets = 4096;
+  static constexpr std::size_t kMostFacets = 16384;
   static constexpr std::size_t kMostPoints = 4;
 
   // A point, or the ball around it, all of which belongs to the other body: that reaches d - n.at +

@@ -9,8 +9,8 @@ namespace {
 // Parts of one arc that wait their turn. A split leaves one behind, and the other shrinks by a
 // vertex of Y's outline at least; on the hard cases of tests/ no more than 4 have ever waited.
 constexpr std::size_t kWaiting = 48;
-// Samples of one arc; more than the vertices on the outline of any body of some thousand facets.
-constexpr int kSamples = 1024;
+// Samples of one arc, or as many as Y has vertices: more than are on its outline.
+constexpr std::size_t kSamples = 1024;
 
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
@@ -169,7 +169,8 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
   std::array<Part, kWaiting> waiting;
   std::size_t count = 1;
   waiting[0] = {first, last};
-  for (int samples = 0; count > 0;) {
+  const std::size_t most = std::max(kSamples, body_.y().anchors.size());
+  for (std::size_t samples = 0; count > 0;) {
     const Part part = waiting[--count];
     const Sample &l = part.l, &r = part.r;
     const double bound = std::max(std::min(l.height(), l.corner.dot(r.at)),
@@ -188,7 +189,7 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
     }
     const Sample middle = sample(arc, m);
     const double crossing = std::min(l.corner.dot(middle.at), r.corner.dot(middle.at));
-    if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > kSamples) {
+    if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > most) {
       lower_to(std::min({l.height(), crossing, r.height()}));
       continue;
     }

@@ -273,17 +273,6 @@ TEST(Penetration, ChangesByNoMoreThanTheBodiesMoveThroughContactToo) {
   });
 }
 
-TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
-  const ConvexPolyhedron a = made(hard::facet_ball(15)), b = made(hard::dual_ball(10));
-  Random random(3);
-  for (int k = 0; k < 20; ++k) {
-    const Pose pose_b{random.direction() * random.uniform(0.0, 1.8), random.rotation()};
-    const DistanceResult r = cold(a, b, pose_b);
-    EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
-    EXPECT_LE(r.upper - r.lower, 5e-14);
-  }
-}
-
 TEST(Penetration, AllocatesNothingAndGivesTheSameBits) {
   for_each_overlap(20, [](Overlap& o, Random&) {
     const ConvexPolyhedron a = made(o.a), b = made(o.b);
