@@ -1,7 +1,7 @@
 // The distances of many pairs at once: the same answers as distance(), bit for bit, for less.
 //
-// Pairs whose last features are still the closest are judged by vector code, 2, 4 or 8 at a time,
-// whichever the machine has (run-time choice through Highway; the results do not depend on it). The
+// Pairs whose last features are still the closest are judged by vector code, 1, 2, 4 or 8 at a
+// time, whichever the machine has (run-time choice through Highway; the results do not depend on it). The
 // others go through distance(), one by one. Made for pairs that are tracked: bodies that move a
 // little between two rounds.
 #pragma once
@@ -22,8 +22,8 @@ struct BodyPair {
 
 class DistanceBatch {
  public:
-  // The bodies must outlive the batch. All memory is allocated here: about 0.9 kB a pair and 64
-  // bytes a body. Indices must be below bodies.size(); a body may be in any number of pairs.
+  // The bodies must outlive the batch. All memory is allocated here: about 1 kB a pair, 64 bytes a
+  // body, and 120 kB. Indices must be below bodies.size(); a body may be in any number of pairs.
   DistanceBatch(std::span<const ConvexPolyhedron* const> bodies, std::span<const BodyPair> pairs);
   ~DistanceBatch();
   DistanceBatch(DistanceBatch&&) noexcept;

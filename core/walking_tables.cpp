@@ -82,6 +82,18 @@ void add_planes(ConvexPolyhedron& body) {
   }
 }
 
+// What grew while the body was made keeps no room to grow in.
+void release_spare_room(ConvexPolyhedron& body) {
+  body.facets.shrink_to_fit();
+  body.edges.shrink_to_fit();
+  body.vertices.shrink_to_fit();
+  body.facet_edges.shrink_to_fit();
+  body.vertex_edges.shrink_to_fit();
+  body.anchors.shrink_to_fit();
+  body.neighbours.shrink_to_fit();
+  body.facets_beside.shrink_to_fit();
+}
+
 }  // namespace
 
 void add_walking_tables(ConvexPolyhedron& body) {
@@ -96,6 +108,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
   add_neighbours(body);
   add_facet_sides(body);
   add_planes(body);
+  release_spare_room(body);
   if (body.vertices.empty()) return;
   std::int32_t at = 0;
   for (int cell = 0; cell < StartTable::kCells; ++cell) {

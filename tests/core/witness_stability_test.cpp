@@ -157,7 +157,7 @@ TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) { expect_jumps({1e-11
 
 // Rounding decides there which of the steps of a turn are level.
 TEST(Witnesses, OfFacesAtTheBrinkOfLevelJumpAtMostThriceATurnOnAverage) {
-  expect_jumps({1e-15, 1e-14, 1e-13, 1e-12}, 3);
+  expect_jumps({7e-16, 1e-15, 2e-15, 5e-15, 1e-14, 1e-13, 1e-12}, 3);
 }
 
 // Bars that lie on an edge and cross in the middle: as deep upwards as downwards, across two pairs

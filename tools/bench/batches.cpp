@@ -22,12 +22,21 @@ constexpr std::size_t kPairs = 512;
 // Pairs that start on the same trajectory are this many steps apart.
 constexpr std::size_t kApart = 8;
 
-// Many pairs of a workload at once, each with bodies of its own, back and forth along its way.
+// As in a cell, bodies in many places have their shapes in common; or not one has, and all shapes
+// are in memory as often as bodies are.
+enum class Shapes { kInCommon, kOfTheirOwn };
+
+// Many pairs of a workload at once, each of two bodies that move by themselves, back and forth
+// along its way.
 struct Fleet {
-  explicit Fleet(const Workload& of) : load(of) {
+  Fleet(const Workload& of, Shapes whose) : load(of) {
+    copies.reserve(2 * kPairs);
+    const auto add = [&](const ConvexPolyhedron& shape) {
+      shapes.push_back(whose == Shapes::kInCommon ? &shape : &copies.emplace_back(shape));
+    };
     for (std::uint32_t i = 0; i < kPairs; ++i) {
-      shapes.push_back(trajectory(i).a.get());
-      shapes.push_back(trajectory(i).b.get());
+      add(*trajectory(i).a);
+      add(*trajectory(i).b);
       pairs.push_back({2 * i, 2 * i + 1});
     }
     poses.resize(shapes.size());
@@ -51,6 +60,7 @@ struct Fleet {
   }
 
   const Workload& load;
+  std::vector<ConvexPolyhedron> copies;
   std::vector<const ConvexPolyhedron*> shapes;
   std::vector<BodyPair> pairs;
   std::vector<Pose> poses;  // of this step
@@ -128,9 +138,10 @@ std::int64_t up_to(std::int64_t target) {
 }
 
 template <class Solver>
-void register_fleet(const std::string& name, const std::string& load, std::int64_t target) {
+void register_fleet(const std::string& name, const std::string& load, std::int64_t target,
+                    Shapes shapes = Shapes::kInCommon) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-    Fleet fleet(workload(load));
+    Fleet fleet(workload(load), shapes);
     hwy::SetSupportedTargetsForTest(up_to(target));
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     time_fleet<Solver>(state, fleet);
@@ -150,6 +161,10 @@ void register_batches() {
       register_fleet<Batched>(std::string("batch/") + hwy::TargetName(target) + "/" + load, load,
                               target);
     }
+  }
+  for (const std::string load : {"boxes", "links"}) {
+    register_fleet<Batched>("batch/own/" + load, load, 0, Shapes::kOfTheirOwn);
+    register_fleet<OneByOne>("batch/own/single/" + load, load, 0, Shapes::kOfTheirOwn);
   }
 }
 
