@@ -106,14 +106,19 @@ bool DepthSearch::is_settled(const Facing& facing, std::int32_t facet,
   return true;
 }
 
-// In Y's frame. X's farthest point along the best direction settles most facets of Y, and the ball
-// in its middle those on the far side.
+// In Y's frame.
 void DepthSearch::facets_of_y_bounded() noexcept {
+  const ConvexPolyhedron& x = body_.x();
+  if (!DeepestCorners::fit(x.anchors)) return facets_of_y_by_points();
+  const Facing facing = y_facing_x();
+  take_least(facing, DeepestCorners(body_.y(), x.anchors, facing.body_from_other));
+}
+
+// X's farthest point along the best direction settles most facets of Y, and the ball in its middle
+// those on the far side.
+void DepthSearch::facets_of_y_by_points() noexcept {
   const Facing facing = y_facing_x();
   const ConvexPolyhedron& x = body_.x();
-  if (DeepestCorners::fit(x.anchors)) {
-    return take_least(facing, DeepestCorners(body_.y(), x.anchors, facing.body_from_other));
-  }
   DeepestPoints of_x(body_.y());
   of_x.add_ball(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
   if (best_.source != Source::kNothing) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,6 +37,7 @@ class DeepestPoints {
 
   explicit DeepestPoints(const ConvexPolyhedron& body) noexcept : body_(body) {
     std::fill_n(corners_.begin(), body.facets.size(), kNoCorner);
+    unlist_all();
   }
 
   [[nodiscard]] static bool fits(const ConvexPolyhedron& body) noexcept {
@@ -84,19 +84,24 @@ class DeepestPoints {
     });
   }
   [[nodiscard]] bool is_listed(std::int32_t facet) const noexcept {
-    return listed_[static_cast<std::size_t>(facet)];
+    const auto i = static_cast<std::size_t>(facet);
+    return (listed_[i / kBits] >> (i % kBits) & 1) != 0;
   }
 
  private:
   // Vectors of up to four run over the end.
   static constexpr std::size_t kRow = kMostFacets + 4;
+  static constexpr std::size_t kBits = 64;
+
+  // Only where there are facets: a row for the most of them is 2 kB.
+  void unlist_all() noexcept { std::fill_n(listed_.begin(), body_.facets.size() / kBits + 1, 0); }
 
   const ConvexPolyhedron& body_;
   std::array<Point, kMostPoints> points_;
   std::size_t count_ = 0, ball_ = kMostPoints;
   std::array<std::uint16_t, kRow> list_;
   std::array<std::uint16_t, kMostFacets> corners_;  // [facet]
-  std::bitset<kMostFacets> listed_;
+  std::array<std::uint64_t, kMostFacets / kBits + 1> listed_;  // a bit a facet
 };
 
 }  // namespace clearance

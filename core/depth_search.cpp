@@ -169,7 +169,6 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
   std::array<Part, kWaiting> waiting;
   std::size_t count = 1;
   waiting[0] = {first, last};
-  const std::size_t most = std::max(kSamples, body_.y().anchors.size());
   for (std::size_t samples = 0; count > 0;) {
     const Part part = waiting[--count];
     const Sample &l = part.l, &r = part.r;
@@ -189,7 +188,8 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
     }
     const Sample middle = sample(arc, m);
     const double crossing = std::min(l.corner.dot(middle.at), r.corner.dot(middle.at));
-    if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || ++samples > most) {
+    const bool enough = ++samples > kSamples && samples > body_.y().anchors.size();
+    if (middle.height() - crossing <= tight_ || count + 2 > kWaiting || enough) {
       lower_to(std::min({l.height(), crossing, r.height()}));
       continue;
     }

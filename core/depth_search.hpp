@@ -128,8 +128,10 @@ class DepthSearch {
   [[nodiscard]] bool is_settled(const Facing& facing, std::int32_t facet,
                                 std::int32_t corner) noexcept;
   void few_corners() noexcept;
-  void many_corners() noexcept;
   void facets_of_y_bounded() noexcept;
+  // 66 kB of stack each, which a body of few corners does not go past.
+  [[gnu::noinline]] void many_corners() noexcept;
+  [[gnu::noinline]] void facets_of_y_by_points() noexcept;
   void arcs(DeepestCorners& of_y) noexcept;
   void arcs(DeepestPoints& of_y) noexcept;
   void arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept;
