@@ -1,9 +1,9 @@
 // The distances of many pairs at once: the same answers as distance(), bit for bit, for less.
 //
 // Pairs whose last features are still the closest are judged by vector code, 1, 2, 4 or 8 at a
-// time, whichever the machine has (run-time choice through Highway; the results do not depend on it). The
-// others go through distance(), one by one. Made for pairs that are tracked: bodies that move a
-// little between two rounds.
+// time, whichever the machine has (run-time choice through Highway; the results do not depend on
+// it). The others go through distance(), one by one. Made for pairs that are tracked: bodies that
+// move a little between two rounds.
 #pragma once
 
 #include <cstddef>

@@ -100,7 +100,7 @@ class DeepestPoints {
   std::array<Point, kMostPoints> points_;
   std::size_t count_ = 0, ball_ = kMostPoints;
   std::array<std::uint16_t, kRow> list_;
-  std::array<std::uint16_t, kMostFacets> corners_;  // [facet]
+  std::array<std::uint16_t, kMostFacets> corners_;             // [facet]
   std::array<std::uint64_t, kMostFacets / kBits + 1> listed_;  // a bit a facet
 };
 

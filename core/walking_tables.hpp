@@ -5,8 +5,8 @@
 
 namespace clearance {
 
-// Fills `outgoing`, `facet_sides`, `planes` and `start` from the rest, and keeps no memory to spare.
-// The factories' last step.
+// Fills `outgoing`, `facet_sides`, `planes` and `start` from the rest, and keeps no memory to
+// spare. The factories' last step.
 void add_walking_tables(ConvexPolyhedron& body);
 
 }  // namespace clearance

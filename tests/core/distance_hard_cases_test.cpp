@@ -221,8 +221,8 @@ TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
 TEST(Distance, OfASphereInTheMiddleOfABodyIsBoundedToRounding) {
   DistanceJudge judge({{}, {Vec3::Zero()}, 0.006242449012769245}, hard::facet_ball(6));
   const Pose pose_b{Vec3(3.1709858964243656e-12, -1.9753015121804393e-13, 8.056155278403053e-13),
-                    Eigen::Quaterniond(0.47058040852605704, -0.5260449001682321,
-                                       0.6104855025525734, -0.3593581685332556)};
+                    Eigen::Quaterniond(0.47058040852605704, -0.5260449001682321, 0.6104855025525734,
+                                       -0.3593581685332556)};
   TrackingState state;
   const auto faults =
       judge.faults(judge.ask({}, pose_b, state), judge.truth({}, pose_b), {}, pose_b);

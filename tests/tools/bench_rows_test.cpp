@@ -33,9 +33,10 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
       }
     }
   }
-  for (const char* name : {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes",
-                           "batch/links", "batch/own/boxes", "peer/qp/tracked/f2", "interval/100/f2",
-                           "overlap/tracked/boxes/middle", "cell/batch/two_arms"}) {
+  for (const char* name :
+       {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes", "batch/links",
+        "batch/own/boxes", "peer/qp/tracked/f2", "interval/100/f2", "overlap/tracked/boxes/middle",
+        "cell/batch/two_arms"}) {
     EXPECT_TRUE(there.contains(name)) << name;
   }
 }
