@@ -34,8 +34,8 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
 }
 
 // How far B must go along n, of any length, to come clear of A.
-double height(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b,
-              const Vec3& n) {
+double way_out_along(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b,
+                     const Vec3& n) {
   long double reach_a = -kInfinity, reach_b = -kInfinity;
   const auto along = [&](const Vec3& p) {
     return static_cast<long double>(n.x()) * p.x() + static_cast<long double>(n.y()) * p.y() +
@@ -50,10 +50,12 @@ double height(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& 
 
 // The difference body's facets stand across a facet of one of them or an edge of each; any other
 // direction only takes longer.
-double least_height(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
+double shortest_way_out(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
   const Eigen::Quaterniond turn = pose_b.orientation.normalized();
   double least = kInfinity;
-  const auto attempt = [&](const Vec3& n) { least = std::min(least, height(a, b, pose_b, n)); };
+  const auto attempt = [&](const Vec3& n) {
+    least = std::min(least, way_out_along(a, b, pose_b, n));
+  };
   for (const Facet& facet : a.facets) attempt(facet.normal);
   for (const Facet& facet : b.facets) attempt(-(turn * facet.normal));
   for (const Edge& e : a.edges) {
@@ -72,7 +74,7 @@ TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
   Random random(4);
   for (int k = 0; k < 8; ++k) {
     const Pose pose_b{random.direction() * random.uniform(0.0, 1.6), random.rotation()};
-    EXPECT_NEAR(-cold(a, b, pose_b).distance, least_height(a, b, pose_b),
+    EXPECT_NEAR(-cold(a, b, pose_b).distance, shortest_way_out(a, b, pose_b),
                 1e-14 * size_of(a, b, pose_b));
   }
 }
