@@ -95,10 +95,8 @@ std::span<const std::uint16_t> DeepestPoints::list_not_below(const Point& point,
   std::size_t size = HWY_DYNAMIC_DISPATCH(list_not_below)(body_.planes.row(0), facets, &point,
                                                           point.for_arcs(enough), list_.data());
   while (size > 0 && list_[size - 1] >= facets) --size;
-  unlist_all();
-  for (std::size_t k = 0; k < size; ++k) {
-    listed_[list_[k] / kBits] |= std::uint64_t{1} << (list_[k] % kBits);
-  }
+  std::fill_n(listed_.begin(), facets, false);
+  for (std::size_t k = 0; k < size; ++k) listed_[list_[k]] = true;
   return {list_.data(), size};
 }
 

@@ -37,7 +37,6 @@ class DeepestPoints {
 
   explicit DeepestPoints(const ConvexPolyhedron& body) noexcept : body_(body) {
     std::fill_n(corners_.begin(), body.facets.size(), kNoCorner);
-    unlist_all();
   }
 
   [[nodiscard]] static bool fits(const ConvexPolyhedron& body) noexcept {
@@ -60,6 +59,7 @@ class DeepestPoints {
 
   // One more corner of the other body for one facet only, by its number.
   static constexpr std::uint16_t kNoCorner = 0xffff;
+  static_assert(2 * kMostFacets - 4 < kNoCorner, "a body has no more corners (Euler)");
   [[nodiscard]] std::uint16_t* corners() noexcept { return corners_.data(); }
   [[nodiscard]] std::uint16_t corner(std::int32_t facet) const noexcept {
     return corners_[static_cast<std::size_t>(facet)];
@@ -84,24 +84,20 @@ class DeepestPoints {
     });
   }
   [[nodiscard]] bool is_listed(std::int32_t facet) const noexcept {
-    const auto i = static_cast<std::size_t>(facet);
-    return (listed_[i / kBits] >> (i % kBits) & 1) != 0;
+    return listed_[static_cast<std::size_t>(facet)];
   }
 
  private:
   // Vectors of up to four run over the end.
   static constexpr std::size_t kRow = kMostFacets + 4;
-  static constexpr std::size_t kBits = 64;
-
-  // Only where there are facets: a row for the most of them is 2 kB.
-  void unlist_all() noexcept { std::fill_n(listed_.begin(), body_.facets.size() / kBits + 1, 0); }
 
   const ConvexPolyhedron& body_;
   std::array<Point, kMostPoints> points_;
   std::size_t count_ = 0, ball_ = kMostPoints;
   std::array<std::uint16_t, kRow> list_;
-  std::array<std::uint16_t, kMostFacets> corners_;             // [facet]
-  std::array<std::uint64_t, kMostFacets / kBits + 1> listed_;  // a bit a facet
+  // [facet]; only of those that there are. listed_: from the first list_not_below() on.
+  std::array<std::uint16_t, kMostFacets> corners_;
+  std::array<bool, kMostFacets> listed_;
 };
 
 }  // namespace clearance

@@ -129,7 +129,7 @@ class DepthSearch {
                                 std::int32_t corner) noexcept;
   void few_corners() noexcept;
   void facets_of_y_bounded() noexcept;
-  // 66 kB of stack each, which a body of few corners does not go past.
+  // 82 kB of stack each, which a body of few corners does not go past.
   [[gnu::noinline]] void many_corners() noexcept;
   [[gnu::noinline]] void facets_of_y_by_points() noexcept;
   void arcs(DeepestCorners& of_y) noexcept;

@@ -79,20 +79,32 @@ TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
   }
 }
 
+ConvexPolyhedron cylinder(int sides) {
+  std::vector<Eigen::Vector2d> base;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / sides;
+    base.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return made(prism(base, -3.0, 3.0));
+}
+
 // Each quarter of the way around its axis meets more corners than an arc was looked at in: the
 // bounds were 8e-5 of the size apart.
 TEST(Penetration, OfACapsuleInACylinderOfManySidesIsFoundToRoundingToo) {
   constexpr int kSides = 9000;
-  std::vector<Eigen::Vector2d> base;
-  for (int i = 0; i < kSides; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kSides;
-    base.emplace_back(std::cos(angle), std::sin(angle));
-  }
-  const ConvexPolyhedron cylinder = made(prism(base, -3.0, 3.0));
+  const ConvexPolyhedron b = cylinder(kSides);
   const ConvexPolyhedron capsule = made(segment({0.0, 0.0, -0.5}, {0.0, 0.0, 0.5}, 0.1));
-  const DistanceResult r = cold(capsule, cylinder, Pose{});
+  const DistanceResult r = cold(capsule, b, Pose{});
   EXPECT_NEAR(r.distance, -(std::cos(std::numbers::pi / kSides) + 0.1), 1e-13);
-  EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(capsule, cylinder, Pose{}));
+  EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(capsule, b, Pose{}));
+}
+
+// Its shortest way out is along x, where both reach farthest at an edge along z.
+TEST(Penetration, OfABoxInACylinderOfManySidesIsHowFarTheyReachAlongAnAxis) {
+  const ConvexPolyhedron a = made(box({0.1, 0.1, 0.5})), b = cylinder(9000);
+  const DistanceResult r = cold(a, b, Pose{});
+  EXPECT_NEAR(r.distance, -1.1, 1e-14 * size_of(a, b, Pose{}));
+  EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(a, b, Pose{}));
 }
 
 }  // namespace
