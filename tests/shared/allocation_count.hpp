@@ -1,4 +1,5 @@
-// Counts what operator new hands out, in the whole test program.
+// Counts what operator new hands out, in the whole test program, and malloc and its like, wherever
+// they are called from what is linked into it: Eigen's matrices come from there.
 #pragma once
 
 #include <cstdint>

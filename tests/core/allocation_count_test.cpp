@@ -1,0 +1,64 @@
+// The count that the tests for "allocates nothing" go by.
+#include "tests/shared/allocation_count.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace clearance {
+namespace {
+
+// Where the compiler cannot see that nobody reads it.
+void* volatile last = nullptr;
+
+template <class Allocate>
+std::uint64_t allocations_of(const Allocate& allocate) {
+  const std::uint64_t before = allocations();
+  last = allocate();
+  const std::uint64_t after = allocations();
+  std::free(last);
+  return after - before;
+}
+
+TEST(AllocationCount, SeesTheFunctionsOfC) {
+  EXPECT_EQ(allocations_of([] { return std::malloc(100); }), 1u);
+  EXPECT_EQ(allocations_of([] { return std::calloc(10, 10); }), 1u);
+  EXPECT_EQ(allocations_of([] { return std::realloc(nullptr, 100); }), 1u);
+  EXPECT_EQ(allocations_of([] { return std::aligned_alloc(64, 128); }), 1u);
+  EXPECT_EQ(allocations_of([] {
+              void* memory = nullptr;
+              return posix_memalign(&memory, 64, 128) == 0 ? memory : nullptr;
+            }),
+            1u);
+}
+
+TEST(AllocationCount, SeesOperatorNewAndWhatEigenAllocates) {
+  std::uint64_t before = allocations();
+  const auto number = std::make_unique<int>(1);
+  last = number.get();
+  EXPECT_EQ(allocations() - before, 1u);
+  before = allocations();
+  std::vector<double> numbers(100);
+  last = numbers.data();
+  EXPECT_EQ(allocations() - before, 1u);
+  before = allocations();
+  Eigen::VectorXd vector(100);
+  last = vector.data();
+  EXPECT_EQ(allocations() - before, 1u);
+}
+
+TEST(AllocationCount, IsOfOneThread) {
+  std::thread other([] { last = std::malloc(100); });
+  const std::uint64_t before = allocations();
+  other.join();
+  EXPECT_EQ(allocations(), before);
+  std::free(last);
+}
+
+}  // namespace
+}  // namespace clearance
