@@ -16,28 +16,37 @@ bool within(std::int32_t index, std::size_t size) noexcept {
 
 bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p) noexcept {
   const double slack = kOnFacet * (body.bounding_radius + p.norm());
-  for (std::int32_t i = 0; i < facet.sides; ++i) {
-    const EdgeUse& use = body.facet_edges[facet.first_side + i];
-    const Edge& e = body.edges[use.edge];
-    if (e.inward.row(use.side).dot(p - e.point) < -slack) return false;
+  for (std::int32_t i = 0; i < facet.limits; ++i) {
+    const FacetLimit limit = body.limit_of(facet, i);
+    if (limit.inward.dot(p) - limit.offset < -slack) return false;
   }
   return true;
 }
 
 }  // namespace
 
-std::int32_t crossed_side(const ConvexPolyhedron& body, const Facet& facet,
-                          const Vec3& p) noexcept {
+std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
+                           const Vec3& p) noexcept {
   double least = 0.0;
   std::int32_t beyond = kNone;
-  for (std::int32_t i = 0; i < facet.sides; ++i) {
-    const FacetSide side = body.side_of(facet, i);
-    const double gap = side.inward.dot(p) - side.offset;
+  for (std::int32_t i = 0; i < facet.limits; ++i) {
+    const FacetLimit limit = body.limit_of(facet, i);
+    const double gap = limit.inward.dot(p) - limit.offset;
     if (!(gap < least)) continue;
     least = gap;
     beyond = i;
   }
   return beyond;
+}
+
+std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index, const Vec3& p) noexcept {
+  for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
+    const Facet& facet = body.facets[index];
+    const std::int32_t beyond = crossed_limit(body, facet, p);
+    if (beyond == kNone) break;
+    index = body.facets_beside[facet.first_side + beyond];
+  }
+  return index;
 }
 
 void ActiveSide::place_cold(const Vec3& other) noexcept {

@@ -17,10 +17,15 @@
 
 namespace clearance {
 
-// The side of a facet's polygon, of its Facet::sides, beyond whose line p lies farthest; kNone: p
+// What limits a facet's polygon, of its Facet::limits, beyond whose line p lies farthest; kNone: p
 // lies within.
-[[nodiscard]] std::int32_t crossed_side(const ConvexPolyhedron& body, const Facet& facet,
-                                        const Vec3& p) noexcept;
+[[nodiscard]] std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
+                                         const Vec3& p) noexcept;
+
+// Facets may be level to rounding, and which of their planes a point lies on is rounding's choice:
+// from one of them to that whose polygon p is in.
+[[nodiscard]] std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
+                                       const Vec3& p) noexcept;
 
 enum class Feature : std::uint8_t { kVertex = 0, kEdge = 1, kFacet = 2, kInside = 3 };
 

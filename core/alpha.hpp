@@ -36,8 +36,8 @@ inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {
 inline Alpha within_facet(const ActiveSide& side, const Vec3& move) noexcept {
   Alpha best;
   const Facet& facet = side.facet();
-  for (std::int32_t i = 0; i < facet.sides; ++i) {
-    const FacetSide boundary = side.body().side_of(facet, i);
+  for (std::int32_t i = 0; i < facet.limits; ++i) {
+    const FacetLimit boundary = side.body().limit_of(facet, i);
     const double speed = -boundary.inward.dot(move);
     if (!(speed > 0.0)) continue;
     const double gap = boundary.inward.dot(side.own()) - boundary.offset;
@@ -66,19 +66,6 @@ inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
   if (side.feature() == Feature::kEdge) return alpha_case::along_edge(side, move);
   if (side.feature() == Feature::kFacet) return alpha_case::within_facet(side, move);
   return alpha_case::from_inside(side, move);
-}
-
-// Facets may be level to rounding, and which of their planes a move through the inside meets first
-// is rounding's choice: the one of them that the point is on.
-inline std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
-                                const Vec3& p) noexcept {
-  for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
-    const Facet& facet = body.facets[index];
-    const std::int32_t beyond = crossed_side(body, facet, p);
-    if (beyond == kNone) break;
-    index = body.facets_beside[facet.first_side + beyond];
-  }
-  return index;
 }
 
 // Makes the move and, where it was blocked, the blocking feature the active one.

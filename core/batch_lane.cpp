@@ -33,7 +33,7 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
 // How often what repeats of the feature does.
 std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
   if (side.dimension == 0) return body.vertices[side.feature].edges;
-  return side.dimension == 2 ? body.facets[side.feature].sides : 0;
+  return side.dimension == 2 ? body.facets[side.feature].limits : 0;
 }
 
 // A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
@@ -84,12 +84,12 @@ struct LaneFeature<2> {
   const VectorRows& table;
 
   LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
-      : facet(body.facets[side.feature]), table(body.facet_sides) {}
+      : facet(body.facets[side.feature]), table(body.facet_limits) {}
   void put(LaneWriter& to) const noexcept {
     to.put(facet.normal);
     to.put(facet.offset);
   }
-  [[nodiscard]] std::int32_t repeats() const noexcept { return facet.sides; }
+  [[nodiscard]] std::int32_t repeats() const noexcept { return facet.limits; }
   [[nodiscard]] const double* row() const noexcept { return table.row(facet.first_side); }
 };
 

@@ -34,12 +34,14 @@ inline constexpr double kLargestCoordinate = 1e100;
 
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
 struct Facet {
-  Vec3 point;     // a point of the facet (for a facet without edges: any point of its plane)
   Vec3 normal;    // outward, unit
   double offset;  // d, m
   // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none.
+  // Behind them, up to first_side + limits: the sides that end at a sharp corner once more.
   std::int32_t first_side;
   std::int32_t sides;
+  std::int32_t limits;
+  std::int32_t anchor;  // one of the facet's points (of a half-space's plane, any)
 };
 
 // A straight edge x = point + s * direction, s in [0, length]; open-ended ones run to infinity.
@@ -98,11 +100,17 @@ class VectorRows {
   std::int32_t numbers_;
 };
 
-// One side of a facet's polygon: inward.x >= offset in its plane.
-struct FacetSide {
+// What limits a facet's polygon in its plane: inward.x >= offset. That is what lies on one side of
+// an edge; and, at a sharp corner, what lies before the end of the edge that ends there. A point
+// that is off either edge there by no more than rounding may be past the corner by that over the
+// sine of half its angle.
+struct FacetLimit {
   Vec3 inward;
   double offset;
 };
+
+// The cosine of a corner's angle beyond which it is sharp: the sine of half of it is 1/3.
+inline constexpr double kSharpCorner = 7.0 / 9.0;
 
 // A direction up to a positive factor: the sum of digits * 2^exponent, exactly. What is opposite
 // has opposite digits, and what is the same, the same.
@@ -147,9 +155,9 @@ struct ConvexPolyhedron {
   Opening opening;  // of an unbounded body; made by add_walking_tables()
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
-  VectorRows outgoing{3};     // a row a vertex: unit, along vertex_edges[i], away from the vertex
-  VectorRows facet_sides{4};  // a row a facet: of facet_edges[i]
-  VectorRows planes{4};       // one row: normals and offsets of all facets
+  VectorRows outgoing{3};      // a row a vertex: unit, along vertex_edges[i], away from the vertex
+  VectorRows facet_limits{4};  // a row a facet: of facet_edges[i]
+  VectorRows planes{4};        // one row: normals and offsets of all facets
   // The vertices at the far ends of `vertex_edges`, kNone where such an edge does not end; and the
   // facets on the far sides of `facet_edges`.
   std::vector<std::int32_t> neighbours, facets_beside;
@@ -189,18 +197,22 @@ struct ConvexPolyhedron {
   void set_outgoing(const Vertex& v, std::int32_t i, const Vec3& to) noexcept {
     for (std::int32_t k = 0; k < 3; ++k) outgoing.set(v.first_edge, v.edges, i, k, to[k]);
   }
-  // The i-th of the facet's sides.
-  [[nodiscard]] FacetSide side_of(const Facet& f, std::int32_t i) const noexcept {
+  // One of the facet's points, or of its plane.
+  [[nodiscard]] const Vec3& point_of(const Facet& f) const noexcept {
+    return anchors[static_cast<std::size_t>(f.anchor)];
+  }
+  // The i-th of what limits the facet.
+  [[nodiscard]] FacetLimit limit_of(const Facet& f, std::int32_t i) const noexcept {
     const auto number = [&](std::int32_t k) {
-      return facet_sides.number(f.first_side, f.sides, i, k);
+      return facet_limits.number(f.first_side, f.limits, i, k);
     };
     return {{number(0), number(1), number(2)}, number(3)};
   }
-  void set_side(const Facet& f, std::int32_t i, const FacetSide& to) noexcept {
+  void set_limit(const Facet& f, std::int32_t i, const FacetLimit& to) noexcept {
     for (std::int32_t k = 0; k < 3; ++k) {
-      facet_sides.set(f.first_side, f.sides, i, k, to.inward[k]);
+      facet_limits.set(f.first_side, f.limits, i, k, to.inward[k]);
     }
-    facet_sides.set(f.first_side, f.sides, i, 3, to.offset);
+    facet_limits.set(f.first_side, f.limits, i, 3, to.offset);
   }
 };
 

@@ -97,7 +97,7 @@ void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
   }
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
-  corners_[slot] = body_.corner(facet.point, n);
+  corners_[slot] = body_.corner(body_.x().point_of(facet), n);
   has_corner_[slot] = true;
   const double height = corners_[slot].dot(n);
   lower_to(height);
@@ -113,7 +113,7 @@ void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
   }
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
-  corners_[slot] = body_.corner_on_x(facet.point, n);
+  corners_[slot] = body_.corner_on_x(body_.y().point_of(facet), n);
   has_corner_[slot] = true;
   const double height = corners_[slot].dot(n);
   lower_to(height);

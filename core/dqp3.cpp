@@ -57,9 +57,7 @@ bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept 
   return true;
 }
 
-}  // namespace
-
-Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+Dqp3Outcome iterate(ActiveSide& a, ActiveSide& b, double contact) noexcept {
   Dqp3Outcome outcome;
   const auto ended = [&](Dqp3End end) {
     outcome.end = end;
@@ -92,6 +90,48 @@ Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
       release(b, of_b);
     }
   }
+  return outcome;
+}
+
+// Between a point inside and the planes of facets that meet at a sharp edge or corner there may be
+// no more than rounding, and the point past the edge by much more: of the body's reach and of how
+// far out the point is.
+constexpr double kCertainlyInside = 16 * kUlp;
+
+// From the inside, unless certainly there, to the facet that is nearest.
+void leave_inside(ActiveSide& side) noexcept {
+  const ConvexPolyhedron& body = side.body();
+  double least = kCertainlyInside * (body.bounding_radius + side.own().norm());
+  std::int32_t nearest = kNone;
+  for (std::size_t i = 0; i < body.facets.size(); ++i) {
+    const double gap = body.facets[i].offset - body.facets[i].normal.dot(side.own());
+    if (!(gap < least)) continue;
+    least = gap;
+    nearest = static_cast<std::int32_t>(i);
+  }
+  if (nearest == kNone) return;
+  side.place_on_facet(facet_under(body, nearest, side.own()), side.own());
+}
+
+// An upper bound is worth no more than that its points are on the bodies: one that the iteration
+// has left outside its facet's polygon goes to the polygon's nearest side.
+void keep_on_body(ActiveSide& side) noexcept {
+  if (side.feature() == Feature::kInside) leave_inside(side);
+  if (side.feature() != Feature::kFacet) return;
+  const Facet& facet = side.facet();
+  const std::int32_t beyond = crossed_limit(side.body(), facet, side.own());
+  if (beyond == kNone) return;
+  const std::int32_t index = side.index();
+  side.place_on_edge(side.body().facet_edges[facet.first_side + beyond].edge, side.own());
+  side.place(Feature::kFacet, index, side.own());
+}
+
+}  // namespace
+
+Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+  const Dqp3Outcome outcome = iterate(a, b, contact);
+  keep_on_body(a);
+  keep_on_body(b);
   return outcome;
 }
 

@@ -57,10 +57,10 @@ Stretch over_facet(const ActiveSide& edge, const ActiveSide& facet, double size)
   const Vec3 from = point(edge.edge().point);
   const Vec3 way = facet.direction_to_own(edge.direction_to_common(edge.edge().direction));
   Stretch out{edge.edge().begin, edge.edge().end};
-  for (std::int32_t i = 0; i < facet.facet().sides; ++i) {
-    const FacetSide side = facet.body().side_of(facet.facet(), i);
-    const double level = side.inward.dot(from) - side.offset - kOverFacet * size;
-    const double rate = side.inward.dot(way);
+  for (std::int32_t i = 0; i < facet.facet().limits; ++i) {
+    const FacetLimit limit = facet.body().limit_of(facet.facet(), i);
+    const double level = limit.inward.dot(from) - limit.offset - kOverFacet * size;
+    const double rate = limit.inward.dot(way);
     out.clip(level, rate - kOverFacet);
     out.clip(level, rate + kOverFacet);
   }
@@ -75,8 +75,8 @@ FarApart from_facet(const PolarCone& cone, const ActiveSide& edge, const ActiveS
   const auto slope = cone.slope_over_facet(of_b, facet.index(), edge.edge());
   if (!(over.from <= over.to) || !(slope.error < kInfinity)) return {};
   const auto [n, off] = cone.of_facet(of_b, facet.index());
-  const Vec3 between =
-      edge.point_to_common(edge.edge().point) - facet.point_to_common(facet.facet().point);
+  const Vec3 between = edge.point_to_common(edge.edge().point) -
+                       facet.point_to_common(facet.body().point_of(facet.facet()));
   const double at_point = n.dot(between);
   FarApart out;
   for (const double s : {over.from, over.to, std::clamp(0.0, over.from, over.to)}) {

@@ -78,9 +78,10 @@ struct Span {
 inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index, const Vec3& start,
                                 const Vec3& direction, Span span) {
   const Facet& facet = body.facets[index];
-  for (std::int32_t i = 0; i < facet.sides && !span.empty(); ++i) {
-    const FacetSide side = body.side_of(facet, i);
-    const double speed = dot(side.inward, direction), gap = dot(side.inward, start) - side.offset;
+  for (std::int32_t i = 0; i < facet.limits && !span.empty(); ++i) {
+    const FacetLimit limit = body.limit_of(facet, i);
+    const double speed = dot(limit.inward, direction),
+                 gap = dot(limit.inward, start) - limit.offset;
     const std::int32_t edge = body.facet_edges[facet.first_side + i].edge;
     const double meets = -gap / speed;
     if (speed > 0.0 && meets > span.from) {

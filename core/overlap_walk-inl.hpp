@@ -31,8 +31,8 @@ inline constexpr double kAmple = 1e-9;
 
 // How far within its facet a point of its plane lies; negative: outside.
 HWY_INLINE double room_on_facet(const ConvexPolyhedron& body, const Facet& facet, Quad point) {
-  const double* row = body.facet_sides.row(facet.first_side);
-  const std::int32_t n = facet.sides;
+  const double* row = body.facet_limits.row(facet.first_side);
+  const std::int32_t n = facet.limits;
   const Quad at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};
   double least = kInfinity;
   for (std::int32_t i = 0; i < n; i += 4) {

@@ -80,7 +80,7 @@ class Assembler {
   void add_facet(const Integer4& plane) {
     const Integer3 normal = head(plane);
     body_.facets.push_back(
-        {Vec3::Zero(), unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), 0, 0});
+        {unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), 0, 0, 0, 0});
   }
 
   void add_edge(const SolidEdge& edge) {
@@ -133,6 +133,7 @@ class Assembler {
       body_.facets[f].first_side = static_cast<std::int32_t>(body_.facet_edges.size());
       body_.facets[f].sides = static_cast<std::int32_t>(sides[f].size());
       chain(sides[f]);
+      add_sharp_corners(body_.facets[f]);
     }
   }
 
@@ -154,6 +155,25 @@ class Assembler {
                              [](const Side& side, int from) { return side.from < from; }) -
             sides.begin());
       }
+    }
+  }
+
+  void add_sharp_corners(Facet& facet) {
+    facet.limits = facet.sides;
+    const auto use_of = [&](std::int32_t i) {
+      return body_.facet_edges[at(facet.first_side + i % facet.sides)];
+    };
+    const auto along = [&](const EdgeUse& use) {
+      const Vec3& direction = body_.edges[at(use.edge)].direction;
+      return use.side == 0 ? direction : Vec3(-direction);
+    };
+    for (std::int32_t i = 0; i < facet.sides; ++i) {
+      const EdgeUse use = use_of(i), next = use_of(i + 1);
+      const std::int32_t corner = body_.edges[at(use.edge)].vertex[1 - use.side];
+      if (corner == kNone || corner != body_.edges[at(next.edge)].vertex[next.side]) continue;
+      if (!(-along(use).dot(along(next)) > kSharpCorner)) continue;
+      body_.facet_edges.push_back(use);
+      ++facet.limits;
     }
   }
 
@@ -232,16 +252,16 @@ class Assembler {
     for (std::size_t f = 0; f < body_.facets.size(); ++f) {
       Facet& facet = body_.facets[f];
       if (facet.sides == 0) {
-        facet.point = body_.anchors[f];
+        facet.anchor = static_cast<std::int32_t>(f);
         continue;
       }
       double nearest = kInfinity;
       for (std::int32_t i = 0; i < facet.sides; ++i) {
         const EdgeUse& use = body_.facet_edges[at(facet.first_side + i)];
-        const Vec3& point = body_.edges[at(use.edge)].point;
-        if (point.squaredNorm() >= nearest) continue;
-        nearest = point.squaredNorm();
-        facet.point = point;
+        const double square = body_.edges[at(use.edge)].point.squaredNorm();
+        if (square >= nearest) continue;
+        nearest = square;
+        facet.anchor = solid_.edges[at(use.edge)].start;
       }
     }
   }

@@ -108,24 +108,10 @@ void bound_far_away(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
   bounds.beyond = far.beyond;
 }
 
-// The upper bound is worth no more than that its points are on the bodies, and does not trust the
-// loop in that: a point outside its facet's polygon goes to the polygon's nearest side.
-void keep_on_facet(ActiveSide& side) noexcept {
-  if (side.feature() != Feature::kFacet) return;
-  const Facet& facet = side.facet();
-  const std::int32_t beyond = crossed_side(side.body(), facet, side.own());
-  if (beyond == kNone) return;
-  const std::int32_t index = side.index();
-  side.place_on_edge(side.body().facet_edges[facet.first_side + beyond].edge, side.own());
-  side.place(Feature::kFacet, index, side.own());
-}
-
 DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.tight);
-  keep_on_facet(a);
-  keep_on_facet(b);
 
   Bounds bounds;
   bounds.upper = (b.common() - a.common()).norm();

@@ -188,11 +188,11 @@ struct Owned {
   }
 };
 
-// The side of the facet's polygon beyond which the tip lies farthest, as an edge; kNone: it lies
+// What limits the facet's polygon, as an edge, beyond which the tip lies farthest; kNone: it lies
 // within.
 HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Quad tip) {
-  const double* row = body.facet_sides.row(facet.first_side);
-  const std::int32_t n = facet.sides;
+  const double* row = body.facet_limits.row(facet.first_side);
+  const std::int32_t n = facet.limits;
   const Quad at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
   double least = 0.0;
   std::int32_t beyond = kNone;

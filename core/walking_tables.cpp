@@ -59,14 +59,19 @@ double inner_radius(const ConvexPolyhedron& body) {
   return std::max(0.0, nearest - kRoundings * body.bounding_radius - body.position_error);
 }
 
-void add_facet_sides(ConvexPolyhedron& body) {
-  body.facet_sides.resize(body.facet_edges.size());
+void add_facet_limits(ConvexPolyhedron& body) {
+  body.facet_limits.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
-    for (std::int32_t i = 0; i < facet.sides; ++i) {
+    for (std::int32_t i = 0; i < facet.limits; ++i) {
       const EdgeUse& use = body.facet_edges[facet.first_side + i];
       const Edge& edge = body.edges[use.edge];
-      const Vec3 inward = edge.inward.row(use.side);
-      body.set_side(facet, i, {inward, inward.dot(edge.point)});
+      if (i < facet.sides) {
+        const Vec3 inward = edge.inward.row(use.side);
+        body.set_limit(facet, i, {inward, inward.dot(edge.point)});
+      } else {
+        const Vec3 back = use.side == 0 ? Vec3(-edge.direction) : edge.direction;
+        body.set_limit(facet, i, {back, back.dot(body.anchors[edge.vertex[1 - use.side]])});
+      }
     }
   }
 }
@@ -106,7 +111,7 @@ void add_walking_tables(ConvexPolyhedron& body) {
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
   add_outgoing(body);
   add_neighbours(body);
-  add_facet_sides(body);
+  add_facet_limits(body);
   add_planes(body);
   release_spare_room(body);
   if (body.vertices.empty()) return;

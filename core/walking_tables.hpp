@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-// Fills `outgoing`, `facet_sides`, `planes` and `start` from the rest, and keeps no memory to
+// Fills `outgoing`, `facet_limits`, `planes` and `start` from the rest, and keeps no memory to
 // spare. The factories' last step.
 void add_walking_tables(ConvexPolyhedron& body);
 

@@ -12,7 +12,7 @@ namespace {
 double depth(const ConvexPolyhedron& body, const Vec3& point) {
   double least = kInfinity;
   for (const Facet& facet : body.facets) {
-    least = std::min(least, -facet.normal.dot(point - facet.point));
+    least = std::min(least, -facet.normal.dot(point - body.point_of(facet)));
   }
   return least;
 }
@@ -37,7 +37,7 @@ Vec3 centroid(const ConvexPolyhedron& body) {
       const Edge& edge = body.edges[at(body.facet_edges[at(facet.first_side + i)].edge)];
       const Vec3 a = from_apex(body.vertices[at(edge.vertex[0])].position);
       const Vec3 b = from_apex(body.vertices[at(edge.vertex[1])].position);
-      const Vec3 c = from_apex(facet.point);
+      const Vec3 c = from_apex(body.point_of(facet));
       const double share = std::abs(c.dot(a.cross(b)));
       volume += share;
       moment += share * (a + b + c);

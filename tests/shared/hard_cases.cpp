@@ -9,6 +9,7 @@
 #include "tests/shared/extreme_cases.hpp"
 #include "tests/shared/foil_cases.hpp"
 #include "tests/shared/hostile_cases.hpp"
+#include "tests/shared/sharp_cases.hpp"
 #include "tests/shared/slender_cases.hpp"
 #include "tests/shared/tied_cases.hpp"
 
@@ -328,7 +329,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"twisted_images", twisted_images},
                                         {"slender_wedges", slender_wedges},
                                         {"broad_wedges", broad_wedges},
-                                        {"broad_cones", broad_cones}};
+                                        {"broad_cones", broad_cones},
+                                        {"sharp_corners", sharp_corners}};
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/poses.hpp"
+#include "tests/shared/sharp_cases.hpp"
 
 namespace clearance::hard {
 namespace {
@@ -144,9 +145,15 @@ HardMotion roll(Random& random, int steps) {
   return m;
 }
 
-constexpr MotionFamily kMotionFamilies[] = {
-    {"flyby", flyby},           {"spin", spin},       {"teleport", teleport}, {"slide", slide},
-    {"stationary", stationary}, {"through", through}, {"graze", graze},       {"roll", roll}};
+constexpr MotionFamily kMotionFamilies[] = {{"flyby", flyby},
+                                            {"spin", spin},
+                                            {"teleport", teleport},
+                                            {"slide", slide},
+                                            {"stationary", stationary},
+                                            {"through", through},
+                                            {"graze", graze},
+                                            {"roll", roll},
+                                            {"past_corners", past_corners}};
 
 std::string number(double x) {
   char text[40];

@@ -47,9 +47,11 @@ class Inspection {
   bool indices_are_valid() {
     std::size_t next = 0;
     for (const Facet& facet : body_.facets) {
-      expect(facet.sides >= 0 && at(facet.first_side) == next, "facets list their sides in order",
-             next);
-      next += at(facet.sides);
+      expect(facet.sides >= 0 && facet.limits >= facet.sides && at(facet.first_side) == next,
+             "facets list their sides in order", next);
+      next += at(facet.limits);
+      expect(in_range(facet.anchor, body_.anchors.size()) && facet.anchor != kNone,
+             "a facet's point exists", at(facet.first_side));
     }
     expect(next == body_.facet_edges.size(), "facet_edges belong to facets", next);
     next = 0;
@@ -79,7 +81,8 @@ class Inspection {
     for (std::size_t f = 0; f < body_.facets.size(); ++f) {
       const Facet& facet = body_.facets[f];
       expect(is_unit(facet.normal), "facet normals are unit", f);
-      expect(std::abs(facet.normal.dot(facet.point) - facet.offset) <= tolerance(facet.point),
+      const Vec3& point = body_.point_of(facet);
+      expect(std::abs(facet.normal.dot(point) - facet.offset) <= tolerance(point),
              "a facet's point is in its plane", f);
     }
   }
@@ -215,16 +218,17 @@ class Inspection {
 
   void check_containment() {
     for (const Facet& facet : body_.facets) {
+      const Vec3& point = body_.point_of(facet);
       for (std::size_t a = 0; a < body_.anchors.size(); ++a) {
-        const double height = facet.normal.dot(body_.anchors[a] - facet.point);
-        expect(height <= tolerance(body_.anchors[a]) + tolerance(facet.point),
+        const double height = facet.normal.dot(body_.anchors[a] - point);
+        expect(height <= tolerance(body_.anchors[a]) + tolerance(point),
                "anchors are below every facet's plane", a);
       }
       for (std::size_t r = 0; r < body_.rays.size(); ++r) {
         expect(facet.normal.dot(body_.rays[r].direction.normalized()) <= 0x1p-50,
                "rays do not leave through a facet", r);
       }
-      expect(facet.normal.dot(body_.interior - facet.point) <= tolerance(facet.point),
+      expect(facet.normal.dot(body_.interior - point) <= tolerance(point),
              "the interior point is inside", 0);
       const double inside = facet.offset - facet.normal.dot(body_.interior);
       expect(body_.inner_radius == 0.0 || inside >= body_.inner_radius, "the inner ball is inside",

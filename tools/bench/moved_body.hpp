@@ -35,7 +35,7 @@ class MovedBody {
       }
     }
     for (const Facet& f : own_.facets) {
-      for (std::int32_t i = 0; i < f.sides; ++i) move_side(f, i);
+      for (std::int32_t i = 0; i < f.limits; ++i) move_limit(f, i);
     }
     moved_.interior = point(own_.interior);
   }
@@ -45,10 +45,10 @@ class MovedBody {
   }
 
  private:
-  void move_side(const Facet& facet, std::int32_t i) {
-    const FacetSide own = own_.side_of(facet, i);
+  void move_limit(const Facet& facet, std::int32_t i) {
+    const FacetLimit own = own_.limit_of(facet, i);
     const Vec3 inward = rotation_ * own.inward;
-    moved_.set_side(facet, i, {inward, own.offset + inward.dot(translation_)});
+    moved_.set_limit(facet, i, {inward, own.offset + inward.dot(translation_)});
   }
 
   const ConvexPolyhedron& own_;
