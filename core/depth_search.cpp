@@ -108,7 +108,7 @@ void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
   const Facet& facet = body_.y().facets[index];
   const Vec3 n = -body_.direction_from_y(facet.normal);
   if (lean_ ? goes_on_along(false, n, body_.y().exact_normals[index])
-            : rises(body_.x(), n, level_)) {
+            : rises(body_.x(), n, certain_)) {
     return;
   }
   const std::size_t slot = cell(n);
@@ -155,8 +155,11 @@ bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
     if (l_rises && r_rises) return false;
     if (!l_rises && !r_rises) continue;
     // Of the two directions across the ray, the one on the arc: less than a quarter turn from its
-    // middle.
-    (l_rises ? l : r) = over.level(middle_of(l, r));
+    // middle. Where it is known no better than to lie anywhere up to the arc's end, nothing is
+    // gone.
+    const Vec2 level = over.level(middle_of(l, r));
+    if (!((l_rises ? turn(l, level) : turn(level, r)) > 0.0)) continue;
+    (l_rises ? l : r) = level;
     level_at[l_rises ? 0 : 1] = &ray;
   }
   return true;

@@ -26,7 +26,10 @@ class DepthSearch {
   // tight: m, how near to the best h a bound from below must come. direction_error: of a direction
   // turned into the other body's frame.
   DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
-      : body_(body), tight_(tight), level_(0x1p-46 + direction_error) {
+      : body_(body),
+        tight_(tight),
+        level_(0x1p-46 + direction_error),
+        certain_(0x1p-50 + direction_error) {
     if (!body.y().bounded()) {
       wide_ = body.wide_x_from_y();
       if (wide_.says_all()) lean_.emplace(body.a_from_b(), wide_.of_quaternions);
@@ -176,7 +179,11 @@ class DepthSearch {
   void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
 
   const DifferenceBody& body_;
-  double tight_, level_;
+  double tight_;
+  // Rays that rise by less, per unit length, may be level; X's, along a facet of Y, by less than
+  // the smaller one: the facet's normal is off by 5 ulps when turned, the ray by 1, their product
+  // by 3.
+  double level_, certain_;
   WideRotation wide_;         // from Y's frame, where both are unbounded
   std::optional<Lean> lean_;  // there, where the quaternions say more
   Vec3 held_ = Vec3::Zero();  // the direction guessed

@@ -145,6 +145,14 @@ constexpr OnceWrong kOnceWrong[] = {
      "a lower bound 3e-8 too low: a wedge 2e-7 rad short of a half-space bounded by its rays"},
     {"dust", 4902001, "a normal of length 0.9986, from lengths that are subnormal"},
     {"dust", 20095500003, "the same, 1 + 1e-9: by the robust path"},
+    {"open_boxes", 268,
+     "a depth bounded to 0.45 m: of two columns at right angles, but for 1e-16, which way is level "
+     "is anywhere on an arc, and was looked for past its end"},
+    {"open_boxes", 215, "the same, to 0.09 m"},
+    {"open_boxes", 13426,
+     "a depth known to 1.4e-14: along a facet tilted by 1e-14 a column went on, but not for "
+     "certain"},
+    {"open_boxes", 1268, "the same, to 1.06e-14"},
 };
 
 // Cold and tracked.

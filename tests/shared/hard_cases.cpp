@@ -330,7 +330,8 @@ constexpr CaseFamily kCaseFamilies[] = {{"random", random_pair},
                                         {"slender_wedges", slender_wedges},
                                         {"broad_wedges", broad_wedges},
                                         {"broad_cones", broad_cones},
-                                        {"sharp_corners", sharp_corners}};
+                                        {"sharp_corners", sharp_corners},
+                                        {"open_boxes", open_boxes}};
 
 }  // namespace
 

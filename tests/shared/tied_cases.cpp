@@ -129,4 +129,30 @@ HardCase mirrored(Random& random) {
   return c;
 }
 
+HardCase open_boxes(Random& random) {
+  const auto open_box = [&] {
+    Body out;
+    const Body whole = box(Vec3(random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), 0.5));
+    for (const HalfSpace& row : whole.rows) {
+      if (random.chance(0.7)) out.rows.push_back(row);
+    }
+    return out.rows.empty() ? whole : out;
+  };
+  Body a = open_box(), b = open_box();
+  HardCase c{"", std::move(a), std::move(b), {}, {}};
+  const Quat common = random.chance(0.8) ? random.rotation() : any_turn(random);
+  const double tilt = random.log_uniform(1e-17, 1e-8);
+  const auto nearly = [&](const Quat& turn) {
+    Quat out = turn;
+    for (int k = 0; k < 4; ++k) out.coeffs()[k] += random.uniform(-tilt, tilt);
+    return out;
+  };
+  c.pose_a.orientation = common;
+  c.pose_b.orientation =
+      nearly(random.chance(0.7) ? common : common * any_turn(random).normalized());
+  c.pose_a.position = random.in_box(1.0);
+  c.pose_b.position = c.pose_a.position + random.in_box(random.chance(0.5) ? 1.0 : 3.0);
+  return c;
+}
+
 }  // namespace clearance::hard

@@ -25,4 +25,8 @@ namespace clearance::hard {
 // diagonal: as close by several pairs of features.
 [[nodiscard]] HardCase mirrored(Random& random);
 
+// Boxes without some of their sides, alike in orientation but for up to some ulps or 1e-8 rad:
+// walls, bars, columns and floors without end that stand on, beside and in each other.
+[[nodiscard]] HardCase open_boxes(Random& random);
+
 }  // namespace clearance::hard
