@@ -1,5 +1,5 @@
-// Long seeded campaign: distance() on every hard family, cold, tracked, swapped and with nonsense
-// states, and with the state of another pair.
+// Long seeded campaign: distance() on every hard family, cold, tracked, swapped, with nonsense
+// states, with any features that the bodies have, and with the state of another pair.
 //
 // Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
 // tests/shared/distance_judge.hpp. Prints what is wrong and writes each failing case as a line that
@@ -50,6 +50,8 @@ class Campaign {
     for (int k = 0; k < 2; ++k) {
       state = test::nonsense_state(judge.a(), judge.b(), random);
       check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "nonsense");
+      state = test::other_state(judge.a(), judge.b(), random);
+      check(judge, judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b, "elsewhere's");
     }
     check(judge, judge.ask(c.pose_a, c.pose_b, last_), truth, c.pose_a, c.pose_b, "another's");
     TrackingState other;

@@ -29,4 +29,37 @@ namespace clearance::test {
   return out;
 }
 
+// Any feature that the body has and a point on it, or none.
+[[nodiscard]] inline TrackingState::Side other_side(const ConvexPolyhedron& body, Random& random) {
+  TrackingState::Side out;
+  const int dimension = random.integer(0, 2);
+  if (body.features[static_cast<std::size_t>(dimension)] == 0) return out;
+  out.dimension = static_cast<std::uint8_t>(dimension);
+  out.feature =
+      random.integer(0, static_cast<int>(body.features[static_cast<std::size_t>(dimension)]) - 1);
+  const auto on_edge = [&](const Edge& edge) -> Vec3 {
+    const double from = std::max(edge.begin, -10.0), to = std::min(edge.end, 10.0);
+    return edge.point + random.uniform(from, to) * edge.direction;
+  };
+  if (dimension == 0) out.point = body.vertices[out.feature].position;
+  if (dimension == 1) out.point = on_edge(body.edges[out.feature]);
+  if (dimension == 2) {
+    const Facet& facet = body.facets[out.feature];
+    out.point = body.point_of(facet);
+    if (facet.sides == 0) return out;
+    const int side = facet.first_side + random.integer(0, facet.sides - 1);
+    const Vec3 at_side = on_edge(body.edges[body.facet_edges[side].edge]);
+    out.point += random.unit() * (at_side - out.point);
+  }
+  return out;
+}
+
+// Of the same bodies somewhere else.
+[[nodiscard]] inline TrackingState other_state(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                               Random& random) {
+  TrackingState out{other_side(a, random), other_side(b, random)};
+  out.a.deep = random.chance(0.3);
+  return out;
+}
+
 }  // namespace clearance::test
