@@ -49,7 +49,7 @@ void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.in
 constexpr double kThin = 0x1p-44;
 
 bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept {
-  if (side.feature() == Feature::kInside || !side.body().bounded()) return false;
+  if (side.feature() == Feature::kInside) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
   const double closer = (side.body().interior - side.own()).dot(towards);
   if (!(closer > kThin * side.body().bounding_radius * towards.norm())) return false;

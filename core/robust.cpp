@@ -114,13 +114,14 @@ class Simplex {
 };
 
 // The sides keep their features and take the points: as near to them as the features allow, a
-// tracked query begins there.
+// tracked query begins there. Of points that are as close to rounding, those are taken that belong
+// to the direction found last, and that one of those that prove as much.
 void improve_upper(ActiveSide& a, ActiveSide& b, DistanceResult& r, const Simplex& simplex,
-                   double length, double slack) noexcept {
-  if (length + slack > r.upper) return;
+                   double length, const Precision& p) noexcept {
+  if (length > r.distance + p.tight) return;
   a.place(a.feature(), a.index(), simplex.point_on_a());
   b.place(b.feature(), b.index(), simplex.own_point_on_b());
-  r.upper = length + slack;
+  r.upper = std::min(r.upper, length + p.slack);
   r.distance = length;
   r.point_on_a = a.common();
   r.point_on_b = simplex.point_on_b();
@@ -139,19 +140,13 @@ void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Pr
   for (int round = 0; round < kRounds; ++round) {
     const ClosestPoint closest = simplex.reduce();
     const double length = static_cast<double>(sqrt(closest.length2));
-    if (simplex.size() == 4 || !(length > 0.0)) {  // the origin is inside
-      improve_upper(a, b, r, simplex, 0.0, p.slack);
-      r.status = DistanceStatus::kTouching;
-      return;
-    }
-    improve_upper(a, b, r, simplex, length, p.slack);
+    improve_upper(a, b, r, simplex, length, p);
+    if (simplex.size() == 4 || !(length > 0.0)) break;  // the origin is inside
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
     const DifferenceCorner next = body.corner(n);
     const double level = separation({n}, a, b, p);
-    if (level - p.slack > r.lower) {
-      r.lower = level - p.slack;
-      r.normal = unit_along(n);  // of which squares may have underflowed
-    }
+    if (level - p.slack > r.lower - p.tight) r.normal = unit_along(n);  // squares may underflow
+    r.lower = std::max(r.lower, level - p.slack);
     if (length - level <= p.tight || !simplex.add(next)) break;
   }
   const bool tight = p.converged(r.upper - r.lower);

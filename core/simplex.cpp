@@ -40,7 +40,7 @@ bool tetrahedron_weights(const Points& p, const std::array<int, 4>& at, Weights&
   w[at[0]] = dot(b, cross(c, d)) / volume;
   w[at[1]] = -dot(a, cross(c, d)) / volume;
   w[at[2]] = dot(a, cross(b, d)) / volume;
-  w[at[3]] = -dot(a, cross(b, c)) / volume;
+  w[at[3]] = 1.0 - w[at[0]] - w[at[1]] - w[at[2]];  // whatever is left of a thin one's volume
   return true;
 }
 

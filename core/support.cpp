@@ -84,6 +84,21 @@ double rise_of_rays(const Opening& opening, const Vec3& m) noexcept {
   return rate;
 }
 
+// The same by a direction near m along which all rays fall for certain: along m they rise no faster
+// than it is tilted against that one. Where but the steepest ray does not fall, it leads past that.
+double rise_past_steepest(const Opening& opening, const Vec3& m) noexcept {
+  const Vec3 across = opening.across_lines(m);
+  const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
+  const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
+  if (steepest == opening.rays.end()) return kInfinity;
+  const double step = std::max(0.0, across.dot(*steepest)) + 2.0 * kSlopeError;
+  const Vec3 past = across - step * *steepest;
+  for (const Vec3& ray : opening.rays) {
+    if (past.dot(ray) > -kSlopeError) return kInfinity;
+  }
+  return step + (opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0);
+}
+
 // The same by its facets: nothing rises along their normals, and along m no faster than m is
 // tilted against one. It says more of bodies that are all but a half-space.
 double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
@@ -129,7 +144,9 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   double rate = rise_of_rays(body.opening, m);
-  if (rate > kSlopeError) rate = std::min(rate, rise_above_facets(body, m));
+  if (rate > kSlopeError) {
+    rate = std::min({rate, rise_above_facets(body, m), rise_past_steepest(body.opening, m)});
+  }
   return rate * (within + body.bounding_radius);
 }
 

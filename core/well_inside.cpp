@@ -53,7 +53,8 @@ Vec3 beyond_anchors(const ConvexPolyhedron& body) {
   for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());
   double spread = 0.0;
   for (const Vec3& anchor : body.anchors) spread = std::max(spread, (anchor - mean).norm());
-  if (spread == 0.0) spread = std::max(mean.norm(), 1.0);
+  if (spread == 0.0) spread = mean.norm();
+  if (spread == 0.0) spread = 1.0;
   Vec3 along = Vec3::Zero();
   for (const Ray& ray : body.rays) along += ray.direction.normalized();
   return mean + spread * (along.isZero(0.0) ? along : along.normalized());

@@ -10,6 +10,7 @@
 #include "core/shapes.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/made.hpp"
+#include "tests/shared/nonsense_state.hpp"
 #include "tests/shared/sharp_cases.hpp"
 
 namespace clearance {
@@ -18,21 +19,6 @@ namespace {
 std::string joined(const std::vector<std::string>& lines) {
   std::string out;
   for (const std::string& line : lines) out += "\n  " + line;
-  return out;
-}
-
-// Of every feature, with a point on it, and of none.
-std::vector<TrackingState::Side> all_sides(const ConvexPolyhedron& body) {
-  std::vector<TrackingState::Side> out(1);
-  const auto add = [&](std::uint8_t dimension, std::size_t feature, const Vec3& point) {
-    out.push_back({dimension, false, static_cast<std::int32_t>(feature), point});
-  };
-  for (std::size_t i = 0; i < body.vertices.size(); ++i) add(0, i, body.vertices[i].position);
-  for (std::size_t i = 0; i < body.edges.size(); ++i) {
-    const Edge& edge = body.edges[i];
-    add(1, i, edge.point + 0.5 * edge.end * edge.direction);
-  }
-  for (std::size_t i = 0; i < body.facets.size(); ++i) add(2, i, body.point_of(body.facets[i]));
   return out;
 }
 
@@ -46,8 +32,8 @@ TEST(SharpCorners, AreHeldToWhateverFeaturesAQueryBeginsAt) {
     DistanceJudge judge(c.a, c.b);
     ASSERT_EQ(judge.refusal(), "") << "seed " << seed;
     const oracle::ExactDistance truth = judge.truth(c.pose_a, c.pose_b);
-    for (const TrackingState::Side& of_a : all_sides(judge.a())) {
-      for (const TrackingState::Side& of_b : all_sides(judge.b())) {
+    for (const TrackingState::Side& of_a : test::every_side(judge.a())) {
+      for (const TrackingState::Side& of_b : test::every_side(judge.b())) {
         TrackingState state{of_a, of_b};
         const DistanceResult result = judge.ask(c.pose_a, c.pose_b, state);
         const auto faults = judge.faults(result, truth, c.pose_a, c.pose_b);
@@ -87,8 +73,8 @@ TEST(SharpCorners, EndANeedleThatDoublesTakeForAStrip) {
       {}, {{kThin, 0.0, 0.0}, {-kThin, kThin, 0.0}, {-kThin, -kThin, 0.0}, {0.0, 0.0, -1.0}}});
   const ConvexPolyhedron box = test::cube();
   const Pose below{{0.0, 0.0, -5.0}, Eigen::Quaterniond::Identity()};
-  for (const TrackingState::Side& of_box : all_sides(box)) {
-    for (const TrackingState::Side& of_needle : all_sides(needle)) {
+  for (const TrackingState::Side& of_box : test::every_side(box)) {
+    for (const TrackingState::Side& of_needle : test::every_side(needle)) {
       TrackingState state{of_box, of_needle};
       const DistanceResult r = distance(box, needle, below, Pose{}, state);
       EXPECT_LE(r.lower, 3.5);

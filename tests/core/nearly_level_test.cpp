@@ -1,0 +1,102 @@
+// Bodies without end whose rays, facets or edges are level against the other body, or all but level
+// to each other: what rounding leaves open there must not cost more than rounding.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "core/distance.hpp"
+#include "core/simplex.hpp"
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/nonsense_state.hpp"
+
+namespace clearance {
+namespace {
+
+using oracle::Body;
+
+Pose at(const Vec3& position) { return {position, Eigen::Quaterniond::Identity()}; }
+
+// What is wrong with the answers, from whatever features a query begins at.
+void expect_right(const Body& a, const Body& b, const Vec3& a_at, const Vec3& b_at,
+                  const std::string& what) {
+  DistanceJudge judge(a, b);
+  ASSERT_EQ(judge.refusal(), "") << what;
+  const oracle::ExactDistance truth = judge.truth(at(a_at), at(b_at));
+  for (const TrackingState::Side& of_a : test::every_side(judge.a())) {
+    for (const TrackingState::Side& of_b : test::every_side(judge.b())) {
+      TrackingState state{of_a, of_b};
+      const DistanceResult result = judge.ask(at(a_at), at(b_at), state);
+      for (const std::string& fault : judge.faults(result, truth, at(a_at), at(b_at))) {
+        ADD_FAILURE() << what << ", from " << int{of_a.dimension} << '/' << of_a.feature << " and "
+                      << int{of_b.dimension} << '/' << of_b.feature << ": " << fault;
+        return;
+      }
+    }
+  }
+}
+
+// The rays to both sides of its ridge all but cancel; along its ridge it is level.
+TEST(NearlyLevel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
+  const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
+  for (const double slope : {0.1, 0.03, 0.01, 1e-3, 1e-6, 1e-9, 1e-12}) {
+    const Body gable{{{{0.0, slope, 1.0}, 1.0}, {{0.0, -slope, 1.0}, 1.0}, {{1.0, 0.0, 0.0}, 1.0}},
+                     {}};
+    const std::string what = "slope " + std::to_string(slope);
+    expect_right(gable, cube, Vec3::Zero(), {-3.0, 0.5, 4.0}, what);
+    expect_right(gable, cube, Vec3::Zero(), {-3.0, 1.0, 4.0}, what);
+  }
+}
+
+// No edge of theirs leads closer where facets are level to rounding, but their inside does.
+TEST(NearlyLevel, BodiesWithoutEndAreLeftThroughTheirInside) {
+  const Body channel{{{{0.0, 1.0, 0.0}, 0.001},
+                      {{0.0, -1.0, 0.0}, 0.0},
+                      {{1.0, 0.0, 0.0}, 0.0},
+                      {{1.0, 0.0, 1e-17}, 0.0}},
+                     {}};
+  const Body plate{{{{0.0, 1.0, 0.0}, 1e-11}, {{0.0, -1.0, 0.0}, 0.0}, {{1.0, 1.0, 0.0}, 0.0}}, {}};
+  expect_right(channel, plate, {0.9, -0.5, -2.0}, Vec3::Zero(), "channel and plate");
+  const Body ground{{{{0.0, 0.0, 1.0}, 1.0}, {{0.0, 1e-17, 1.0}, 1.0}}, {}};
+  const Body floor{{{{0.0, 0.0, 1.0}, 1.0}}, {}};
+  expect_right(ground, floor, {-1.0, 0.0, 0.5}, Vec3::Zero(), "ground and floor");
+}
+
+// Of points and directions that are as good to rounding, those that belong together are taken.
+TEST(NearlyLevel, WitnessPointsOfTheRobustPathLieAlongItsNormal) {
+  const Body channel{{{{0.0, 1.0, 0.0}, 2.7413532579094894e-12},
+                      {{0.0, -1.0, 0.0}, 0.0},
+                      {{1.0, 0.0, 4.0389011919380624e-14}, 0.0}},
+                     {}};
+  const Body bar{{{{1.0, 0.0, 0.0}, 6.2317549829373216e-09},
+                  {{-1.0, 0.0, 0.0}, 6.2317549829373216e-09},
+                  {{0.0, 1.0, 0.0}, 0.0066918567067290871},
+                  {{0.0, -1.0, 0.0}, 0.0066918567067290871},
+                  {{0.0, 0.0, -1.0}, 0.0}},
+                 {}};
+  expect_right(channel, bar, {-2.750262729431562e-12, 0.0, 0.0}, {0.0, -2.0, 1.0}, "bar");
+}
+
+// However thin: the point that they make is no more than rounding from their hull.
+TEST(NearlyLevel, WeightsOfASimplexAddUpToOne) {
+  Random random(7);
+  int inside = 0;
+  for (int k = 0; k < 100000; ++k) {
+    const double thick = random.log_uniform(1e-26, 1.0), wide_by = random.log_uniform(1e-26, 1.0);
+    std::array<WideVec, 4> corners;
+    for (WideVec& corner : corners) {
+      corner = wide(Vec3(random.uniform(-1.0, 1.0), wide_by * random.uniform(-1.0, 1.0),
+                         thick * random.uniform(-1.0, 1.0)));
+    }
+    const ClosestPoint closest = closest_to_origin(corners, 4);
+    double sum = -1.0;
+    for (const DoubleDouble& weight : closest.weights) sum += static_cast<double>(weight);
+    ASSERT_NEAR(sum, 0.0, 1e-14) << k;
+    inside += closest.weights[3].high > 0.0 && closest.weights[0].high > 0.0;
+  }
+  EXPECT_GT(inside, 1000);
+}
+
+}  // namespace
+}  // namespace clearance
