@@ -84,10 +84,13 @@ TEST(NearlyLevel, WeightsOfASimplexAddUpToOne) {
   int inside = 0;
   for (int k = 0; k < 100000; ++k) {
     const double thick = random.log_uniform(1e-26, 1.0), wide_by = random.log_uniform(1e-26, 1.0);
+    const Mat3 turn = random.rotation().toRotationMatrix();
     std::array<WideVec, 4> corners;
     for (WideVec& corner : corners) {
-      corner = wide(Vec3(random.uniform(-1.0, 1.0), wide_by * random.uniform(-1.0, 1.0),
-                         thick * random.uniform(-1.0, 1.0)));
+      const WideVec own = wide(Vec3(random.uniform(-1.0, 1.0), wide_by * random.uniform(-1.0, 1.0),
+                                    thick * random.uniform(-1.0, 1.0)));
+      corner = {dot(wide(turn.row(0)), own), dot(wide(turn.row(1)), own),
+                dot(wide(turn.row(2)), own)};
     }
     const ClosestPoint closest = closest_to_origin(corners, 4);
     double sum = -1.0;
