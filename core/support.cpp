@@ -85,18 +85,21 @@ double rise_of_rays(const Opening& opening, const Vec3& m) noexcept {
 }
 
 // The same by a direction near m along which all rays fall for certain: along m they rise no faster
-// than it is tilted against that one. Where but the steepest ray does not fall, it leads past that.
+// than it is tilted against that one. Where but the steepest ray does not fall, it leads past that,
+// at right angles to the lines.
 double rise_past_steepest(const Opening& opening, const Vec3& m) noexcept {
   const Vec3 across = opening.across_lines(m);
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
   const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
   if (steepest == opening.rays.end()) return kInfinity;
-  const double step = std::max(0.0, across.dot(*steepest)) + 2.0 * kSlopeError;
-  const Vec3 past = across - step * *steepest;
+  const Vec3 way = opening.across_lines(*steepest);
+  const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
+  const Vec3 past = opening.across_lines(across - step * way);
   for (const Vec3& ray : opening.rays) {
-    if (past.dot(ray) > -kSlopeError) return kInfinity;
+    if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
-  return step + (opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0);
+  const double rate = (across - past).norm();
+  return opening.line_count > 0 ? rate + (m - across).norm() + kSlopeError : rate;
 }
 
 // The same by its facets: nothing rises along their normals, and along m no faster than m is

@@ -46,6 +46,9 @@ TEST(NearlyLevel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
     const std::string what = "slope " + std::to_string(slope);
     expect_right(gable, cube, Vec3::Zero(), {-3.0, 0.5, 4.0}, what);
     expect_right(gable, cube, Vec3::Zero(), {-3.0, 1.0, 4.0}, what);
+    const Body whole{{gable.rows[0], gable.rows[1]}, {}};  // its ridge a line
+    expect_right(whole, cube, Vec3::Zero(), {-3.0, 0.5, 4.0}, what + ", a line");
+    expect_right(cube, whole, {-3.0, 1.0, 4.0}, Vec3::Zero(), what + ", a line, as B");
   }
 }
 
