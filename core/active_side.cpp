@@ -14,20 +14,11 @@ bool within(std::int32_t index, std::size_t size) noexcept {
   return index >= 0 && static_cast<std::size_t>(index) < size;
 }
 
-bool inside_facet(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p) noexcept {
-  const double slack = kOnFacet * (body.bounding_radius + p.norm());
-  for (std::int32_t i = 0; i < facet.limits; ++i) {
-    const FacetLimit limit = body.limit_of(facet, i);
-    if (limit.inward.dot(p) - limit.offset < -slack) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
-std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
-                           const Vec3& p) noexcept {
-  double least = 0.0;
+std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p,
+                           double slack) noexcept {
+  double least = -slack;
   std::int32_t beyond = kNone;
   for (std::int32_t i = 0; i < facet.limits; ++i) {
     const FacetLimit limit = body.limit_of(facet, i);
@@ -68,7 +59,8 @@ bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
   if (hint.dimension == 2 && within(hint.feature, body_.facets.size())) {
     const Facet& f = body_.facets[hint.feature];
     const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
-    if (!inside_facet(body_, f, p)) return false;
+    const double slack = kOnFacet * (body_.bounding_radius + p.norm());
+    if (crossed_limit(body_, f, p, slack) != kNone) return false;
     place(Feature::kFacet, hint.feature, p);
     return true;
   }

@@ -17,10 +17,10 @@
 
 namespace clearance {
 
-// What limits a facet's polygon, of its Facet::limits, beyond whose line p lies farthest; kNone: p
-// lies within.
+// What limits a facet's polygon, of its Facet::limits, beyond whose line p lies farthest, by more
+// than `slack` (m); kNone: p lies within.
 [[nodiscard]] std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
-                                         const Vec3& p) noexcept;
+                                         const Vec3& p, double slack = 0.0) noexcept;
 
 // Facets may be level to rounding, and which of their planes a point lies on is rounding's choice:
 // from one of them to that whose polygon p is in.

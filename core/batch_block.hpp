@@ -64,7 +64,7 @@ enum CommonRow : std::size_t {
 //   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
 //   facet   normal 3, offset
 //   vertex  position 3
-//   sides of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
+//   limits of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
 inline constexpr std::size_t kMostRepeats = 8;  // what has more is left to the single query
 inline constexpr std::size_t kEdgeRows = 14, kFacetRows = 4, kVertexRows = 3;
 inline constexpr std::size_t kSideRows = 4, kDirectionRows = 3;

@@ -145,10 +145,10 @@ bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
   ArcEnds level_at{};
   for (const Ray& ray : body_.y().rays) {
     const Rise over = rise(arc, ray);
-    const double certain = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
+    const double margin = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
     const auto rises_at = [&](const Vec2& at, std::size_t end) {
       const double rate = over.rate.dot(at);
-      if (rate > certain || rate < -certain) return rate > certain;
+      if (rate > margin || rate < -margin) return rate > margin;
       return rises_exactly(ray, arc, end, level_at[end]);
     };
     const bool l_rises = rises_at(l, 0), r_rises = rises_at(r, 1);

@@ -70,25 +70,20 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
   return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
 }
 
-// How fast a body may rise along m, at most, by its rays: what lies along the lines is no longer
-// than their sum r. The others, their parts across the lines, all have a part of at least
-// Opening::least along one direction, so that there are no more of them than |r| over that: they
-// count as often as the steepest rises.
-double rise_of_rays(const Opening& opening, const Vec3& m) noexcept {
+// How fast a sum of rays that are no lines may rise, at most, along a direction across the lines.
+// Their parts across the lines all have a part of at least Opening::least along one direction, so
+// that there are no more of them than the sum is long over that: they count as often as the
+// steepest rises.
+double rise_of_rays(const Opening& opening, const Vec3& across) noexcept {
   if (!(opening.least > 0.0)) return kInfinity;
-  const Vec3 across = opening.across_lines(m);
   double steepest = 0.0;
   for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
-  double rate = steepest / opening.least;
-  if (opening.line_count > 0) rate += (m - across).norm() + kSlopeError;
-  return rate;
+  return steepest / opening.least;
 }
 
-// The same by a direction near m along which all rays fall for certain: along m they rise no faster
-// than it is tilted against that one. Where but the steepest ray does not fall, it leads past that,
-// at right angles to the lines.
-double rise_past_steepest(const Opening& opening, const Vec3& m) noexcept {
-  const Vec3 across = opening.across_lines(m);
+// The same by a direction beside it along which all rays fall for certain: they rise no faster than
+// it is tilted against that one. Where only the steepest ray does not fall, it leads past that.
+double rise_past_steepest(const Opening& opening, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
   const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
   if (steepest == opening.rays.end()) return kInfinity;
@@ -98,12 +93,12 @@ double rise_past_steepest(const Opening& opening, const Vec3& m) noexcept {
   for (const Vec3& ray : opening.rays) {
     if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
-  const double rate = (across - past).norm();
-  return opening.line_count > 0 ? rate + (m - across).norm() + kSlopeError : rate;
+  return (across - past).norm();
 }
 
-// The same by its facets: nothing rises along their normals, and along m no faster than m is
-// tilted against one. It says more of bodies that are all but a half-space.
+// How fast a body may rise along m, at most, by its facets: nothing rises along their normals, and
+// along m no faster than m is tilted against one. It says more of bodies that are all but a
+// half-space.
 double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   double tilt2 = kInfinity;
   for (const Facet& facet : body.facets) {
@@ -143,12 +138,17 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   return best;
 }
 
-// A point is an anchor plus a sum of rays.
+// A point is an anchor plus a sum of rays; what of it lies along lines, and what across, is no
+// longer than the sum.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  double rate = rise_of_rays(body.opening, m);
+  const Opening& opening = body.opening;
+  const Vec3 across = opening.across_lines(m);
+  const double along_lines = opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+  double rate = rise_of_rays(opening, across) + along_lines;
   if (rate > kSlopeError) {
-    rate = std::min({rate, rise_above_facets(body, m), rise_past_steepest(body.opening, m)});
+    rate = std::min(
+        {rate, rise_past_steepest(opening, across) + along_lines, rise_above_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "core/distance.hpp"
 #include "tests/shared/random.hpp"
@@ -34,10 +33,10 @@ namespace clearance::test {
 [[nodiscard]] inline TrackingState::Side other_side(const ConvexPolyhedron& body, Random& random) {
   TrackingState::Side out;
   const int dimension = random.integer(0, 2);
-  if (body.features[static_cast<std::size_t>(dimension)] == 0) return out;
+  const auto count = static_cast<int>(body.features[static_cast<std::size_t>(dimension)]);
+  if (count == 0) return out;
   out.dimension = static_cast<std::uint8_t>(dimension);
-  out.feature =
-      random.integer(0, static_cast<int>(body.features[static_cast<std::size_t>(dimension)]) - 1);
+  out.feature = random.integer(0, count - 1);
   const auto on_edge = [&](const Edge& edge) -> Vec3 {
     const double from = std::max(edge.begin, -10.0), to = std::min(edge.end, 10.0);
     return edge.point + random.uniform(from, to) * edge.direction;
@@ -52,21 +51,6 @@ namespace clearance::test {
     const Vec3 at_side = on_edge(body.edges[body.facet_edges[side].edge]);
     out.point += random.unit() * (at_side - out.point);
   }
-  return out;
-}
-
-// Each feature that the body has, with a point on it, and none.
-[[nodiscard]] inline std::vector<TrackingState::Side> every_side(const ConvexPolyhedron& body) {
-  std::vector<TrackingState::Side> out(1);
-  const auto add = [&](std::uint8_t dimension, std::size_t feature, const Vec3& point) {
-    out.push_back({dimension, false, static_cast<std::int32_t>(feature), point});
-  };
-  for (std::size_t i = 0; i < body.vertices.size(); ++i) add(0, i, body.vertices[i].position);
-  for (std::size_t i = 0; i < body.edges.size(); ++i) {
-    const Edge& edge = body.edges[i];
-    add(1, i, edge.point + std::min(0.5 * edge.end, 1.0) * edge.direction);
-  }
-  for (std::size_t i = 0; i < body.facets.size(); ++i) add(2, i, body.point_of(body.facets[i]));
   return out;
 }
 

@@ -1,0 +1,46 @@
+#include "tests/shared/every_start.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace clearance::test {
+namespace {
+
+// Each feature that the body has, with a point on it, and none.
+std::vector<TrackingState::Side> every_side(const ConvexPolyhedron& body) {
+  std::vector<TrackingState::Side> out(1);
+  const auto add = [&](std::uint8_t dimension, std::size_t feature, const Vec3& point) {
+    out.push_back({dimension, false, static_cast<std::int32_t>(feature), point});
+  };
+  for (std::size_t i = 0; i < body.vertices.size(); ++i) add(0, i, body.vertices[i].position);
+  for (std::size_t i = 0; i < body.edges.size(); ++i) {
+    const Edge& edge = body.edges[i];
+    add(1, i, edge.point + std::min(0.5 * edge.end, 1.0) * edge.direction);
+  }
+  for (std::size_t i = 0; i < body.facets.size(); ++i) add(2, i, body.point_of(body.facets[i]));
+  return out;
+}
+
+std::string name_of(const TrackingState::Side& side) {
+  return std::to_string(side.dimension) + '/' + std::to_string(side.feature);
+}
+
+}  // namespace
+
+std::string fault_from_any_start(DistanceJudge& judge, const Pose& pose_a, const Pose& pose_b) {
+  const oracle::ExactDistance truth = judge.truth(pose_a, pose_b);
+  for (const TrackingState::Side& of_a : every_side(judge.a())) {
+    for (const TrackingState::Side& of_b : every_side(judge.b())) {
+      TrackingState state{of_a, of_b};
+      const DistanceResult result = judge.ask(pose_a, pose_b, state);
+      std::string out;
+      for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
+        out += "\n  " + fault;
+      }
+      if (!out.empty()) return "from " + name_of(of_a) + " and " + name_of(of_b) + ':' + out;
+    }
+  }
+  return {};
+}
+
+}  // namespace clearance::test
