@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/convex_polyhedron.hpp"
+#include "core/lean.hpp"
 
 namespace clearance {
 namespace {
@@ -23,6 +24,22 @@ void sort_rays(const ConvexPolyhedron& body, Opening& out) {
     } else if (out.line_count < out.lines.size()) {
       const Vec3 rest = out.across_lines(ray.direction.normalized());
       if (rest.norm() > 0.5) out.lines[out.line_count++] = rest.normalized();
+    }
+  }
+}
+
+// Rays that lean more than this (the sine) show it themselves.
+constexpr double kLeaning = 0x1p-20;
+
+void add_leans(const ConvexPolyhedron& body, Opening& out) {
+  for (std::size_t i = 0; i < body.rays.size(); ++i) {
+    const Vec3 e = body.rays[i].direction.normalized();
+    for (std::size_t k = 0; k < i; ++k) {
+      const Vec3 f = body.rays[k].direction.normalized();
+      if (!((e + f).norm() < kLeaning)) continue;
+      const Vec3 way =
+          narrow(apart(long_vec(body.rays[i].exactly), long_vec(body.rays[k].exactly)).way);
+      if (!way.isZero(0.0)) out.leans.push_back(way.normalized());
     }
   }
 }
@@ -59,6 +76,7 @@ void add_opening(ConvexPolyhedron& body) {
   if (body.bounded()) return;
   mark_lines(body);
   sort_rays(body, body.opening);
+  add_leans(body, body.opening);
   Vec3 against_normals = Vec3::Zero();
   for (const Facet& facet : body.facets) against_normals -= facet.normal;
   body.opening.least = least_part(body.opening, against_normals);

@@ -17,7 +17,11 @@ struct Opening {
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
   std::size_t line_count = 0;
   std::vector<Vec3> rays;  // the others, unit
-  // How much of any of these, at least, lies along one direction at right angles to the lines;
+  // Where two rays all but point away from each other, the way in which they lean, at right angles
+  // to one of them: as much a direction in which the body goes on for ever, of which their doubles
+  // may have lost everything. Unit.
+  std::vector<Vec3> leans;
+  // How much of any of these rays, at least, lies along one direction at right angles to the lines;
   // rounding included. 0 or less: no such direction is known.
   double least = 0.0;
   // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:

@@ -268,9 +268,13 @@ void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
   // An overlap by less than the slack can be seen from one side only: thrice.
   const bool tight = result.upper - result.lower <= 3.0 * p.slack + 5.0 * p.tight;
-  result.status = !tight               ? DistanceStatus::kIterationLimit
-                  : result.lower > 0.0 ? DistanceStatus::kConverged
-                                       : DistanceStatus::kTouching;
+  if (tight) {
+    result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
+    return;
+  }
+  result.status = DistanceStatus::kIterationLimit;
+  const Vec3 between = result.point_on_b - result.point_on_a;
+  if (!between.isZero(0.0)) result.normal = unit_along(between);
 }
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 // to each other: what rounding leaves open there must not cost more than rounding.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "core/simplex.hpp"
@@ -17,11 +18,15 @@ using oracle::Body;
 Pose at(const Vec3& position) { return {position, Eigen::Quaterniond::Identity()}; }
 
 // From whatever features a query begins at.
-void expect_right(const Body& a, const Body& b, const Vec3& a_at, const Vec3& b_at,
+void expect_right(const Body& a, const Body& b, const Pose& a_at, const Pose& b_at,
                   const std::string& what) {
   DistanceJudge judge(a, b);
   ASSERT_EQ(judge.refusal(), "") << what;
-  EXPECT_EQ(test::fault_from_any_start(judge, at(a_at), at(b_at)), "") << what;
+  EXPECT_EQ(test::fault_from_any_start(judge, a_at, b_at), "") << what;
+}
+void expect_right(const Body& a, const Body& b, const Vec3& a_at, const Vec3& b_at,
+                  const std::string& what) {
+  expect_right(a, b, at(a_at), at(b_at), what);
 }
 
 // The rays to both sides of its ridge all but cancel; along its ridge it is level.
@@ -53,6 +58,33 @@ TEST(NearlyLevel, BodiesWithoutEndAreLeftThroughTheirInside) {
   expect_right(ground, floor, {-1.0, 0.0, 0.5}, Vec3::Zero(), "ground and floor");
 }
 
+// A quarter of space whose one side is two facets that lean by next to nothing: the edges between
+// them and the other side point away from each other but for that, and the doubles of their sum say
+// nothing of the facet between them.
+Body leaning_quarter(double lean) {
+  return {{{{1.0, lean, -0.5 * lean}, 1.0}, {{1.0, 0.0, -lean}, 1.0}, {{0.0, 1.0, 0.0}, 0.0}}, {}};
+}
+
+TEST(NearlyLevel, AFacetBetweenEdgesThatPointAwayFromEachOtherLeadsCloser) {
+  const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
+  for (const double lean : {1e-18, 1e-17, 1e-16}) {
+    const std::string what = "leaning by " + std::to_string(lean * 1e18) + "e-18";
+    expect_right(leaning_quarter(lean), cube, Vec3::Zero(), {-0.5, 0.0, 1.0}, what);
+    expect_right(cube, leaning_quarter(lean), {-0.5, 0.5, 0.5}, Vec3::Zero(), what);
+  }
+}
+
+TEST(NearlyLevel, RaysThatPointAwayFromEachOtherAddUpToOneThatNoTranslationPasses) {
+  const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
+  for (const double lean : {1e-18, 1e-17, 1e-16}) {
+    for (const double half : {0.1, 0.2, 0.4, 0.6}) {
+      const Pose deep{{-2.0, -1.5, 0.25}, Eigen::Quaterniond(std::cos(half), 0, 0, std::sin(half))};
+      const std::string what = "turned by half of " + std::to_string(half);
+      expect_right(leaning_quarter(lean), cube, at(Vec3::Zero()), deep, what);
+    }
+  }
+}
+
 // Of points and directions that are as good to rounding, those that belong together are taken.
 TEST(NearlyLevel, WitnessPointsOfTheRobustPathLieAlongItsNormal) {
   const Body channel{{{{0.0, 1.0, 0.0}, 2.7413532579094894e-12},
@@ -66,6 +98,25 @@ TEST(NearlyLevel, WitnessPointsOfTheRobustPathLieAlongItsNormal) {
                   {{0.0, 0.0, -1.0}, 0.0}},
                  {}};
   expect_right(channel, bar, {-2.750262729431562e-12, 0.0, 0.0}, {0.0, -2.0, 1.0}, "bar");
+}
+
+// A wedge whose edge is 3e14 m away, and a channel with one ray that leans towards it by 1e-323.
+TEST(NearlyLevel, WhereOnlyWideBoundsAreKnownTheNormalLeadsFromPointToPoint) {
+  const Body wedge{{{{0.0, 1.0, 0.0}, 0.5}, {{-0x1.8p-49, -1.0, 0.0}, 0.25}}, {}};
+  const Body channel{{{{-0.75, 0.625, 0.5}, 0.5},
+                      {{0.125, 1.0, 0.0}, -0.5},
+                      {{-1.0, -0.375, 0.0}, 0.5},
+                      {{0.125, -1.0, 0.0}, 0.5}},
+                     {}};
+  const Pose under{Vec3::Zero(), Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0)};
+  const Pose above{{556.0, 372.0, 132.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, -0x1p-1074)};
+  const DistanceJudge judge(wedge, channel);
+  ASSERT_EQ(judge.refusal(), "");
+  TrackingState state;
+  const DistanceResult r = judge.ask(under, above, state);
+  ASSERT_EQ(r.status, DistanceStatus::kIterationLimit);
+  ASSERT_GT(r.distance, 300.0);
+  EXPECT_LT((r.point_on_b - r.point_on_a - r.distance * r.normal).norm(), 1e-9);
 }
 
 // However thin: the point that they make is no more than rounding from their hull.
