@@ -47,9 +47,6 @@ class DifferenceBody {
   [[nodiscard]] Vec3 point_from_y(const Vec3& p) const noexcept {
     return x_from_y_ * p + origin_of_y_;
   }
-  [[nodiscard]] Vec3 point_to_y(const Vec3& p) const noexcept {
-    return x_from_y_.transpose() * (p - origin_of_y_);
-  }
   [[nodiscard]] Placement x_from_y() const noexcept {
     return {x_from_y_, Vec3::Zero(), origin_of_y_};
   }

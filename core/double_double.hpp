@@ -1,5 +1,4 @@
-// Twice the precision of a double, for the robust path: the unevaluated sum of two doubles, about
-// 32 digits.
+// Twice the precision of a double: the unevaluated sum of two of them, about 32 digits.
 //
 // Sums and products of doubles are exact by Knuth's and Dekker's error-free transformations, which
 // need no fused multiply-add and give the same bits on every machine. Magnitudes between 1e-140 and

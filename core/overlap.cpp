@@ -8,13 +8,11 @@
 #include "core/dqp3.hpp"
 #include "core/feature_walk.hpp"
 #include "core/precision.hpp"
+#include "core/rounding.hpp"
 #include "core/support.hpp"
 
 namespace clearance {
 namespace {
-
-// Edges nearer to parallel than this (the sine) do not say much about a direction across both.
-constexpr double kCrossing = 1e-3;
 
 // To find the points that meet when B has been moved by its depth, B is moved a little farther: by
 // the depth again, at least by this part of the bodies' size, so that the direction between the
@@ -49,9 +47,9 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
   const Edge& e = a.body().edges[state.a.feature];
   const Vec3 n =
       e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
-  const double sine = n.norm();
-  if (!(sine > kCrossing)) return false;
-  const double inwards = (e.inward * n).sum();
+  const double sine2 = n.squaredNorm();
+  if (!(sine2 > kCrossingSine2)) return false;
+  const double inwards = (e.inward * n).sum(), sine = std::sqrt(sine2);
   out = {n / (inwards > 0.0 ? -sine : sine), kNone, kNone, state.a.feature, state.b.feature};
   return true;
 }

@@ -70,27 +70,32 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
   return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
 }
 
+// A spread's sums rise along its lines no faster than this, per unit length.
+double rise_of_lines(const Spread& spread, const Vec3& m, const Vec3& across) noexcept {
+  return spread.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+}
+
 // How fast a sum of rays that are no lines may rise, at most, along a direction across the lines.
-// Their parts across the lines all have a part of at least Opening::least along one direction, so
+// Their parts across the lines all have a part of at least Spread::least along one direction, so
 // that there are no more of them than the sum is long over that: they count as often as the
 // steepest rises.
-double rise_of_rays(const Opening& opening, const Vec3& across) noexcept {
-  if (!(opening.least > 0.0)) return kInfinity;
+double rise_of_rays(const Spread& spread, const Vec3& across) noexcept {
+  if (!(spread.least > 0.0)) return kInfinity;
   double steepest = 0.0;
-  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
-  return steepest / opening.least;
+  for (const Vec3& ray : spread.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  return steepest / spread.least;
 }
 
 // The same by a direction beside it along which all rays fall for certain: they rise no faster than
 // it is tilted against that one. Where only the steepest ray does not fall, it leads past that.
-double rise_past_steepest(const Opening& opening, const Vec3& across) noexcept {
+double rise_past_steepest(const Spread& spread, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
-  const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
-  if (steepest == opening.rays.end()) return kInfinity;
-  const Vec3 way = opening.across_lines(*steepest);
+  const auto steepest = std::max_element(spread.rays.begin(), spread.rays.end(), steeper);
+  if (steepest == spread.rays.end()) return kInfinity;
+  const Vec3 way = spread.across_lines(*steepest);
   const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
-  const Vec3 past = opening.across_lines(across - step * way);
-  for (const Vec3& ray : opening.rays) {
+  const Vec3 past = spread.across_lines(across - step * way);
+  for (const Vec3& ray : spread.rays) {
     if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
   return (across - past).norm();
@@ -144,11 +149,14 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
   if (body.bounded()) return 0.0;
   const Opening& opening = body.opening;
   const Vec3 across = opening.across_lines(m);
-  const double along_lines = opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  double rate = rise_of_rays(opening, across) + along_lines;
+  const double of_lines = rise_of_lines(opening, m, across);
+  double rate = rise_of_rays(opening, across) + of_lines;
   if (rate > kSlopeError) {
-    rate = std::min(
-        {rate, rise_past_steepest(opening, across) + along_lines, rise_above_facets(body, m)});
+    const Vec3 across_more = opening.relaxed.across_lines(m);
+    rate = std::min({rate, rise_past_steepest(opening, across) + of_lines,
+                     rise_of_rays(opening.relaxed, across_more) +
+                         rise_of_lines(opening.relaxed, m, across_more),
+                     rise_above_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }

@@ -15,7 +15,7 @@ struct Towards {
 namespace towards_case {
 
 // Edges whose cross product is shorter than this leave too little of its direction.
-inline constexpr double kCrossing = 1e-5;
+inline constexpr double kShortest = 1e-5;
 
 inline Vec3 across(const Vec3& v, const Vec3& e) noexcept { return v - v.dot(e) * e; }
 // Unit vectors that the rotation's doubles have turned are not quite of unit length.
@@ -40,7 +40,7 @@ inline Towards edge_edge(const ActiveSide& a, const ActiveSide& b, const Vec3& b
   const Vec3 e = along(a), f = along(b);
   const Vec3 n = e.cross(f);
   const double sine2 = n.squaredNorm();
-  if (sine2 > kCrossing * kCrossing) return {(n.dot(between) / sine2) * n, true};
+  if (sine2 > kShortest * kShortest) return {(n.dot(between) / sine2) * n, true};
   return {across(across(across(between, f), e), f), false};
 }
 

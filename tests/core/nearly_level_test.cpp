@@ -2,6 +2,7 @@
 // to each other: what rounding leaves open there must not cost more than rounding.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 
@@ -81,6 +82,23 @@ TEST(NearlyLevel, RaysThatPointAwayFromEachOtherAddUpToOneThatNoTranslationPasse
       const Pose deep{{-2.0, -1.5, 0.25}, Eigen::Quaterniond(std::cos(half), 0, 0, std::sin(half))};
       const std::string what = "turned by half of " + std::to_string(half);
       expect_right(leaning_quarter(lean), cube, at(Vec3::Zero()), deep, what);
+    }
+  }
+}
+
+// Its edges all but go on as one line; how fast it rises along what is level along that one only
+// to rounding must not count over the little that they lean.
+TEST(NearlyLevel, EdgesThatAllButGoOnAsOneLineCostNoMoreThanRounding) {
+  const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
+  for (const double lean : {1e-15, 1e-14, 1e-12, 1e-9}) {
+    const Body corner{{{{0.0, lean, 1.0}, 1.0}, {{0.0, 0.0, 1.0}, 1.0}, {{1.0, 0.0, lean}, 0.5}},
+                      {}};
+    for (const double half : {0.3, 0.7, 1.1}) {
+      for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+        const Pose turned{{3.0, 2.5, 0.5}, Eigen::Quaterniond(Eigen::AngleAxisd(2.0 * half, axis))};
+        expect_right(corner, cube, at(Vec3::Zero()), turned,
+                     "lean " + std::to_string(-std::log10(lean)) + ", " + std::to_string(half));
+      }
     }
   }
 }
