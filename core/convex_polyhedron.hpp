@@ -90,6 +90,7 @@ class VectorRows {
   void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
     values_[static_cast<std::size_t>(first * numbers_ + k * n + i)] = to;
   }
+  [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
   void resize(std::size_t vectors) {
     values_.assign(vectors * static_cast<std::size_t>(numbers_) + kOverrun, 0.0);
   }

@@ -44,8 +44,8 @@ double least_part(const Spread& of, const Vec3& against_normals) {
   return most - kSlopeError;
 }
 
-// Rays that lean more than this (the sine) show it themselves.
-constexpr double kLeaning = 0x1p-20;
+// Rays that lean by more than this (the sine) show it themselves.
+constexpr double kPointsAway = 0x1p-20;
 
 // Unit, or zero: how f leans away from the line of e.
 Vec3 lean_of(const Ray& f, const Ray& e) {
@@ -64,7 +64,7 @@ void add_leans(const ConvexPolyhedron& body, Opening& out) {
   for (const Ray& ray : body.rays) {
     const Vec3 direction = ray.direction.normalized();
     for (const Ray* other = body.rays.data(); other != &ray; ++other) {
-      if (!((direction + other->direction.normalized()).norm() < kLeaning)) continue;
+      if (!((direction + other->direction.normalized()).norm() < kPointsAway)) continue;
       const Vec3 lean = lean_of(*other, ray);
       if (lean.isZero(0.0)) continue;
       out.leans.push_back(lean);

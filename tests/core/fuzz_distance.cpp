@@ -6,7 +6,8 @@
 // zero, to other doubles of the same case. It is asked with a state that the input makes up, with
 // the state that this leaves where B has moved, and with `far_away` at half the distance.
 //
-// To build and to run it (Debian: apt-get install clang libclang-rt-14-dev):
+// To build, a quarter of an hour on one core, and to run it (Debian: apt-get install clang
+// libclang-rt-14-dev):
 //
 //   CXX=clang++ CC=clang cmake -B build-fuzz -G Ninja -DCLEARANCE_FUZZ=ON -DCLEARANCE_CORE_ONLY=ON
 //   ninja -C build-fuzz fuzz_distance

@@ -15,7 +15,12 @@ int __real_posix_memalign(void** memory, std::size_t alignment, std::size_t size
 
 namespace {
 
-thread_local std::uint64_t count = 0;
+thread_local std::uint64_t count = 0, bytes = 0;
+
+void add(std::size_t size) noexcept {
+  ++count;
+  bytes += size;
+}
 
 void* aligned_or_null(std::size_t size, std::size_t alignment) noexcept {
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
@@ -32,27 +37,28 @@ void* aligned(std::size_t size, std::size_t alignment) {
 
 namespace clearance {
 std::uint64_t allocations() noexcept { return count; }
+std::uint64_t allocated_bytes() noexcept { return bytes; }
 }  // namespace clearance
 
 extern "C" {
 void* __wrap_malloc(std::size_t size) {
-  ++count;
+  add(size);
   return __real_malloc(size);
 }
 void* __wrap_calloc(std::size_t of, std::size_t size) {
-  ++count;
+  add(of * size);
   return __real_calloc(of, size);
 }
 void* __wrap_realloc(void* memory, std::size_t size) {
-  ++count;
+  add(size);
   return __real_realloc(memory, size);
 }
 void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++count;
+  add(size);
   return __real_aligned_alloc(alignment, size);
 }
 int __wrap_posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
-  ++count;
+  add(size);
   return __real_posix_memalign(memory, alignment, size);
 }
 }

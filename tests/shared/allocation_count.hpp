@@ -6,7 +6,8 @@
 
 namespace clearance {
 
-// Allocations of this thread so far.
+// Allocations of this thread so far, and how many bytes they asked for.
 [[nodiscard]] std::uint64_t allocations() noexcept;
+[[nodiscard]] std::uint64_t allocated_bytes() noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,5 @@
 // The names and counters of clearance-bench's rows, which others' scripts read.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -7,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "monitor/record/build.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -33,10 +35,17 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
       }
     }
   }
+  for (const char* peer : {"fcl", "fcl-tight", "fcl-gjk", "bullet", "libccd", "qp"}) {
+    for (const std::string load : {"tracked/f2", "cold/v40", "tracked/parallel-boxes"}) {
+      EXPECT_TRUE(there.contains("peer/" + (peer + ("/" + load)))) << peer << load;
+    }
+  }
   for (const char* name :
        {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes", "batch/links",
-        "batch/own/boxes", "peer/qp/tracked/f2", "interval/100/f2", "overlap/tracked/boxes/middle",
-        "cell/batch/two_arms"}) {
+        "batch/own/boxes", "batch/single/boxes", "interval/100/f2", "variant/base/interval/100/f2",
+        "variant/moved-before/tracked/f2", "adjacency/walk/f2", "adjacency/core/f2",
+        "adjacency/qhull/f2", "overlap/tracked/boxes/middle", "cell/tracked/two_arms",
+        "cell/batch/two_arms", "tick/two_arms"}) {
     EXPECT_TRUE(there.contains(name)) << name;
   }
 }
@@ -57,9 +66,39 @@ TEST(BenchRows, SayTimeErrorAndFailuresInJson) {
     EXPECT_LT(row.at("max_error").get<double>(), 1e-14);
     EXPECT_LT(row.at("widest_gap").get<double>(), 1e-13);
     EXPECT_EQ(row.at("failures").get<double>(), 0.0);
+    EXPECT_EQ(row.at("steps"), row.at("iterations"));
     EXPECT_GE(row.at("iterations").get<double>(), 1.0);
     EXPECT_LT(row.at("iterations").get<double>(), 10.0);
   }
+}
+
+TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "rows.json").string();
+  test::ChildProcess bench(
+      kBench, {"--benchmark_filter=^peer/.*/tracked/boxes$", "--benchmark_min_time=0.001",
+               "--benchmark_out=" + file, "--benchmark_out_format=json"});
+  ASSERT_EQ(bench.wait(), 0) << bench.output();
+  const auto rows = nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
+  ASSERT_EQ(rows.size(), 6u);
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_GT(row.at("ns").get<double>(), 0.0);
+    EXPECT_LT(row.at("failures").get<double>(), 40.0);
+    EXPECT_EQ(row.contains("max_error"), row.at("name") != "peer/libccd/tracked/boxes");
+  }
+}
+
+TEST(BenchRows, AreWrittenAsAReportWithItsPicture) {
+  const test::ScratchFolder folder;
+  test::ChildProcess bench(
+      kBench, {"--report", folder / "", "--benchmark_filter=^(tracked|peer/qp/tracked)/f2$",
+               "--benchmark_min_time=0.001", "--benchmark_repetitions=1"});
+  ASSERT_EQ(bench.wait(), 0) << bench.output();
+  const std::string tables = test::read_text(folder / "report.md");
+  EXPECT_THAT(tables, testing::HasSubstr("## Tracked, against peers"));
+  EXPECT_THAT(tables, testing::HasSubstr(std::string("Made by clearance-bench ") + kBuild));
+  EXPECT_THAT(test::read_text(folder / "pareto.svg"), testing::EndsWith("</svg>\n"));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "tools/bench/cells.hpp"
+#include "tools/bench/measure.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -83,7 +84,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
   }
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(static_cast<std::int64_t>(queries));
-  state.counters["iterations"] = static_cast<double>(iterations) / static_cast<double>(queries);
+  count_steps(state, static_cast<double>(iterations) / static_cast<double>(queries));
   state.counters["widest_gap"] = widest;
   state.counters["ns"] =
       benchmark::Counter(static_cast<double>(queries) * 1e-9,

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "monitor/record/build.hpp"
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
@@ -28,9 +29,10 @@ constexpr const char* kHelp =
     "  cold/f2 ... links  the same without what the last query left\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
-    "                     batch/AVX2/... with that instruction set\n"
+    "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
+    "                     no two of which have a shape in common, batch/own/single/... one by one\n"
     "  overlap/tracked/KIND/HOW, overlap/cold/...  how deep: boxes, links, f10, v10, f40, v40;\n"
-    "                     shallow, half, near, nearer, middle (core/OVERLAP.md); no reference\n"
+    "                     shallow, half, near, nearer, middle (tools/README.md); no reference\n"
     "  variant/WHICH/...  the thesis's loop without certificates: base, dual, consistent,\n"
     "                     aggressive, all-facets, moved (its tables, at every query);\n"
     "                     moved-before and base-repeated: what a query takes without that, and\n"
@@ -59,8 +61,11 @@ constexpr const char* kHelp =
     "failures (flag, NaN, or error above 1e-6 m) among the 4,000 queries, of a batch 102,400, of\n"
     "overlaps 1,000; iterations, mean, 0 where not told; truth_gap, how far the reference itself\n"
     "may be off; overlapping, how many pairs are; widest_gap, m: of our bounds. The console\n"
-    "shortens them: 4f is 4e-15, 4a 4e-18. Of adjacency: wrong, pairs of facets too many or\n"
+    "shortens them: 4f is 4e-15, 4a 4e-18, and calls ns, a rate to it, s. `steps` is `iterations`\n"
+    "under a name that Google's own counter does not have. Of batches: single, the part of the\n"
+    "pairs that were asked one by one. Of adjacency: wrong, pairs of facets too many or\n"
     "missing. Of cells: ns and widest_gap; the poses are the cell's own, and nothing judges them.\n"
+    "The warning of a DEBUG library is about how Debian builds Google Benchmark, not about ours.\n"
     "\n"
     "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
     "  --version          says which one it is\n"
@@ -105,7 +110,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--version") {
-      std::puts("clearance " CLEARANCE_VERSION);
+      std::printf("clearance %s\n", clearance::kBuild);
       return 0;
     }
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);

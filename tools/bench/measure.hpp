@@ -57,11 +57,16 @@ struct Verdict {
   }
 };
 
+// The solver's, mean. Google's own count of queries is called iterations as well.
+inline void count_steps(benchmark::State& state, double steps) {
+  state.counters["iterations"] = state.counters["steps"] = steps;
+}
+
 // Its counters.
 inline void count(benchmark::State& state, const Verdict& verdict) {
   if (verdict.measures) state.counters["max_error"] = verdict.max_error;
   state.counters["failures"] = verdict.failures;
-  state.counters["iterations"] = verdict.iterations;
+  count_steps(state, verdict.iterations);
   state.counters["truth_gap"] = verdict.truth_gap;
   state.counters["overlapping"] = verdict.overlapping;
   if (verdict.widest_gap > 0.0) state.counters["widest_gap"] = verdict.widest_gap;

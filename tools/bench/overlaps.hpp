@@ -1,4 +1,4 @@
-// Pairs of bodies that overlap, for what a depth costs (core/OVERLAP.md).
+// Pairs of bodies that overlap, for what a depth costs (tools/README.md, "Overlapping").
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 #include "tools/bench/variants.hpp"
 
 #include "tools/bench/clocks.hpp"
+#include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/moved_body.hpp"
 #include "tools/bench/variant_loop.hpp"
@@ -154,6 +155,7 @@ void register_variants() {
   register_variant<Moved>("moved");
   register_repeated<Unmoved>("base-repeated");
   register_repeated<Moved>("moved-before");
+  register_intervals<Variant<Release::kBase, Scan::kNeighbours>>("variant/base/");
 }
 
 }  // namespace clearance::bench

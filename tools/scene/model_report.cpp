@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/enclosing_polyhedron.hpp"
+#include "core/footprint.hpp"
 #include "monitor/enclosing_ball.hpp"
 #include "monitor/enclosing_hull.hpp"
 
@@ -19,18 +20,8 @@ struct Size {
   std::size_t facets = 0, vertices = 0, bytes = 0;
 };
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& values) {
-  return values.size() * sizeof(T);
-}
-
 Size size_of(const ConvexPolyhedron& p) {
-  const std::size_t walking =
-      (3 * p.vertex_edges.size() + 4 * p.facet_edges.size()) * sizeof(double);
-  const std::size_t tables = bytes_of(p.facets) + bytes_of(p.edges) + bytes_of(p.vertices) +
-                             bytes_of(p.facet_edges) + bytes_of(p.vertex_edges) +
-                             bytes_of(p.anchors) + bytes_of(p.rays) + walking;
-  return {p.facets.size(), p.vertices.size(), sizeof p + tables};
+  return {p.facets.size(), p.vertices.size(), footprint(p)};
 }
 
 struct Hull {

@@ -15,7 +15,7 @@ struct Figure {
   double failures = 0.0;
   double iterations = 0.0;
   double facets = 0.0, wrong = 0.0;  // adjacency only
-  // Of ticks: all that the row counts; 0 where it does not.
+  // All else that the row counts; 0 where it does not.
   std::map<std::string, double> counters;
   [[nodiscard]] double counted(const std::string& name) const {
     const auto found = counters.find(name);

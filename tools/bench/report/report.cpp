@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <fstream>
 
+#include "monitor/record/build.hpp"
+
 namespace clearance::bench {
 namespace {
 
@@ -26,7 +28,9 @@ bool write_both(const std::filesystem::path& folder, const char* table_file,
                  error.message().c_str());
     return false;
   }
-  if (!write(folder / table_file, table)) return false;
+  if (!write(folder / table_file, table + "\nMade by clearance-bench " + kBuild + ".\n")) {
+    return false;
+  }
   if (!write(folder / picture_file, picture)) return false;
   std::fprintf(stderr, "\r\033[Kwritten: %s and %s\n", (folder / table_file).c_str(),
                (folder / picture_file).c_str());

@@ -12,7 +12,7 @@ namespace clearance::bench {
 inline constexpr const char* kReportRows =
     "^(tracked/|cold/|batch/|peer/|overlap/|interval/|adjacency/|variant/"
     "((base|dual|aggressive|consistent|all-facets)/(tracked|cold)|"
-    "(base-repeated|moved-before|moved)/tracked)/f)";
+    "(base-repeated|moved-before|moved)/tracked|base/interval/[0-9]+)/f)";
 
 // Writes DIR/report.md and DIR/pareto.svg. False, and says so on stderr, when it cannot.
 [[nodiscard]] bool write_report(const std::filesystem::path& folder, const Figures& figures);

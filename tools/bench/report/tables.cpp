@@ -112,7 +112,7 @@ std::string tables(const Figures& figures) {
          "Failures are of 102,400.\n\n"
       << batches(figures)
       << "## Overlapping\n\nHow deep, us a query, tracked and in brackets cold; the columns are "
-         "how near the origins are (core/OVERLAP.md), the last one how far apart our bounds "
+         "how near the origins are (tools/README.md), the last one how far apart our bounds "
          "are.\n\n"
       << overlaps(figures) << thesis_tables(figures);
   return out.str();

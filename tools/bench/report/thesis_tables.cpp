@@ -100,7 +100,7 @@ std::string tracked_and_cold(const Figures& figures) {
 std::string intervals(const Figures& figures) {
   Cells head{"steps"};
   for (const char* load : kIntervalLoads) {
-    for (const char* who : {"ours", "fcl-gjk", "bullet", "qp"}) {
+    for (const char* who : {"ours", "base", "fcl-gjk", "bullet", "qp"}) {
       head.push_back(print("%s: %s", load, who));
     }
   }
@@ -109,7 +109,7 @@ std::string intervals(const Figures& figures) {
     Cells cells{std::to_string(steps)};
     for (const char* load : kIntervalLoads) {
       const std::string name = "interval/" + std::to_string(steps) + "/" + load;
-      for (const char* who : {"", "peer/fcl-gjk/", "peer/bullet/", "peer/qp/"}) {
+      for (const char* who : {"", "variant/base/", "peer/fcl-gjk/", "peer/bullet/", "peer/qp/"}) {
         cells.push_back(ns_and_failures(figures.at(who + name)));
       }
     }
