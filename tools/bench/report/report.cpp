@@ -28,7 +28,7 @@ bool write_both(const std::filesystem::path& folder, const char* table_file,
                  error.message().c_str());
     return false;
   }
-  if (!write(folder / table_file, table + "\nMade by clearance-bench " + kBuild + ".\n")) {
+  if (!write(folder / table_file, table + "Made by clearance-bench " + kBuild + ".\n")) {
     return false;
   }
   if (!write(folder / picture_file, picture)) return false;
