@@ -84,11 +84,13 @@ constexpr double kThin = 0x1p-44;
 
 bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept {
   if (side.feature() == Feature::kInside) return false;
+  const ConvexPolyhedron& body = side.body();
   const Vec3 towards = side.direction_to_own(towards_in_common);
-  const double closer = (side.body().interior - side.own()).dot(towards);
-  if (!(closer > kThin * side.body().bounding_radius * towards.norm())) return false;
-  side.place_inside(side.own());
-  return true;
+  const double thin = kThin * towards.norm();
+  const bool closer = (body.interior - side.own()).dot(towards) > thin * body.bounding_radius ||
+                      body.opening.inwards.dot(towards) > thin;
+  if (closer) side.place_inside(side.own());
+  return closer;
 }
 
 Dqp3Outcome iterate(ActiveSide& a, ActiveSide& b, double contact) noexcept {

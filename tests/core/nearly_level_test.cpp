@@ -57,6 +57,13 @@ TEST(NearlyLevel, BodiesWithoutEndAreLeftThroughTheirInside) {
   const Body ground{{{{0.0, 0.0, 1.0}, 1.0}, {{0.0, 1e-17, 1.0}, 1.0}}, {}};
   const Body floor{{{{0.0, 0.0, 1.0}, 1.0}}, {}};
   expect_right(ground, floor, {-1.0, 0.0, 0.5}, Vec3::Zero(), "ground and floor");
+  // Their vertices' middle lies on the level side, too.
+  const Body ledge{
+      {{{0.0, -1.5e-16, 1.0}, 0.5}, {{-1.0, 0.0, -3e-16}, 0.0}, {{3e-16, 0.0, 1.0}, 0.5}}, {}};
+  const Body roof{{{{3e-16, 1.0, -6e-16}, 1.0}, {{0.0, 1.0, 0.0}, 1.0}, {{0.0, 3e-16, -1.0}, 1.0}},
+                  {}};
+  const Pose over{{0.0, 0.0, -1.0}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
+  expect_right(ledge, roof, at(Vec3::Zero()), over, "ledge and roof");
 }
 
 // A quarter of space whose one side is two facets that lean by next to nothing: the edges between
