@@ -67,7 +67,8 @@ struct EdgeUse {
 
 struct Vertex {
   Vec3 position;
-  // vertex_edges[first_edge, first_edge + edges): the edges that leave it; none for a single point.
+  // vertex_edges[first_edge, first_edge + edges): the edges that leave it, counter-clockwise as
+  // seen from outside; none for a single point.
   std::int32_t first_edge;
   std::int32_t edges;
 };

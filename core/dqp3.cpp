@@ -43,38 +43,15 @@ bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
 // Follows an edge or a facet, or leaves for the inside, from where x is.
 void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.index, side.own()); }
 
-// How fast the facet's inside may come closer, at the vertex, in the unit of `towards`: along what
-// is across each of the two edges that it has there.
-double rate_between_edges(const ActiveSide& side, std::int32_t facet,
-                          const Vec3& towards) noexcept {
-  double rate = kInfinity;
-  const std::int32_t first = side.vertex().first_edge;
-  for (std::int32_t i = first; i < first + side.vertex().edges; ++i) {
-    const Edge& edge = side.body().edges[side.body().vertex_edges[i].edge];
-    for (int k = 0; k < 2; ++k) {
-      if (edge.facet[k] == facet) rate = std::min(rate, edge.inward.row(k).dot(towards));
-    }
-  }
-  return rate;
-}
-
 // Two edges that all but point away from each other generate the facet between them by digits that
 // rounding takes: then neither leads closer, and yet the facet does.
 bool leave_for_facet(ActiveSide& side, const Vec3& towards_in_common) noexcept {
   if (side.feature() != Feature::kVertex) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
-  const double certain = kCertainRate * towards.norm();
-  const std::int32_t first = side.vertex().first_edge;
-  for (std::int32_t i = first; i < first + side.vertex().edges; ++i) {
-    const Edge& edge = side.body().edges[side.body().vertex_edges[i].edge];
-    for (int k = 0; k < 2; ++k) {
-      if (!(edge.inward.row(k).dot(towards) > certain)) continue;
-      if (!(rate_between_edges(side, edge.facet[k], towards) > certain)) continue;
-      side.place(Feature::kFacet, edge.facet[k], side.own());
-      return true;
-    }
-  }
-  return false;
+  const Lambda facet = lambda_case::of_facets_at_vertex(side, towards);
+  if (!(facet.rate > kCertainRate * towards.norm())) return false;
+  release(side, facet);
+  return true;
 }
 
 // On the far side of a body, where facets are level to rounding, no edge and no facet leads closer,

@@ -1,6 +1,8 @@
 // The 'lambda' step: does letting go of an active facet bring the bodies closer? (§3.4.3)
 #pragma once
 
+#include <algorithm>
+
 #include "core/active_side.hpp"
 #include "core/steepest_edge.hpp"
 
@@ -33,6 +35,25 @@ inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
   const SteepestEdge steepest = steepest_edge(side.body(), side.vertex(), towards);
   if (steepest.at == kNone) return {};
   return {steepest.rate, Feature::kEdge, side.body().vertex_edges[steepest.at].edge};
+}
+
+// The facets between the vertex's edges, one by one: along what is across each of two neighbours.
+inline Lambda of_facets_at_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
+  const ConvexPolyhedron& body = side.body();
+  const Vertex& vertex = side.vertex();
+  const auto across = [&](const EdgeUse& use, int k) {
+    return body.edges[use.edge].inward.row(k).dot(towards);
+  };
+  Lambda best;
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const EdgeUse& right = body.vertex_edges[vertex.first_edge + i];
+    const EdgeUse& left = body.vertex_edges[vertex.first_edge + (i + 1) % vertex.edges];
+    const double rate = std::min(across(right, right.side), across(left, 1 - left.side));
+    if (rate > best.rate) {
+      best = {rate, Feature::kFacet, body.edges[right.edge].facet[right.side]};
+    }
+  }
+  return best;
 }
 
 }  // namespace lambda_case

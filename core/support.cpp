@@ -70,11 +70,6 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
   return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
 }
 
-// A spread's sums rise along its lines no faster than this, per unit length.
-double rise_of_lines(const Spread& spread, const Vec3& m, const Vec3& across) noexcept {
-  return spread.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-}
-
 // How fast a sum of rays that are no lines may rise, at most, along a direction across the lines.
 // Their parts across the lines all have a part of at least Spread::least along one direction, so
 // that there are no more of them than the sum is long over that: they count as often as the
@@ -99,6 +94,15 @@ double rise_past_steepest(const Spread& spread, const Vec3& across) noexcept {
     if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
   return (across - past).norm();
+}
+
+// How fast a spread's sums may rise along m, at most: along its lines, and beside them as its rays
+// may along a direction across the lines.
+double rise(const Spread& spread, const Vec3& m,
+            double (*of_rays)(const Spread&, const Vec3&) noexcept) noexcept {
+  const Vec3 across = spread.across_lines(m);
+  const double of_lines = spread.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+  return of_rays(spread, across) + of_lines;
 }
 
 // How fast a body may rise along m, at most, by its facets: nothing rises along their normals, and
@@ -148,15 +152,10 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const Opening& opening = body.opening;
-  const Vec3 across = opening.across_lines(m);
-  const double of_lines = rise_of_lines(opening, m, across);
-  double rate = rise_of_rays(opening, across) + of_lines;
+  double rate = rise(opening, m, rise_of_rays);
   if (rate > kSlopeError) {
-    const Vec3 across_more = opening.relaxed.across_lines(m);
-    rate = std::min({rate, rise_past_steepest(opening, across) + of_lines,
-                     rise_of_rays(opening.relaxed, across_more) +
-                         rise_of_lines(opening.relaxed, m, across_more),
-                     rise_above_facets(body, m)});
+    rate = std::min({rate, rise(opening, m, rise_past_steepest),
+                     rise(opening.relaxed, m, rise_of_rays), rise_above_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }

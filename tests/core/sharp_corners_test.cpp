@@ -52,25 +52,25 @@ TEST(SharpCorners, OfAFacetEndItBelowATipThatPasses) {
 // A needle 1e-293 m thick: its sides' directions are the same in doubles, their lines parallel. It
 // ends beside a bar that does not.
 TEST(SharpCorners, EndANeedleThatDoublesTakeForAStrip) {
-  constexpr double w = 1e-293;
+  constexpr double kThin = 1e-293;
   const oracle::Body bar{{{{-1, 0, 0}, 1.0},
-                          {{1, 0, 0}, w},
-                          {{0, 1, 0}, 1e-5 * w},
-                          {{0, -1, 0}, 1e-5 * w},
-                          {{0, 0, 1}, w},
+                          {{1, 0, 0}, kThin},
+                          {{0, 1, 0}, 1e-5 * kThin},
+                          {{0, -1, 0}, 1e-5 * kThin},
+                          {{0, 0, 1}, kThin},
                           {{0, 0, -1}, 1e17}},
                          {}};
   const oracle::Body needle{{},
-                            {{2.7 * w, 3.0 * w, -0.6 * w},
-                             {-3.6 * w, 1.8 * w, -0.7 * w},
-                             {3.5 * w, 1.5 * w, 1.4 * w},
-                             {0.0, -0.4 * w, -2.7 * w},
-                             {1.1 * w, 1.7 * w, -3.5 * w},
-                             {1.2 * w, 3.8 * w, -0.8 * w},
-                             {-2.3 * w, -2.9 * w, 1.7 * w},
-                             {-0.2 * w, -0.2 * w, -1.0}}};
+                            {{2.7 * kThin, 3.0 * kThin, -0.6 * kThin},
+                             {-3.6 * kThin, 1.8 * kThin, -0.7 * kThin},
+                             {3.5 * kThin, 1.5 * kThin, 1.4 * kThin},
+                             {0.0, -0.4 * kThin, -2.7 * kThin},
+                             {1.1 * kThin, 1.7 * kThin, -3.5 * kThin},
+                             {1.2 * kThin, 3.8 * kThin, -0.8 * kThin},
+                             {-2.3 * kThin, -2.9 * kThin, 1.7 * kThin},
+                             {-0.2 * kThin, -0.2 * kThin, -1.0}}};
   DistanceJudge judge(bar, needle);
-  const Pose beside{{11.0 * w, 5.7 * w, 10.7 * w}, Eigen::Quaterniond::Identity()};
+  const Pose beside{{11.0 * kThin, 5.7 * kThin, 10.7 * kThin}, Eigen::Quaterniond::Identity()};
   EXPECT_EQ(test::fault_from_any_start(judge, Pose{}, beside), "");
 }
 

@@ -26,6 +26,16 @@ std::set<std::string> names() {
   return out;
 }
 
+// As JSON gives them.
+nlohmann::json rows_of(const std::string& filter) {
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "rows.json").string();
+  test::ChildProcess bench(kBench, {"--benchmark_filter=" + filter, "--benchmark_min_time=0.001",
+                                    "--benchmark_out=" + file, "--benchmark_out_format=json"});
+  EXPECT_EQ(bench.wait(), 0) << bench.output();
+  return nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
+}
+
 TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
   const std::set<std::string> there = names();
   for (const char* kind : {"f", "v"}) {
@@ -51,13 +61,7 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
 }
 
 TEST(BenchRows, SayTimeErrorAndFailuresInJson) {
-  const test::ScratchFolder folder;
-  const std::string file = (folder / "rows.json").string();
-  test::ChildProcess bench(
-      kBench, {"--benchmark_filter=^(tracked|cold|batch)/boxes$", "--benchmark_min_time=0.001",
-               "--benchmark_out=" + file, "--benchmark_out_format=json"});
-  ASSERT_EQ(bench.wait(), 0) << bench.output();
-  const auto rows = nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
+  const nlohmann::json rows = rows_of("^(tracked|cold|batch)/boxes$");
   ASSERT_EQ(rows.size(), 3u);
   for (const auto& row : rows) {
     SCOPED_TRACE(row.dump());
@@ -73,13 +77,7 @@ TEST(BenchRows, SayTimeErrorAndFailuresInJson) {
 }
 
 TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
-  const test::ScratchFolder folder;
-  const std::string file = (folder / "rows.json").string();
-  test::ChildProcess bench(
-      kBench, {"--benchmark_filter=^peer/.*/tracked/boxes$", "--benchmark_min_time=0.001",
-               "--benchmark_out=" + file, "--benchmark_out_format=json"});
-  ASSERT_EQ(bench.wait(), 0) << bench.output();
-  const auto rows = nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
+  const nlohmann::json rows = rows_of("^peer/.*/tracked/boxes$");
   ASSERT_EQ(rows.size(), 6u);
   for (const auto& row : rows) {
     SCOPED_TRACE(row.dump());

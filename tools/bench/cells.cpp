@@ -1,5 +1,4 @@
 #include "tools/bench/cells.hpp"
-#include "tools/bench/measure.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -14,6 +13,7 @@
 #include "config/cell_file.hpp"
 #include "core/batch.hpp"
 #include "core/distance.hpp"
+#include "tools/bench/measure.hpp"
 
 namespace clearance::bench {
 namespace {
