@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "config/complaints.hpp"
+#include "config/diagnostics.hpp"
 #include "config/map_reader.hpp"
 #include "config/mesh_file.hpp"
 #include "config/object_reader.hpp"

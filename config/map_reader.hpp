@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/complaints.hpp"
+#include "config/diagnostics.hpp"
 #include "config/yaml_node.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "config/members.hpp"
+#include "config/group_index.hpp"
 #include "config/scene.hpp"
 
 namespace clearance {

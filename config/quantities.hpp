@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "config/complaints.hpp"
+#include "config/diagnostics.hpp"
 #include "config/scalar.hpp"
 #include "config/yaml_node.hpp"
 #include "core/pose.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "config/complaints.hpp"
+#include "config/diagnostics.hpp"
 
 namespace clearance {
 namespace {

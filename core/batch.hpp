@@ -11,7 +11,8 @@
 #include <memory>
 #include <span>
 
-#include "core/distance.hpp"
+#include "core/distance_result.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 

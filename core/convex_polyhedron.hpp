@@ -19,8 +19,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/opening.hpp"
-#include "core/start_table.hpp"
+#include "core/model/recession_cone.hpp"
+#include "core/model/start_table.hpp"
 #include "core/vec.hpp"
 
 namespace clearance {

@@ -1,85 +1,15 @@
 // How far apart are two convex bodies? Tracked: each call starts where the last one ended.
 //
-// Minimises |b - a| over a in A, b in B with the active-set QP of core/dqp3.hpp (§3.3, §3.4). Every
-// answer carries its own proof: a separating direction bounds it from below (weak duality, §3.2),
-// witness points on the bodies from above. Everything is in frame A, in metres.
+// Minimises |b - a| over a in A, b in B with the active-set QP of core/active_set/dqp3.hpp (§3.3,
+// §3.4). Every answer carries its own proof: a separating direction bounds it from below (weak
+// duality, §3.2), witness points on the bodies from above. Everything is in frame A, in metres.
 #pragma once
 
-#include <cstdint>
-
 #include "core/convex_polyhedron.hpp"
+#include "core/distance_result.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
-
-enum class DistanceStatus : std::uint8_t {
-  kConverged,       // upper - lower is rounding only
-  kFarAway,         // lower >= far_away > 0, by the spheres around them; nobody asked by how much
-  kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
-  kOverlapping,     // proved: upper < 0
-  kIterationLimit,  // the bounds hold, but are wider than rounding
-};
-
-[[nodiscard]] const char* name(DistanceStatus status) noexcept;
-
-// Which way an answer came: core/README.md, "What the iteration is".
-enum class DistancePath : std::uint8_t {
-  kWalk,     // step 1 proved it
-  kLoop,     // the loop, and of what touches or overlaps then the depth
-  kRobust,   // the loop and then the robust path
-  kOverlap,  // at once from where they overlapped last
-  kSpheres,  // see DistanceOptions::far_away
-};
-
-// Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'
-// doubles. The distance is signed: apart, that of the closest points; overlapping, minus the depth,
-// the length of the shortest translation after which the bodies only touch (core/depth.hpp). Either
-// way no motion that moves every point by at most s changes it by more than s.
-//
-// Apart, point_on_a and point_on_b are closest points, and point_on_b - point_on_a = distance *
-// normal. Overlapping, B moved by depth * normal only touches A, and the two points are those that
-// meet there: point_on_a is A's farthest along the normal, point_on_b is B's farthest against it
-// (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
-// up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
-//
-// Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
-// vouch for: lower is -infinity then, and upper still bounds the depth (-infinity: certainly no
-// translation). Where they are proved to overlap, the distance is -infinity, too, the normal is
-// zero, and the points lie in both bodies, or each in its own, where they meet only farther out
-// than their vertices and origins are.
-//
-// Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing
-// is known: the bounds are infinite, the distance -infinity, normal and points zero, and the status
-// is kIterationLimit. No number is ever a NaN.
-struct DistanceResult {
-  double distance = 0.0;  // best estimate, within the bounds
-  double lower = 0.0, upper = 0.0;
-  Vec3 normal = Vec3::Zero();  // unit, from A towards B; zero when unknown
-  Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // witness points, both in frame A
-  DistanceStatus status = DistanceStatus::kIterationLimit;
-  DistancePath path = DistancePath::kWalk;
-  std::uint16_t iterations = 0;
-};
-
-// What a pair remembers between calls: the active feature of each body and where the witness lay on
-// it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
-// a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
-//
-// After a query that was not kFarAway the two points are the witness points, before radii, each in
-// its own body's frame: transform(world_from_b, state.b.point) lies on B to the rounding of B's own
-// pose, however far away A is.
-struct alignas(64) TrackingState {
-  static constexpr std::uint8_t kCold = 255;
-  struct Side {
-    std::uint8_t dimension =
-        kCold;          // 0 vertex, 1 edge, 2 facet, 3 inside (none active); kCold: no hint
-    bool deep = false;  // of A only: the bodies overlapped
-    std::int32_t feature = kNone;
-    Vec3 point = Vec3::Zero();  // in the body's own frame
-  };
-  Side a, b;
-};
-static_assert(sizeof(TrackingState) == 64, "a cache line a pair");
 
 struct DistanceOptions {
   // m: where the spheres around both bodies prove as much, they are all that is asked. The status

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "monitor/input.hpp"
+#include "monitor/pose_batch.hpp"
 
 namespace clearance {
 

@@ -4,17 +4,17 @@
 #include <limits>
 #include <vector>
 
-#include "monitor/closest_pair.hpp"
-#include "monitor/enclosing_ball.hpp"
-#include "monitor/input_round.hpp"
-#include "monitor/object_state.hpp"
-#include "monitor/pair_summary.hpp"
-#include "monitor/pair_table.hpp"
-#include "monitor/placed_part.hpp"
-#include "monitor/rounding.hpp"
-#include "monitor/triage.hpp"
-#include "monitor/worker_pool.hpp"
-#include "monitor/zone_round.hpp"
+#include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/geometry/posed_part.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/objects/input_summary.hpp"
+#include "monitor/objects/tracked_object.hpp"
+#include "monitor/pairs/global_minimum.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/pairs/pair_table.hpp"
+#include "monitor/pairs/worker_pool.hpp"
+#include "monitor/schedule/scheduler.hpp"
+#include "monitor/zones/zones.hpp"
 
 namespace clearance {
 namespace {

@@ -8,9 +8,9 @@
 #include <span>
 
 #include "config/scene.hpp"
-#include "monitor/input.hpp"
-#include "monitor/passage.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
+#include "monitor/swept/swept_search.hpp"
 
 namespace clearance {
 

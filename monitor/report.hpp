@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/vec.hpp"
-#include "monitor/input.hpp"
+#include "monitor/pose_batch.hpp"
 
 namespace clearance {
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "monitor/daemon/program.hpp"
-#include "monitor/record/unreadable.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/mcap/unreadable.hpp"
 #include "tools/distance/answerer.hpp"
 #include "tools/distance/exact_check.hpp"
 

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "monitor/daemon/program.hpp"
+#include "monitor/app/program.hpp"
 #include "tools/record/arguments.hpp"
 
 namespace clearance {

@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "monitor/daemon/program.hpp"
+#include "monitor/app/program.hpp"
 #include "tools/replay/arguments.hpp"
 
 namespace clearance {

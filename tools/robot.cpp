@@ -10,15 +10,15 @@
 #include <thread>
 
 #include "config/simulation.hpp"
-#include "monitor/daemon/dds.hpp"
-#include "monitor/daemon/dds_arguments.hpp"
+#include "monitor/app/log.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/histogram.hpp"
-#include "monitor/daemon/log.hpp"
-#include "monitor/daemon/program.hpp"
+#include "monitor/daemon/ports.hpp"
 #include "monitor/daemon/realtime.hpp"
-#include "monitor/daemon/seams.hpp"
-#include "monitor/daemon/stop_signal.hpp"
 #include "monitor/daemon/summary.hpp"
+#include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/participant.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

@@ -11,7 +11,7 @@
 
 #include "config/robot_cell.hpp"
 #include "config/warehouse_cell.hpp"
-#include "monitor/daemon/program.hpp"
+#include "monitor/app/program.hpp"
 #include "tools/scene/model_report.hpp"
 
 namespace clearance {

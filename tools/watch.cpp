@@ -2,11 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "monitor/daemon/dds_arguments.hpp"
-#include "monitor/daemon/log.hpp"
-#include "monitor/daemon/program.hpp"
-#include "monitor/daemon/seams.hpp"
-#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/app/log.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/app/stop_signal.hpp"
+#include "monitor/daemon/ports.hpp"
+#include "monitor/dds/dds_arguments.hpp"
 #include "tools/watch/feed.hpp"
 #include "tools/watch/view.hpp"
 

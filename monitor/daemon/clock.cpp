@@ -1,7 +1,7 @@
 #include <cerrno>
 #include <ctime>
 
-#include "monitor/daemon/seams.hpp"
+#include "monitor/daemon/ports.hpp"
 
 namespace clearance {
 namespace {

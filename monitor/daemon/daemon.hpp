@@ -10,13 +10,13 @@
 #include <thread>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/dds.hpp"
-#include "monitor/daemon/dds_poses.hpp"
-#include "monitor/daemon/dds_reports.hpp"
+#include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/daemon/report_queue.hpp"
-#include "monitor/daemon/stop_signal.hpp"
 #include "monitor/daemon/tick_loop.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/dds/report_writer.hpp"
 
 namespace clearance {
 

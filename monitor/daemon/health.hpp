@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/dds_poses.hpp"
-#include "monitor/daemon/vitals.hpp"
-#include "monitor/wire/sample.hpp"
+#include "monitor/daemon/loop_statistics.hpp"
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 

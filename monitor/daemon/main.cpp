@@ -2,10 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "monitor/app/log.hpp"
+#include "monitor/app/program.hpp"
 #include "monitor/daemon/daemon.hpp"
-#include "monitor/daemon/dds_arguments.hpp"
-#include "monitor/daemon/log.hpp"
-#include "monitor/daemon/program.hpp"
+#include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
 namespace {

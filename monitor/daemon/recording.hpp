@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/dds_poses.hpp"
 #include "monitor/daemon/report_queue.hpp"
-#include "monitor/record/recorder.hpp"
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/recording/recorder.hpp"
 
 namespace clearance {
 

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/seams.hpp"
+#include "monitor/daemon/ports.hpp"
 #include "monitor/daemon/semaphore.hpp"
 #include "monitor/daemon/spsc_ring.hpp"
 

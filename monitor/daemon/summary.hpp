@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/vitals.hpp"
+#include "monitor/daemon/loop_statistics.hpp"
 
 namespace clearance {
 

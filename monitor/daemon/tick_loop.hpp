@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/daemon/seams.hpp"
+#include "monitor/daemon/ports.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {

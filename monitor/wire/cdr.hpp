@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/wire/sample.hpp"
+#include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 

@@ -8,7 +8,7 @@
 #include "config/scene.hpp"
 #include "monitor/batch.hpp"
 #include "monitor/report.hpp"
-#include "monitor/wire/sample.hpp"
+#include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 

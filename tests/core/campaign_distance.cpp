@@ -12,7 +12,7 @@
 #include <map>
 #include <string>
 
-#include "core/rounding.hpp"
+#include "core/numerics/error_constants.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/nonsense_state.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/monitor/report_bytes.hpp"
+#include "tests/monitor/replay/report_bytes.hpp"
 #include "tests/monitor/two_balls.hpp"
 #include "tests/shared/allocation_count.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/rounding.hpp"
+#include "core/numerics/error_constants.hpp"
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/exact_features.hpp"
 #include "tests/shared/exact_placement.hpp"

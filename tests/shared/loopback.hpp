@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "monitor/daemon/dds.hpp"
+#include "monitor/dds/participant.hpp"
 
 namespace clearance::test {
 

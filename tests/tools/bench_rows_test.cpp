@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/record/build.hpp"
+#include "monitor/recording/build.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

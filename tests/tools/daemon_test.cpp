@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "monitor/monitor.hpp"
-#include "monitor/record/build.hpp"
+#include "monitor/recording/build.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

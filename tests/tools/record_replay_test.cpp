@@ -4,8 +4,8 @@
 
 #include <csignal>
 
-#include "monitor/record/csv_poses.hpp"
-#include "tests/monitor/recorded_runs.hpp"
+#include "monitor/csv/pose_log.hpp"
+#include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

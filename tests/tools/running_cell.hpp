@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "config/cell_file.hpp"
-#include "monitor/daemon/seams.hpp"
+#include "monitor/daemon/ports.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/loopback.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/input.hpp"
+#include "monitor/pose_batch.hpp"
 
 namespace clearance::bench {
 

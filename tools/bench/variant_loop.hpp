@@ -2,10 +2,10 @@
 // without what the core adds: no certificate, no rule for ties, no walk from feature to feature.
 #pragma once
 
-#include "core/active_side.hpp"
-#include "core/alpha.hpp"
-#include "core/delta.hpp"
-#include "core/lambda.hpp"
+#include "core/active_set/active_feature.hpp"
+#include "core/active_set/alpha_step_length.hpp"
+#include "core/active_set/delta_step.hpp"
+#include "core/active_set/lambda_multipliers.hpp"
 #include "tools/bench/whole_scan.hpp"
 
 namespace clearance::bench {

@@ -1,7 +1,7 @@
 // Alpha as it is without adjacency: over every facet that is not active (3.3.11), (3.3.12).
 #pragma once
 
-#include "core/alpha.hpp"
+#include "core/active_set/alpha_step_length.hpp"
 
 namespace clearance::bench {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/active_side.hpp"
-#include "core/dqp3.hpp"
-#include "core/precision.hpp"
-#include "core/radii.hpp"
+#include "core/active_set/active_feature.hpp"
+#include "core/active_set/dqp3.hpp"
+#include "core/model/error_bounds.hpp"
+#include "core/model/radii.hpp"
 
 namespace clearance {
 namespace {

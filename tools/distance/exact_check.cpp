@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/distance.hpp"
-#include "core/rounding.hpp"
+#include "core/numerics/error_constants.hpp"
 #include "tools/distance/rational.hpp"
 
 namespace clearance {

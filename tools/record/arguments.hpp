@@ -4,8 +4,8 @@
 #include <string>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/dds_arguments.hpp"
-#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/app/stop_signal.hpp"
+#include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
 

@@ -1,7 +1,7 @@
 #include <cstdio>
 
-#include "monitor/daemon/program.hpp"
-#include "monitor/record/csv_poses.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/csv/pose_log.hpp"
 #include "tools/record/arguments.hpp"
 
 namespace clearance {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "monitor/daemon/dds.hpp"
-#include "monitor/daemon/program.hpp"
-#include "monitor/record/recording_writer.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
 #include "tools/record/stream_gaps.hpp"

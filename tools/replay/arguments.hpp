@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "monitor/daemon/dds_arguments.hpp"
-#include "monitor/daemon/stop_signal.hpp"
+#include "monitor/app/stop_signal.hpp"
+#include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
 

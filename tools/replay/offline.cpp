@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "monitor/daemon/program.hpp"
+#include "monitor/app/program.hpp"
 #include "monitor/pair_name.hpp"
-#include "monitor/record/offline_replay.hpp"
-#include "monitor/record/recording_reader.hpp"
-#include "monitor/record/report_csv.hpp"
-#include "monitor/record/report_recorder.hpp"
+#include "monitor/recording/reader.hpp"
+#include "monitor/replay/offline_replay.hpp"
+#include "monitor/replay/report_csv.hpp"
+#include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/replay/progress_bar.hpp"
 

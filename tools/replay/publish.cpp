@@ -6,11 +6,11 @@
 #include <set>
 #include <variant>
 
-#include "monitor/daemon/dds.hpp"
-#include "monitor/daemon/program.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/realtime.hpp"
-#include "monitor/daemon/stop_signal.hpp"
-#include "monitor/record/recording_reader.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/replay/progress_bar.hpp"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/enclosing_polyhedron.hpp"
-#include "core/footprint.hpp"
-#include "monitor/enclosing_ball.hpp"
-#include "monitor/enclosing_hull.hpp"
+#include "core/model/footprint.hpp"
+#include "monitor/geometry/bounding_hull.hpp"
+#include "monitor/geometry/bounding_sphere.hpp"
 
 namespace clearance {
 namespace {

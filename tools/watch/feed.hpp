@@ -6,8 +6,8 @@
 #include <string>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/dds.hpp"
-#include "monitor/wire/sample.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/wire/dds_sample.hpp"
 
 namespace clearance::watch {
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "monitor/record/build.hpp"
+#include "monitor/recording/build.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -1,0 +1,71 @@
+#include "config/diagnostics.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "config/scalar.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
+
+std::string shortened(const std::string& text) {
+  return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
+}
+
+}  // namespace
+
+std::string describe(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      return "nothing";
+    case YamlNode::Kind::kSequence:
+      return node.items.empty() ? "an empty list"
+                                : "a list of " + std::to_string(node.items.size());
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kScalar:
+      break;
+  }
+  switch (scalar_type(node)) {
+    case ScalarType::kNumber:
+      return "the number " + shortened(node.text);
+    case ScalarType::kFlag:
+      return node.text;
+    case ScalarType::kText:
+      break;
+  }
+  return node.text.empty() ? "an empty text" : "the text '" + shortened(node.text) + "'";
+}
+
+void Complaints::add(int line, int column, const std::string& text) {
+  // What was found may hold line breaks; a message is one line.
+  std::string one_line = text;
+  std::replace_if(
+      one_line.begin(), one_line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
+      ' ');
+  complaints_.push_back({line, column, std::move(one_line)});
+}
+
+std::vector<CellError> Complaints::sorted() const {
+  std::vector<Complaint> ordered = complaints_;
+  std::sort(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+    return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
+  });
+  // A mistake behind an anchor (&x) is met once for every alias of it.
+  const auto end =
+      std::unique(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+        return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);
+      });
+  ordered.erase(end, ordered.end());
+  std::vector<CellError> errors;
+  for (const Complaint& complaint : ordered) {
+    errors.push_back({file_ + ":" + std::to_string(complaint.line) + ":" +
+                      std::to_string(complaint.column) + ": " + complaint.text});
+  }
+  return errors;
+}
+
+}  // namespace clearance

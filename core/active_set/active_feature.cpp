@@ -1,0 +1,80 @@
+#include "core/active_set/active_feature.hpp"
+
+namespace clearance {
+namespace {
+
+// A stored point may lie this far outside the facet it is said to be on (relative to the body) and
+// still be taken for a point on it: 16 roundings, 2^-49.
+constexpr double kOnFacet = 0x1p-49;
+
+// A state may hold anything: its length has to be a number as well.
+bool is_a_point(const Vec3& v) noexcept { return v.squaredNorm() < kInfinity; }
+
+bool within(std::int32_t index, std::size_t size) noexcept {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+}  // namespace
+
+std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p,
+                           double slack) noexcept {
+  double least = -slack;
+  std::int32_t beyond = kNone;
+  for (std::int32_t i = 0; i < facet.limits; ++i) {
+    const FacetLimit limit = body.limit_of(facet, i);
+    const double gap = limit.inward.dot(p) - limit.offset;
+    if (!(gap < least)) continue;
+    least = gap;
+    beyond = i;
+  }
+  return beyond;
+}
+
+std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index, const Vec3& p) noexcept {
+  for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
+    const Facet& facet = body.facets[index];
+    const std::int32_t beyond = crossed_limit(body, facet, p);
+    if (beyond == kNone) break;
+    index = body.facets_beside[facet.first_side + beyond];
+  }
+  return index;
+}
+
+void ActiveSide::place_cold(const Vec3& other) noexcept {
+  if (body_.vertices.empty()) return place_inside(body_.interior);
+  const Vec3 towards = direction_to_own(other - point_to_common(body_.interior));
+  place_at_vertex(body_.start.at(towards));
+}
+
+bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
+  if (hint.dimension == 0 && within(hint.feature, body_.vertices.size())) {
+    place_at_vertex(hint.feature);
+    return true;
+  }
+  if (!is_a_point(hint.point)) return false;
+  if (hint.dimension == 1 && within(hint.feature, body_.edges.size())) {
+    place_on_edge(hint.feature, hint.point);
+    return true;
+  }
+  if (hint.dimension == 2 && within(hint.feature, body_.facets.size())) {
+    const Facet& f = body_.facets[hint.feature];
+    const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
+    const double slack = kOnFacet * (body_.bounding_radius + p.norm());
+    if (crossed_limit(body_, f, p, slack) != kNone) return false;
+    place(Feature::kFacet, hint.feature, p);
+    return true;
+  }
+  return false;
+}
+
+// On an unbounded body another pair's point may be so far out that rounding takes it off its
+// feature. The closest points are no farther away than this, where one of the bodies is bounded:
+// the distance is at most that of any two points.
+void ActiveSide::place_near(const TrackingState::Side& hint, const ActiveSide& other,
+                            double apart) noexcept {
+  const double farthest = body_.bounding_radius + 2.0 * (other.body_.bounding_radius + apart);
+  if (place_tracked(hint) && (body_.bounded() || own_.norm() <= farthest)) return;
+  place_cold(other.point_to_common(other.body_.interior));
+}
+
+}  // namespace clearance

@@ -1,0 +1,89 @@
+// The 'alpha' step: how far a body's point may go before a new facet becomes active (§3.3.1.3,
+// §3.6.1).
+//
+// Over the feature's own boundary only: a facet's edges, an edge's ends, and all facets from the
+// inside. x lies in the feature, so nothing else can block.
+#pragma once
+
+#include "core/active_set/active_feature.hpp"
+
+namespace clearance {
+
+struct Alpha {
+  double fraction = 1.0;  // of the wanted move, in [0, 1]; 1 means that nothing blocks
+  // What is reached there: the facet, the edge or the vertex that becomes the active feature.
+  std::int32_t blocking = kNone;
+};
+
+namespace alpha_case {
+
+// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross
+// blocks at once.
+inline double fraction(double gap, double speed) noexcept { return gap > 0.0 ? gap / speed : 0.0; }
+
+inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {
+  Alpha best;
+  const auto& facets = side.body().facets;
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const double speed = facets[i].normal.dot(move);
+    if (!(speed > 0.0)) continue;
+    const double f = fraction(facets[i].offset - facets[i].normal.dot(side.own()), speed);
+    if (f < best.fraction) best = {f, static_cast<std::int32_t>(i)};
+  }
+  return best;
+}
+
+inline Alpha within_facet(const ActiveSide& side, const Vec3& move) noexcept {
+  Alpha best;
+  const Facet& facet = side.facet();
+  for (std::int32_t i = 0; i < facet.limits; ++i) {
+    const FacetLimit boundary = side.body().limit_of(facet, i);
+    const double speed = -boundary.inward.dot(move);
+    if (!(speed > 0.0)) continue;
+    const double gap = boundary.inward.dot(side.own()) - boundary.offset;
+    if (!(gap < best.fraction * speed)) continue;
+    best = {fraction(gap, speed), side.body().facet_edges[facet.first_side + i].edge};
+  }
+  return best;
+}
+
+inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
+  const Edge& edge = side.edge();
+  const double speed = edge.direction.dot(move);
+  const double at = (side.own() - edge.point).dot(edge.direction);
+  if (at + speed > edge.end && speed > 0.0) return {fraction(edge.end - at, speed), edge.vertex[1]};
+  if (at + speed < edge.begin && speed < 0.0) {
+    return {fraction(at - edge.begin, -speed), edge.vertex[0]};
+  }
+  return {};
+}
+
+}  // namespace alpha_case
+
+[[nodiscard]] inline Alpha alpha(const ActiveSide& side, const Vec3& move_in_common) noexcept {
+  if (side.feature() == Feature::kVertex) return {};
+  const Vec3 move = side.direction_to_own(move_in_common);
+  if (side.feature() == Feature::kEdge) return alpha_case::along_edge(side, move);
+  if (side.feature() == Feature::kFacet) return alpha_case::within_facet(side, move);
+  return alpha_case::from_inside(side, move);
+}
+
+// Makes the move and, where it was blocked, the blocking feature the active one.
+inline void advance(ActiveSide& side, const Vec3& move_in_common, const Alpha& step) noexcept {
+  if (side.feature() == Feature::kVertex) return;
+  const Vec3 to = side.own() + step.fraction * side.direction_to_own(move_in_common);
+  if (side.feature() == Feature::kEdge) {
+    if (step.blocking != kNone) return side.place_at_vertex(step.blocking);
+    return side.place_on_edge(side.index(), to);
+  }
+  if (side.feature() == Feature::kFacet) {
+    if (step.blocking != kNone) return side.place_on_edge(step.blocking, to);
+    return side.place_on_facet(side.index(), to);
+  }
+  if (step.blocking != kNone) {
+    return side.place_on_facet(facet_under(side.body(), step.blocking, to), to);
+  }
+  side.place_inside(to);
+}
+
+}  // namespace clearance

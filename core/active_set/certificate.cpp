@@ -1,0 +1,87 @@
+#include "core/active_set/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/active_set/polar_cone.hpp"
+#include "core/active_set/separating_direction.hpp"
+#include "core/model/support_function.hpp"
+
+namespace clearance {
+namespace {
+
+using towards_case::across;
+using towards_case::along;
+
+void add_direction(Separators& list, const Vec3& v) noexcept {
+  const double length = v.norm();
+  if (length > 0.0 && std::isfinite(length)) list.add({v / length});
+}
+
+void add_facets(Separators& list, const ActiveSide& a, const ActiveSide& b) noexcept {
+  if (a.feature() == Feature::kFacet) list.add({a.facet().normal, a.index(), kNone});
+  if (b.feature() == Feature::kFacet) {
+    list.add({-towards_case::normal_of(b), kNone, b.index()});
+  }
+}
+
+void add_crossing_edges(Separators& list, const ActiveSide& a, const ActiveSide& b,
+                        const Vec3& between) noexcept {
+  const Vec3 n = towards_case::across_both(along(a), along(b));
+  add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
+}
+
+double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within) noexcept {
+  if (facet != kNone) return s.body().facets[facet].offset;
+  const Vec3 m = s.direction_to_own(normal);
+  return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
+}
+
+// How far a body's anchors are from one of them, at most.
+double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
+  double out = 0.0;
+  for (const Vec3& anchor : body.anchors) out = std::max(out, (anchor - from).norm());
+  return out;
+}
+
+double separation_of_unbounded(const Separator& s, const ActiveSide& a,
+                               const ActiveSide& b) noexcept {
+  const auto [n, off] = PolarCone(a, b).nearest(s);
+  if (!(off < kInfinity)) return -kInfinity;
+  const Vec3& on_a = a.body().anchors[support(a.body(), n).anchor];
+  const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(n)).anchor];
+  const Vec3 between = b.point_to_common(on_b) - on_a;
+  const double origins = b.point_to_common(Vec3::Zero()).norm();
+  const double moved = std::min(between.norm() + spread(a.body(), on_a) + spread(b.body(), on_b),
+                                a.body().bounding_radius + b.body().bounding_radius + origins);
+  return n.dot(between) - off * moved;
+}
+
+}  // namespace
+
+Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
+  Separators list;
+  const Vec3 between = b.common() - a.common();
+  add_facets(list, a, b);
+  Vec3 direct = between;
+  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
+  if (b.feature() == Feature::kEdge) direct = across(direct, along(b));
+  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
+  add_direction(list, direct);
+  // Says more only where the points are so near to each other that rounding has a part in `direct`.
+  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+    add_crossing_edges(list, a, b, between);
+  }
+  return list;
+}
+
+double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
+                  const Precision& p) noexcept {
+  if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s, a, b);
+  const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a);
+  const double of_b = reach(b, -s.normal, s.facet_of_b, p.reach_b);
+  const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
+  return (s.normal.dot(origin_of_b) - of_b) - of_a;
+}
+
+}  // namespace clearance

@@ -1,0 +1,42 @@
+// The proof that comes with every answer: a direction that separates the bodies by at least
+// `lower`.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/active_set/active_feature.hpp"
+#include "core/model/error_bounds.hpp"
+
+namespace clearance {
+
+// A direction to try, unit up to rounding, common frame, from A towards B.
+struct Separator {
+  Vec3 normal;
+  // Where it is exactly a facet's normal (A's, or minus B's), that facet: its offset is the
+  // support.
+  std::int32_t facet_of_a = kNone, facet_of_b = kNone;
+  // Where it is across an edge of each, those.
+  std::int32_t edge_of_a = kNone, edge_of_b = kNone;
+};
+
+class Separators {
+ public:
+  void add(const Separator& s) noexcept { items_[size_++] = s; }
+  [[nodiscard]] const Separator* begin() const noexcept { return items_.data(); }
+  [[nodiscard]] const Separator* end() const noexcept { return items_.data() + size_; }
+
+ private:
+  std::array<Separator, 4> items_;
+  std::size_t size_ = 0;
+};
+
+// The directions that the two active features suggest, the most accurate first.
+[[nodiscard]] Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept;
+
+// min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at
+// least this less p.slack. -infinity where an unbounded body leaves no bound.
+[[nodiscard]] double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
+                                const Precision& p) noexcept;
+
+}  // namespace clearance

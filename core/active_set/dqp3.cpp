@@ -1,0 +1,152 @@
+#include "core/active_set/dqp3.hpp"
+
+#include "core/active_set/alpha_step_length.hpp"
+#include "core/active_set/delta_step.hpp"
+#include "core/active_set/lambda_multipliers.hpp"
+#include "core/active_set/separating_direction.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance {
+namespace {
+
+// Far above the longest walk of the corpus.
+constexpr std::uint16_t kIterations = 1000;
+
+// Steps that bring no gain in doubles and yet are steps in exact arithmetic: along edges shorter
+// than the rounding of their ends, as where four planes all but meet. More of them mean that
+// rounding goes in circles.
+constexpr int kLevelSteps = 12;
+
+// One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
+// that would take them apart, both go the same fraction of the way, which cannot. True if nothing
+// blocked.
+bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
+  const Vec3 move_a = to.a - a.common(), move_b = to.b - b.common();
+  Alpha alpha_a = alpha(a, move_a), alpha_b = alpha(b, move_b);
+  const bool free = alpha_a.blocking == kNone && alpha_b.blocking == kNone;
+  if (!free) {
+    const Vec3 between = b.common() - a.common();
+    const Vec3 after = between + alpha_b.fraction * move_b - alpha_a.fraction * move_a;
+    if (after.squaredNorm() > between.squaredNorm()) {
+      if (alpha_a.fraction < alpha_b.fraction) {
+        alpha_b = {alpha_a.fraction, kNone};
+      } else if (alpha_b.fraction < alpha_a.fraction) {
+        alpha_a = {alpha_b.fraction, kNone};
+      }
+    }
+  }
+  advance(a, move_a, alpha_a);
+  advance(b, move_b, alpha_b);
+  return free;
+}
+
+// Follows an edge or a facet, or leaves for the inside, from where x is.
+void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.index, side.own()); }
+
+// Two edges that all but point away from each other generate the facet between them by digits that
+// rounding takes: then neither leads closer, and yet the facet does.
+bool leave_for_facet(ActiveSide& side, const Vec3& towards_in_common) noexcept {
+  if (side.feature() != Feature::kVertex) return false;
+  const Vec3 towards = side.direction_to_own(towards_in_common);
+  const Lambda facet = lambda_case::of_facets_at_vertex(side, towards);
+  if (!(facet.rate > kCertainRate * towards.norm())) return false;
+  release(side, facet);
+  return true;
+}
+
+// On the far side of a body, where facets are level to rounding, no edge and no facet leads closer,
+// and yet its inside does: a body's farthest points along `towards` are those that it does not. The
+// inside itself may be that thin (of the body's size), and beyond that rounding decides.
+constexpr double kThin = 0x1p-44;
+
+bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept {
+  if (side.feature() == Feature::kInside) return false;
+  const ConvexPolyhedron& body = side.body();
+  const Vec3 towards = side.direction_to_own(towards_in_common);
+  const double thin = kThin * towards.norm();
+  const bool closer = (body.interior - side.own()).dot(towards) > thin * body.bounding_radius ||
+                      body.opening.inwards.dot(towards) > thin;
+  if (closer) side.place_inside(side.own());
+  return closer;
+}
+
+Dqp3Outcome iterate(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+  Dqp3Outcome outcome;
+  const auto ended = [&](Dqp3End end) {
+    outcome.end = end;
+    return outcome;
+  };
+  double closest2 = kInfinity;
+  int level = 0;
+  while (outcome.iterations < kIterations) {
+    ++outcome.iterations;
+    if (!step(a, b, delta(a, b))) continue;
+    const Towards direction = towards(a, b);
+    outcome.towards = direction.vector;
+    const double distance2 = (b.common() - a.common()).squaredNorm();
+    if (distance2 <= contact * contact) return ended(Dqp3End::kContact);
+    if (distance2 < closest2) {
+      closest2 = distance2;
+    } else if (++level > kLevelSteps) {
+      return ended(Dqp3End::kStalled);
+    }
+    const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
+    const double best = std::max(of_a.rate, of_b.rate);
+    if (best * best < kCertainRate * kCertainRate * distance2) {
+      if (leave_for_facet(a, outcome.towards) || leave_for_facet(b, -outcome.towards)) continue;
+      if (leave_for_inside(a, outcome.towards) || leave_for_inside(b, -outcome.towards)) continue;
+      return ended(Dqp3End::kOptimal);
+    }
+    if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
+    if (of_a.rate >= of_b.rate) {
+      release(a, of_a);
+    } else {
+      release(b, of_b);
+    }
+  }
+  return outcome;
+}
+
+// Between a point inside and the planes of facets that meet at a sharp edge or corner there may be
+// no more than rounding, and the point past the edge by much more: of the body's reach and of how
+// far out the point is.
+constexpr double kCertainlyInside = 16 * kUlp;
+
+// From the inside, unless certainly there, to the facet that is nearest.
+void leave_inside(ActiveSide& side) noexcept {
+  const ConvexPolyhedron& body = side.body();
+  double least = kCertainlyInside * (body.bounding_radius + side.own().norm());
+  std::int32_t nearest = kNone;
+  for (std::size_t i = 0; i < body.facets.size(); ++i) {
+    const double gap = body.facets[i].offset - body.facets[i].normal.dot(side.own());
+    if (!(gap < least)) continue;
+    least = gap;
+    nearest = static_cast<std::int32_t>(i);
+  }
+  if (nearest == kNone) return;
+  side.place_on_facet(facet_under(body, nearest, side.own()), side.own());
+}
+
+// An upper bound is worth no more than that its points are on the bodies: one that the iteration
+// has left outside its facet's polygon goes to the polygon's nearest side.
+void keep_on_body(ActiveSide& side) noexcept {
+  if (side.feature() == Feature::kInside) leave_inside(side);
+  if (side.feature() != Feature::kFacet) return;
+  const Facet& facet = side.facet();
+  const std::int32_t beyond = crossed_limit(side.body(), facet, side.own());
+  if (beyond == kNone) return;
+  const std::int32_t index = side.index();
+  side.place_on_edge(side.body().facet_edges[facet.first_side + beyond].edge, side.own());
+  side.place(Feature::kFacet, index, side.own());
+}
+
+}  // namespace
+
+Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+  const Dqp3Outcome outcome = iterate(a, b, contact);
+  keep_on_body(a);
+  keep_on_body(b);
+  return outcome;
+}
+
+}  // namespace clearance

@@ -1,0 +1,29 @@
+// DQP3: the primal active-set QP for two convex bodies (§3.3.2, §3.4), base release rule (§4.1).
+#pragma once
+
+#include <cstdint>
+
+#include "core/active_set/active_feature.hpp"
+
+namespace clearance {
+
+enum class Dqp3End : std::uint8_t {
+  kProved,  // every release would part the bodies, beyond rounding: that is the proof of optimality
+  kOptimal,  // no release brings the bodies closer, as far as rounding can tell
+  kContact,  // the two points coincide to within `contact`
+  kStalled,  // a release did not bring them closer: rounding decides from here on
+  kLimit,    // iterations used up
+};
+
+struct Dqp3Outcome {
+  Dqp3End end = Dqp3End::kLimit;
+  std::uint16_t iterations = 0;
+  Vec3 towards =
+      Vec3::Zero();  // from A to B, common frame, as long as the active features are apart
+};
+
+// Moves both sides from where they are to the closest points. Ends: between two releases the
+// distance falls strictly, so no active set comes twice. `contact`: m, what counts as coincidence.
+[[nodiscard]] Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,142 @@
+// What a batch remembers of eight pairs, in the order in which vector code reads it.
+//
+// A row holds one number of eight pairs and is a cache line; vectors of 2, 4 or 8 lanes read the
+// same rows. All pairs of a block are closest in the same kind of features, so that one
+// straight line of code decides whether they still are, without gathering anything: the features'
+// own numbers are in the rows, written when the pair came to these features.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/distance_result.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+inline constexpr std::size_t kBlockLanes = 8;
+
+// Which features of A and B; the first named is A's.
+enum class FeatureKind : std::uint8_t {
+  kVertexVertex,
+  kVertexEdge,
+  kEdgeVertex,
+  kVertexFacet,
+  kFacetVertex,
+  kEdgeEdge,
+  kEdgeFacet,
+  kFacetEdge,
+  kFacetFacet,
+};
+inline constexpr std::size_t kFeatureKinds = 9;
+
+// There the witness point stays at the vertex: fill_lane() writes it, the vector code does not.
+constexpr bool at_vertex_of_a(FeatureKind kind) {
+  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kVertexEdge ||
+         kind == FeatureKind::kVertexFacet;
+}
+constexpr bool at_vertex_of_b(FeatureKind kind) {
+  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kEdgeVertex ||
+         kind == FeatureKind::kFacetVertex;
+}
+
+// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
+// first of them up to the points are not read of a plain block, nor kept.
+enum CommonRow : std::size_t {
+  kReachA,
+  kReachB,
+  kSlackA,  // ConvexPolyhedron::slack_as_a, slack_as_b
+  kSlackB,
+  kBeyondPlain,
+  kUnboundedA = kBeyondPlain,
+  kUnboundedB,
+  kRadiusA,
+  kRadiusB,
+  kBareA,  // nothing is beside the feature: a point's only vertex, a segment's only edge
+  kBareB,
+  kPointA,                // 3 rows: the witness points of the last query, each in its body's frame
+  kPointB = kPointA + 3,  // 3 rows
+  kFeatureRows = kPointB + 3
+};
+
+// Rows of the features, from kFeatureRows on: that of more dimensions first (of two of a kind A's),
+// then what repeats:
+//   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
+//   facet   normal 3, offset
+//   vertex  position 3
+//   limits of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
+inline constexpr std::size_t kMostRepeats = 8;  // what has more is left to the single query
+inline constexpr std::size_t kEdgeRows = 14, kFacetRows = 4, kVertexRows = 3;
+inline constexpr std::size_t kSideRows = 4, kDirectionRows = 3;
+inline constexpr std::size_t kInwardRow = 8;  // of an edge
+
+inline constexpr std::size_t kDirectionsOfA = 2 * kVertexRows;  // vertex-vertex
+inline constexpr std::size_t kDirectionsOfB = kDirectionsOfA + kMostRepeats * kDirectionRows;
+inline constexpr std::size_t kDirectionsAtEdge = kEdgeRows + kVertexRows;  // edge-vertex
+inline constexpr std::size_t kSides = kFacetRows + kVertexRows;            // facet-vertex
+inline constexpr std::size_t kSidesAtEdge = kFacetRows + kEdgeRows;        // edge-facet
+inline constexpr std::size_t kDirectionsAtFacet = kSides + kMostRepeats * kSideRows;
+inline constexpr std::size_t kSidesOfA = 2 * kFacetRows;  // facet-facet
+inline constexpr std::size_t kMostSidesOfTwo = 6;         // of each: what the rows have room for
+inline constexpr std::size_t kSidesOfB = kSidesOfA + kMostSidesOfTwo * kSideRows;
+
+inline constexpr std::size_t kRows =
+    kFeatureRows + kDirectionsAtFacet + kMostRepeats * kDirectionRows;
+static_assert(kSidesOfB + kMostSidesOfTwo * kSideRows <= kRows - kFeatureRows);
+static_assert(kSidesAtEdge + kMostRepeats * kSideRows <= kRows - kFeatureRows);
+
+struct alignas(64) BatchBlock {
+  std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};
+  std::array<std::uint32_t, kBlockLanes> pair{};  // of a lane not in use: one past the last pair
+  // The most often that what repeats does in a lane since the block was empty, of A's feature and
+  // of B's. Every lane has as many, its last several times.
+  std::uint8_t most_a = 0, most_b = 0;
+  std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
+  std::uint8_t taken = 0;  // bit i: a pair is in lane i
+  bool plain = true;       // no body in it has been unbounded, a point, a segment, or with a radius
+  FeatureKind kind = FeatureKind::kVertexVertex;
+  alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
+};
+
+// Which neighbour takes over where the features are the closest no longer.
+enum NextFeature : std::int32_t {
+  kNextUnknown = -1,  // rounding cannot tell, or it is not lanes' to say
+  // From 0 on: the vertex's edge at an edge, the facet's side, the edge of A's vertex of two.
+  kNextOfOther = kMostRepeats,     // + i: the edge of a vertex at a facet, of B's of two
+  kNextBeside = 2 * kMostRepeats,  // + k: of an edge at a vertex, its facet
+  kNextEnd = kNextBeside + 2,      // + k: of an edge (A's of two) its vertex
+  kNextEndB = kNextEnd + 2,        // + k: of B's of two
+  // Less than kNextEnd, of two edges: i + kNextBesideB * j, facet i - 1 of A's and j - 1 of B's.
+  kNextBesideB = 3,
+};
+
+// The lanes of a block whose pairs are for distance(): bit i, lane i.
+struct alignas(64) FailedLanes {
+  std::uint32_t block, lanes;
+  alignas(64) std::array<double, kBlockLanes> next;  // NextFeature
+  std::array<double, kBlockLanes> rate;  // of two vertices: how fast that edge approaches
+};
+
+// One round of the vector code over all blocks.
+struct BatchRound {
+  BatchBlock* blocks = nullptr;
+  const Pose* world_from_body = nullptr;
+  DistanceResult* results = nullptr;  // [pair]
+  FailedLanes* failed = nullptr;      // room for all blocks and one more
+  struct List {
+    const std::uint32_t* blocks = nullptr;
+    std::size_t count = 0;
+  };
+  std::array<List, kFeatureKinds> lists;
+};
+
+// Judges every lane: where the features of the last query are the closest still and the bounds are
+// tight, writes what distance() would, bit for bit; the others are listed as failed, in so many
+// blocks. Picks the widest vectors that the machine has; the results do not depend on it.
+[[nodiscard]] std::size_t run_batch(const BatchRound& round) noexcept;
+
+// The instruction set that run_batch uses here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", "SCALAR".
+[[nodiscard]] const char* batch_instruction_set() noexcept;
+
+}  // namespace clearance

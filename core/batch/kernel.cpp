@@ -1,0 +1,205 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/batch/kernel.cpp"
+// Four widths: one lane at the x86-64 baseline, SSE4, AVX2, AVX-512; two lanes, NEON, on Arm. What
+// lies between has the same width as one of these.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#endif
+#include <hwy/foreach_target.h>
+// Keep this order: foreach_target first.
+#include <hwy/highway.h>
+
+#include "core/batch/block.hpp"
+#include "core/batch/parallel_steps-inl.hpp"
+#include "core/batch/steps-inl.hpp"
+#include "core/model/error_bounds.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+struct Slack {
+  Lanes slack, tight;
+};
+
+// precision() of core/model/error_bounds.hpp.
+HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses& pose,
+                            Lanes farthest) {
+  const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
+  const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
+  Lanes reach_a = radius_a, reach_b = radius_b, tight = all(kTightUlps[0]);
+  Lanes on_features = hn::Add(row(kSlackA), row(kSlackB));
+  if (!plain) {
+    const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
+    const auto far = [&](Lanes of_other)
+                         HWY_ATTR { return hn::Add(hn::Add(of_other, apart), farthest); };
+    const auto add = [&](Lanes at, double ulps, Lanes reach) HWY_ATTR {
+      on_features = hn::Add(on_features, hn::Mul(at, hn::Mul(all(kUlp * ulps), reach)));
+    };
+    reach_a = hn::Max(radius_a, hn::Mul(at_a, far(radius_b)));
+    reach_b = hn::Max(radius_b, hn::Mul(at_b, far(radius_a)));
+    add(at_a, kUlpsOnA, reach_a);
+    add(at_b, kUlpsOnB, reach_b);
+    tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
+  }
+  const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
+  const Lanes stretched = hn::Mul(all(kStretched), farthest);
+  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), stretched));
+  const Lanes between = hn::Add(hn::Mul(all(kUlp * kUlpsBetween), apart), pose.translation_error);
+  const Lanes slack = hn::Add(hn::Add(on_features, between), hn::Mul(pose.rotation_error, turned));
+  return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
+}
+
+struct Answers {
+  Lanes distance, lower, upper;
+  Points normal, point_a, point_b;
+  LaneMask good;  // tight and positive: distance() would have said the same
+};
+
+// `kept` where `where`, else `v`.
+HWY_INLINE Points unless(LaneMask where, const Points& kept, const Points& v) {
+  return {hn::IfThenElse(where, kept.x, v.x), hn::IfThenElse(where, kept.y, v.y),
+          hn::IfThenElse(where, kept.z, v.z)};
+}
+
+// From the polyhedra's surfaces to the rounded bodies'.
+HWY_INLINE void add_radii(const double* rows, Answers& r) {
+  const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
+  const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
+  const Lanes sum = hn::Add(radius_a, radius_b);
+  const LaneMask bare = hn::Eq(sum, all(0.0));  // whose zeros keep their signs
+  const Lanes rounding = hn::IfThenElse(
+      bare, sum, hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
+  r.distance = hn::Sub(r.distance, sum);
+  r.lower = hn::Sub(r.lower, hn::Add(sum, rounding));
+  r.upper = hn::Sub(r.upper, hn::Sub(sum, rounding));
+  r.point_a = unless(bare, r.point_a, r.point_a + times(radius_a, r.normal));
+  r.point_b = unless(bare, r.point_b, r.point_b - times(radius_b, r.normal));
+  r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
+}
+
+HWY_INLINE Answers conclude(const Closest& c, const Slack& p) {
+  const LaneMask tight = hn::Le(hn::Sub(c.apart, c.proved), p.tight);
+  Answers r{c.apart,
+            hn::Sub(c.proved, p.slack),
+            hn::Add(c.apart, p.slack),
+            c.normal,
+            c.point_a,
+            c.point_b,
+            hn::And(c.holds, hn::And(hn::Gt(c.proved, p.slack), tight))};
+  return r;
+}
+
+// A result begins with twelve numbers, from `distance` to `point_on_b`.
+static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
+
+HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
+                      DistanceResult* results) {
+  double* to[kWidth];
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    DistanceResult& result = results[block.pair[first + i]];
+    to[i] = &result.distance;
+    result.status = DistanceStatus::kConverged;
+    result.path = DistancePath::kWalk;
+    result.iterations = 1;
+  }
+  store_columns({{r.distance, r.lower, r.upper, r.normal.x}}, to, 0);
+  store_columns({{r.normal.y, r.normal.z, r.point_a.x, r.point_a.y}}, to, 4);
+  store_columns({{r.point_a.z, r.point_b.x, r.point_b.y, r.point_b.z}}, to, 8);
+}
+
+template <FeatureKind kKind>
+HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
+  if constexpr (kKind == FeatureKind::kVertexVertex) return vertex_vertex(at, pose);
+  if constexpr (kKind == FeatureKind::kVertexEdge) return edge_vertex<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeVertex) return edge_vertex<false>(at, pose);
+  if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeEdge) return edge_edge(at, pose);
+  if constexpr (kKind == FeatureKind::kEdgeFacet) return edge_facet<true>(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetEdge) return edge_facet<false>(at, pose);
+  if constexpr (kKind == FeatureKind::kFacetFacet) return facet_facet(at, pose);
+}
+
+// Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
+template <FeatureKind kKind>
+HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round,
+                             FailedLanes& failed) {
+  double* rows = block.rows[0].data() + first;
+  const Pose* poses = round.world_from_body;
+  const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
+                                            load_poses(poses, &block.body_b[first]));
+  const Closest c = closest<kKind>({rows + kFeatureRows * kBlockLanes, block}, pose);
+  Answers r = conclude(c, precisions(rows, block.plain, pose, c.apart));
+  if (HWY_LIKELY(block.plain)) {
+    write(r, block, first, round.results);
+  } else {
+    add_radii(rows, r);
+    write(r, block, first, round.results);
+  }
+  hn::Store(hn::IfThenElse(c.holds, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
+  if constexpr (kKind == FeatureKind::kVertexVertex) {
+    hn::Store(c.rate, Tag(), &failed.rate[first]);
+  }
+  if constexpr (!at_vertex_of_a(kKind)) {
+    store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
+  }
+  if constexpr (!at_vertex_of_b(kKind)) {
+    store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
+  }
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Tag(), r.good, bits);
+  return bits[0];
+}
+
+// Lists what has failed behind the first `count`; how much there is then.
+template <FeatureKind kKind>
+std::size_t judge_list(const BatchRound& round, std::size_t count) {
+  const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
+  for (std::size_t k = 0; k < list.count; ++k) {
+    BatchBlock& block = round.blocks[list.blocks[k]];
+    FailedLanes& failed = round.failed[count];
+    std::size_t good = 0;
+    for (std::size_t first = 0; first < block.lanes; first += kWidth) {
+      good |= judge<kKind>(block, first, round, failed) << first;
+    }
+    failed.block = list.blocks[k];
+    failed.lanes = static_cast<std::uint32_t>(block.taken & ~good);
+    count += failed.lanes != 0;
+  }
+  return count;
+}
+
+std::size_t judge_all(const BatchRound& round) {
+  std::size_t count = judge_list<FeatureKind::kVertexVertex>(round, 0);
+  count = judge_list<FeatureKind::kVertexEdge>(round, count);
+  count = judge_list<FeatureKind::kEdgeVertex>(round, count);
+  count = judge_list<FeatureKind::kVertexFacet>(round, count);
+  count = judge_list<FeatureKind::kFacetVertex>(round, count);
+  count = judge_list<FeatureKind::kEdgeEdge>(round, count);
+  count = judge_list<FeatureKind::kEdgeFacet>(round, count);
+  count = judge_list<FeatureKind::kFacetEdge>(round, count);
+  return judge_list<FeatureKind::kFacetFacet>(round, count);
+}
+
+const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clearance {
+
+HWY_EXPORT(judge_all);
+HWY_EXPORT(instruction_set);
+
+std::size_t run_batch(const BatchRound& round) noexcept {
+  return HWY_DYNAMIC_DISPATCH(judge_all)(round);
+}
+
+const char* batch_instruction_set() noexcept { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+
+}  // namespace clearance
+#endif  // HWY_ONCE

@@ -1,0 +1,28 @@
+// One pair's numbers in a block of a batch: written when the pair comes to new features.
+#pragma once
+
+#include <optional>
+
+#include "core/batch/block.hpp"
+
+namespace clearance {
+
+// Which kind the features of `state` are; none where only distance() can judge them: overlapping,
+// two unbounded bodies, an edge without end on an edge or facet, too many neighbours.
+[[nodiscard]] std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a,
+                                                      const ConvexPolyhedron& b,
+                                                      const TrackingState& state) noexcept;
+
+// Without pairs, for those of one kind. no_pair: one past the last.
+void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noexcept;
+
+// Writes the rows of a lane in use. `state` is of the block's kind.
+void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
+               const ConvexPolyhedron& b, const TrackingState& state) noexcept;
+
+// The witness points of the last query that vector code has settled.
+[[nodiscard]] Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept;
+void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& state) noexcept;
+void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& state) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,118 @@
+// What lies beside the features of as many pairs as a vector has lanes: does it fall away, and if
+// not, which neighbour takes over, as the steps of core/feature_walk/steps-inl.hpp have it?
+// Compiled once an instruction set.
+#if defined(CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
+#undef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
+#else
+#define CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
+#endif
+
+#include "core/batch/lanes-inl.hpp"
+#include "core/vec.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+// Where a lane's rows are and how often what repeats does.
+struct FeatureRows {
+  const double* rows;  // of the first lane, at kFeatureRows
+  const BatchBlock& block;
+
+  [[nodiscard]] HWY_INLINE Points points(std::size_t row) const {
+    return load_points(rows + row * kBlockLanes);
+  }
+  [[nodiscard]] HWY_INLINE Lanes lanes(std::size_t row) const {
+    return load(rows + row * kBlockLanes);
+  }
+  [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
+    return load(rows - (kFeatureRows - row) * kBlockLanes);
+  }
+  [[nodiscard]] HWY_INLINE Points common_points(CommonRow row) const {
+    return load_points(rows - (kFeatureRows - row) * kBlockLanes);
+  }
+  // A rate at which what lies beside a feature falls away; where nothing does, `of_nothing`.
+  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes rate, double of_nothing) const {
+    if (HWY_LIKELY(block.plain)) return rate;
+    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), rate, all(of_nothing));
+  }
+};
+
+// The least or greatest of some numbers, and the first that is.
+struct Extreme {
+  Lanes rate, which;
+
+  HWY_INLINE void lower(Lanes number, Lanes i) { take(hn::Lt(number, rate), number, i); }
+  HWY_INLINE void raise(Lanes number, Lanes i) { take(hn::Gt(number, rate), number, i); }
+
+ private:
+  HWY_INLINE void take(LaneMask where, Lanes number, Lanes i) {
+    rate = hn::IfThenElse(where, number, rate);
+    which = hn::IfThenElse(where, i, which);
+  }
+};
+
+HWY_INLINE Lanes after(Lanes number) { return hn::Add(number, all(1.0)); }
+
+// Neighbours by their numbers, NextFeature.
+HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, all(from)); }
+HWY_INLINE Lanes if_certain(LaneMask certain, Lanes next) {
+  return hn::IfThenElse(certain, next, all(kNextUnknown));
+}
+// Where s is beyond an end of an edge, the vertex there comes first: `at_begin` or the next number.
+HWY_INLINE Lanes unless_beyond(Lanes begin, Lanes end, Lanes s, NextFeature at_begin, Lanes next) {
+  next = hn::IfThenElse(hn::Ge(s, end), all(at_begin + 1), next);
+  return hn::IfThenElse(hn::Le(s, begin), all(at_begin), next);
+}
+
+// The edges of a vertex, A's or B's, or the facets of an edge.
+template <bool kOfB>
+struct Beside {
+  const FeatureRows& at;
+  std::size_t row;
+  static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
+
+  [[nodiscard]] HWY_INLINE Extreme least_rate(const Points& g) const {
+    Extreme least{all(kInfinity), all(0.0)};
+    Lanes number = all(0.0);
+    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+      least.lower(rate(i, g), number);
+    least.rate = at.unless_bare(kBare, least.rate, kInfinity);
+    return least;
+  }
+  [[nodiscard]] HWY_INLINE Extreme greatest_rate(const Points& g) const {
+    Extreme greatest{all(-kInfinity), all(0.0)};
+    Lanes number = all(0.0);
+    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+      greatest.raise(rate(i, g), number);
+    greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
+    return greatest;
+  }
+  [[nodiscard]] HWY_INLINE Extreme least_of_two(const Points& g) const {
+    Extreme least{rate(0, g), all(0.0)};
+    least.lower(rate(1, g), all(1.0));
+    least.rate = at.unless_bare(kBare, least.rate, kInfinity);
+    return least;
+  }
+  [[nodiscard]] HWY_INLINE Extreme greatest_of_two(const Points& g) const {
+    Extreme greatest{rate(0, g), all(0.0)};
+    greatest.raise(rate(1, g), all(1.0));
+    greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
+    return greatest;
+  }
+
+ private:
+  [[nodiscard]] HWY_INLINE std::size_t edges() const {
+    return kOfB ? at.block.most_b : at.block.most_a;
+  }
+  [[nodiscard]] HWY_INLINE Lanes rate(std::size_t i, const Points& g) const {
+    return dot(at.points(row + kDirectionRows * i), g);
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#endif

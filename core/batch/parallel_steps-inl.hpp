@@ -1,0 +1,120 @@
+// The straight-line part of core/feature_walk/parallel_steps-inl.hpp, operation for operation, for
+// as many pairs as a vector has lanes: features of which more than a point is closest, as far as
+// rounding can tell. Compiled once an instruction set.
+#if defined(CLEARANCE_BATCH_LEVEL_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_BATCH_LEVEL_INL_HPP_
+#undef CLEARANCE_BATCH_LEVEL_INL_HPP_
+#else
+#define CLEARANCE_BATCH_LEVEL_INL_HPP_
+#endif
+
+#include "core/batch/steps-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+// The smaller reach, of bounded bodies.
+HWY_INLINE Lanes least_reach(const FeatureRows& at) {
+  if (HWY_LIKELY(at.block.plain)) return hn::Min(at.common(kReachA), at.common(kReachB));
+  const auto reach = [&](CommonRow unbounded, CommonRow row) HWY_ATTR {
+    return hn::IfThenElse(hn::Eq(at.common(unbounded), all(0.0)), at.common(row), all(kInfinity));
+  };
+  return hn::Min(reach(kUnboundedA, kReachA), reach(kUnboundedB, kReachB));
+}
+
+HWY_INLINE Lanes lost_by_tilt(const FeatureRows& at, Lanes tilt) {
+  return hn::Mul(hn::Mul(all(2.0), least_reach(at)), hn::Add(tilt, all(kTiltError)));
+}
+
+// The part of a line that lies within the sides of a facet.
+struct Spans {
+  Lanes from, to;
+};
+
+// From `from` to `to` along a line in the frame of the facet, A's or B's.
+template <bool kOfB>
+HWY_INLINE Spans within_sides(const FeatureRows& at, std::size_t row, const Points& start,
+                              const Points& direction, Lanes from, Lanes to) {
+  const Lanes zero = all(0.0);
+  Spans span{from, to};
+  const std::size_t sides = kOfB ? at.block.most_b : at.block.most_a;
+  for (std::size_t i = 0; i < sides; ++i, row += kSideRows) {
+    const Points inward = at.points(row);
+    const Lanes speed = dot(inward, direction);
+    const Lanes gap = hn::Sub(dot(inward, start), at.lanes(row + 3));
+    const Lanes meets = hn::Div(hn::Neg(gap), speed);
+    const LaneMask enters = hn::And(hn::Gt(speed, zero), hn::Gt(meets, span.from));
+    const LaneMask leaves = hn::And(hn::Lt(speed, zero), hn::Lt(meets, span.to));
+    span.from = hn::IfThenElse(enters, meets, span.from);
+    span.to = hn::IfThenElse(leaves, meets, span.to);
+    const LaneMask beside = hn::And(hn::Eq(speed, zero), hn::Lt(gap, zero));
+    span.to = hn::IfThenElse(beside, span.from, span.to);
+  }
+  return span;
+}
+
+// As std::clamp.
+HWY_INLINE Lanes clamp(Lanes value, Lanes low, Lanes high) {
+  return hn::IfThenElse(hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
+}
+
+// kOfB: the facet is B's, the edge A's, along which nothing rises or falls.
+template <bool kOfB>
+HWY_INLINE Closest edge_facet(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  const Ground<kOfB> facet(at, pose);
+  constexpr std::size_t kEdge = kFacetRows;
+  const Points start = at.points(kEdge), e = at.points(kEdge + 3);
+  const Spans span =
+      within_sides<kOfB>(at, kSidesAtEdge, facet.point_in(start), facet.direction_in(e),
+                         at.lanes(kEdge + 6), at.lanes(kEdge + 7));
+  const Points up = CommonFrame<!kOfB>{pose}.direction_to_own(facet.n);
+  const Lanes rise = hn::Abs(dot(e, up));
+  const Lanes away = Beside<!kOfB>{at, kEdge + kInwardRow}.least_of_two(up).rate;
+  const Points mine = at.common_points(kOfB ? kPointA : kPointB);
+  const Points theirs = facet.point_out(at.common_points(kOfB ? kPointB : kPointA));
+  const Lanes halfway = dot(mine + times(all(0.5), theirs - mine) - start, e);
+  const Points own = start + times(clamp(halfway, span.from, span.to), e);
+  const Points above = facet.point_in(own);
+  c.apart = facet.height(own, above);
+  c.proved = hn::Sub(c.apart, lost_by_tilt(at, rise));
+  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Gt(away, all(kCertainRate))),
+                    hn::And(hn::Le(rise, all(kCertainRate)), hn::Lt(span.from, span.to)));
+  c.next = all(kNextUnknown);
+  facet.place_above(own, above, c);
+  return c;
+}
+
+HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose) {
+  Closest c;
+  const Points n = at.points(0), m = at.points(kFacetRows);
+  const Lanes offset_a = at.lanes(3), offset_b = at.lanes(kFacetRows + 3);
+  const Points tilt = rotate_back(pose.rotation, n) + m;
+  const Lanes tilt2 = dot(tilt, tilt);
+  const Points last_a = at.common_points(kPointA), mine = at.common_points(kPointB);
+  const Points theirs = rotate_back(pose.rotation, last_a - pose.translation);
+  const Points middle = mine + times(all(0.5), theirs - mine);
+  const Lanes height = hn::Sub(dot(m, middle), offset_b);
+  c.own_b = middle - times(height, m);
+  c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+  c.apart = hn::Sub(dot(n, c.point_b), offset_a);
+  c.point_a = c.point_b - times(c.apart, n);
+  c.normal = n;
+  c.proved = hn::Sub(c.apart, lost_by_tilt(at, hn::Sqrt(tilt2)));
+  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b).rate,
+                               least_within<true>(at, kSidesOfB, c.own_b).rate);
+  c.next = all(kNextUnknown);
+  const Lanes size =
+      hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
+  const LaneMask on_facet = hn::Le(hn::Abs(height), hn::Mul(all(2.0), size));
+  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
+                    hn::And(hn::Le(tilt2, all(kLevelTilt * kLevelTilt)), on_facet));
+  return c;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,172 @@
+// relative_pose(), operation for operation, for as many pairs as a vector has
+// lanes. Compiled once an instruction set.
+#if defined(CLEARANCE_BATCH_POSE_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_BATCH_POSE_INL_HPP_
+#undef CLEARANCE_BATCH_POSE_INL_HPP_
+#else
+#define CLEARANCE_BATCH_POSE_INL_HPP_
+#endif
+
+#include "core/batch/lanes-inl.hpp"
+#include "core/numerics/error_constants.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance {
+namespace HWY_NAMESPACE {
+
+struct Quaternions {
+  Lanes x, y, z, w;
+};
+
+struct Poses {
+  Points position;
+  Quaternions orientation;
+};
+
+struct Rotations {
+  Points x, y, z;  // rows
+};
+
+struct RelativePoses {
+  Rotations rotation;
+  Points translation;
+  Lanes rotation_error, translation_error;
+};
+
+// As the sums of Diagonals: each row's begins at the diagonal.
+HWY_INLINE Points rotate(const Rotations& r, const Points& p) {
+  return {dot({r.x.x, r.x.y, r.x.z}, {p.x, p.y, p.z}), dot({r.y.y, r.y.z, r.y.x}, {p.y, p.z, p.x}),
+          dot({r.z.z, r.z.x, r.z.y}, {p.z, p.x, p.y})};
+}
+
+HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
+  return {dot({r.x.x, r.y.x, r.z.x}, {p.x, p.y, p.z}), dot({r.y.y, r.z.y, r.x.y}, {p.y, p.z, p.x}),
+          dot({r.z.z, r.x.z, r.y.z}, {p.z, p.x, p.y})};
+}
+
+// A pose is eight numbers: position, one that means nothing, x, y, z, w.
+static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == sizeof(Pose));
+static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
+
+HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
+  const double* rows[kWidth];
+  for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
+  const Columns position = load_columns(rows, 0), orientation = load_columns(rows, 4);
+  return {
+      {position.column[0], position.column[1], position.column[2]},
+      {orientation.column[0], orientation.column[1], orientation.column[2], orientation.column[3]}};
+}
+
+// conj(a) * b
+HWY_INLINE Quaternions relative(const Quaternions& a, const Quaternions& b) {
+  const auto plus = [](Lanes p, Lanes q, Lanes r, Lanes s)
+                        HWY_ATTR { return hn::Add(hn::Mul(p, q), hn::Mul(r, s)); };
+  const auto minus = [](Lanes p, Lanes q, Lanes r, Lanes s)
+                         HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+  return {hn::Sub(plus(a.w, b.x, a.z, b.y), plus(a.y, b.z, a.x, b.w)),
+          hn::Add(minus(a.w, b.y, a.z, b.x), minus(a.x, b.z, a.y, b.w)),
+          hn::Add(minus(a.y, b.x, a.x, b.y), minus(a.w, b.z, a.z, b.w)),
+          hn::Add(plus(a.x, b.x, a.y, b.y), plus(a.z, b.z, a.w, b.w))};
+}
+
+// 2 / |q|^2
+HWY_INLINE Lanes two_over_square(const Quaternions& q) {
+  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
+                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+  const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
+  const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
+  if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
+  // Out of range: no number, so that the lane fails.
+  const LaneMask fits =
+      hn::And(hn::Ge(square, all(kLeastSquare)), hn::Le(square, all(kMostSquare)));
+  const Lanes other = hn::IfThenElse(fits, hn::Div(two, square), hn::NaN(Tag()));
+  return hn::IfThenElse(unit, of_unit, other);
+}
+
+HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
+  const Lanes s = two_over_square(q), one = all(1.0);
+  const Lanes xx = hn::Mul(q.x, q.x), yy = hn::Mul(q.y, q.y), zz = hn::Mul(q.z, q.z);
+  const Lanes xy = hn::Mul(q.x, q.y), xz = hn::Mul(q.x, q.z), yz = hn::Mul(q.y, q.z);
+  const Lanes wx = hn::Mul(q.w, q.x), wy = hn::Mul(q.w, q.y), wz = hn::Mul(q.w, q.z);
+  const auto diagonal = [&](Lanes p, Lanes r)
+                            HWY_ATTR { return hn::Sub(one, hn::Mul(s, hn::Add(p, r))); };
+  const auto sum = [&](Lanes p, Lanes r) HWY_ATTR { return hn::Mul(s, hn::Add(p, r)); };
+  const auto difference = [&](Lanes p, Lanes r) HWY_ATTR { return hn::Mul(s, hn::Sub(p, r)); };
+  return {{diagonal(yy, zz), difference(xy, wz), sum(xz, wy)},
+          {sum(xy, wz), diagonal(xx, zz), difference(yz, wx)},
+          {difference(xz, wy), sum(yz, wx), diagonal(xx, yy)}};
+}
+
+HWY_INLINE Points turn_back(const Quaternions& q, const Points& v) {
+  const Points u{q.x, q.y, q.z};
+  const Points c = cross(u, v);
+  return v + times(two_over_square(q), cross(u, c) - times(q.w, c));
+}
+
+HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b) {
+  const auto same = [&](const Quaternions& c) HWY_ATTR {
+    return hn::And(hn::And(hn::Eq(a.x, c.x), hn::Eq(a.y, c.y)),
+                   hn::And(hn::Eq(a.z, c.z), hn::Eq(a.w, c.w)));
+  };
+  return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
+}
+
+// At one component, which nearly always decides.
+HWY_INLINE LaneMask may_permute_axes(const Quaternions& q) {
+  const Lanes w = hn::Abs(q.w);
+  return hn::Or(hn::Or(hn::Eq(w, all(0.0)), hn::Eq(w, all(0.5))), hn::Eq(w, all(1.0)));
+}
+
+HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
+  const Lanes x = hn::Abs(q.x), y = hn::Abs(q.y), z = hn::Abs(q.z), w = hn::Abs(q.w);
+  const auto which = [&](double value) HWY_ATTR {
+    const auto number = [&](Lanes c) HWY_ATTR {
+      return hn::IfThenElseZero(hn::Eq(c, all(value)), all(1.0));
+    };
+    return hn::Add(hn::Add(number(x), number(y)), hn::Add(number(z), number(w)));
+  };
+  const LaneMask one = hn::And(hn::Eq(which(1.0), all(1.0)), hn::Eq(which(0.0), all(3.0)));
+  return hn::Or(hn::Eq(which(0.5), all(4.0)), one);
+}
+
+// What is exact of relative_pose(). Equal orientations give the identity, to the sign of its
+// zeros.
+HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
+                                 RelativePoses& pose) {
+  const Lanes zero = all(0.0), one = all(1.0);
+  const LaneMask equal = equal_up_to_sign(a, b), a_permutes = permute_axes(a);
+  const auto settle = [&](Points& row, Lanes x, Lanes y, Lanes z) HWY_ATTR {
+    row = {hn::IfThenElse(equal, x, row.x), hn::IfThenElse(equal, y, row.y),
+           hn::IfThenElse(equal, z, row.z)};
+  };
+  settle(pose.rotation.x, one, zero, zero);
+  settle(pose.rotation.y, zero, one, zero);
+  settle(pose.rotation.z, zero, zero, one);
+  const LaneMask exact = hn::Or(equal, hn::And(a_permutes, permute_axes(b)));
+  pose.rotation_error = hn::IfThenElse(exact, zero, pose.rotation_error);
+  pose.translation_error = hn::IfThenElse(
+      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
+}
+
+HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& world_from_b) {
+  const Quaternions& a = world_from_a.orientation;
+  const Quaternions& b = world_from_b.orientation;
+  const Quaternions q = relative(a, b);
+  const Points between = world_from_b.position - world_from_a.position;
+  const Lanes zero = all(0.0);
+  RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError), zero};
+  const Lanes apart = norm(out.translation);
+  out.translation_error = hn::Mul(all(kTranslationError), apart);
+  const LaneMask no_turn =
+      hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), hn::Or(no_turn, may_permute_axes(a))))) {
+    settle_exactness(a, b, apart, out);
+  }
+  return out;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace clearance
+HWY_AFTER_NAMESPACE();
+
+#endif

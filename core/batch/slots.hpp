@@ -1,0 +1,86 @@
+// Where in the blocks of a batch its pairs are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/batch.hpp"
+#include "core/batch/block.hpp"
+
+namespace clearance {
+
+// The pairs of a batch and what they remember.
+struct BatchPairs {
+  std::vector<const ConvexPolyhedron*> bodies;
+  std::vector<BodyPair> pairs;
+  std::vector<TrackingState> states;  // points of pairs in a block are there
+
+  [[nodiscard]] const ConvexPolyhedron& a(std::uint32_t pair) const noexcept {
+    return *bodies[pairs[pair].a];
+  }
+  [[nodiscard]] const ConvexPolyhedron& b(std::uint32_t pair) const noexcept {
+    return *bodies[pairs[pair].b];
+  }
+  [[nodiscard]] std::uint32_t no_pair() const noexcept {
+    return static_cast<std::uint32_t>(pairs.size());
+  }
+};
+
+// Gives a pair a lane in a block of its kind, numbers of its features included.
+class BatchSlots {
+ public:
+  struct Slot {
+    std::uint32_t block = kNowhere, lane = 0;
+  };
+
+  explicit BatchSlots(BatchPairs& of);
+
+  void clear() noexcept;
+  [[nodiscard]] bool has(std::uint32_t pair) const noexcept {
+    return slots_[pair].block != kNowhere;
+  }
+  [[nodiscard]] Slot of(std::uint32_t pair) const noexcept { return slots_[pair]; }
+  [[nodiscard]] const BatchBlock& block_of(std::uint32_t pair) const noexcept {
+    return blocks_[slots_[pair].block];
+  }
+  [[nodiscard]] std::span<BatchBlock> blocks() noexcept { return blocks_; }
+  // The blocks of one kind.
+  [[nodiscard]] std::span<const std::uint32_t> blocks_of(FeatureKind kind) const noexcept {
+    return settled_[static_cast<std::size_t>(kind)].blocks;
+  }
+
+  // The pair has none: its state's features are of this kind.
+  void enter(std::uint32_t pair, FeatureKind kind) noexcept;
+  // Takes the points of its last query along, to its state.
+  void leave(std::uint32_t pair) noexcept;
+  // Moves pairs into lanes that others have left; a few of those stay, for what comes next.
+  void close_holes() noexcept { close_holes(kMostHoles); }
+
+ private:
+  static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
+  static constexpr std::size_t kMostHoles = 4;  // lanes of a kind
+
+  // The pairs of one kind.
+  struct Settled {
+    std::vector<std::uint32_t> blocks;  // all but the last full, but for
+    std::vector<Slot> holes;            // lanes that their pair has left, and some that were
+  };
+
+  void fill(std::uint32_t pair) noexcept;
+  void place(std::uint32_t pair, Slot slot) noexcept;
+  [[nodiscard]] bool is_hole(Slot slot, FeatureKind kind) const noexcept;
+  [[nodiscard]] Slot append(FeatureKind kind) noexcept;
+  void close_holes(std::size_t most) noexcept;
+  void close_last(Settled& of) noexcept;
+  std::uint32_t take_last(Settled& of) noexcept;
+
+  BatchPairs& of_;
+  std::vector<Slot> slots_;  // [pair]
+  std::vector<BatchBlock> blocks_;
+  std::array<Settled, kFeatureKinds> settled_;
+  std::vector<std::uint32_t> free_;  // blocks
+};
+
+}  // namespace clearance

@@ -1,0 +1,106 @@
+#include <algorithm>
+
+#include "core/construction/convex_hull.hpp"
+
+namespace clearance::exact {
+namespace {
+
+constexpr int kUnknown = -1;
+
+// A directed edge: corner[side] -> corner[side + 1] of a triangle.
+struct HalfEdge {
+  int triangle;
+  std::size_t side;
+};
+
+// The corner of `triangle` that its neighbour `base` does not share.
+int apex(const HullTriangle& triangle, const HullTriangle& base) {
+  for (const int corner : triangle.corner) {
+    if (std::find(base.corner.begin(), base.corner.end(), corner) == base.corner.end()) {
+      return corner;
+    }
+  }
+  return triangle.corner[0];
+}
+
+// The face of every triangle: coplanar neighbours share one.
+std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriangle> triangles,
+                              int& count) {
+  std::vector<int> face(triangles.size(), kUnknown);
+  std::vector<int> open;
+  count = 0;
+  for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
+    if (face[seed] != kUnknown) continue;
+    FilteredPlane plane(points, triangles[seed].corner);
+    face[seed] = count;
+    open.push_back(static_cast<int>(seed));
+    while (!open.empty()) {
+      const HullTriangle& triangle = triangles[at(open.back())];
+      open.pop_back();
+      for (const int neighbor : triangle.neighbor) {
+        if (face[at(neighbor)] != kUnknown) continue;
+        if (plane.side(points, apex(triangles[at(neighbor)], triangle)) != 0) continue;
+        face[at(neighbor)] = count;
+        open.push_back(neighbor);
+      }
+    }
+    ++count;
+  }
+  return face;
+}
+
+// The next edge of the same face's boundary: turn about the head of `edge` through the face's
+// triangles.
+HalfEdge next_on_boundary(std::span<const HullTriangle> triangles, const std::vector<int>& face,
+                          HalfEdge edge) {
+  HalfEdge next{edge.triangle, (edge.side + 1) % 3};
+  for (;;) {
+    const HullTriangle& triangle = triangles[at(next.triangle)];
+    const int across = triangle.neighbor[next.side];
+    if (face[at(across)] != face[at(next.triangle)]) return next;
+    const int pivot = triangle.corner[next.side];
+    const HullTriangle& other = triangles[at(across)];
+    std::size_t side = 0;
+    while (other.corner[side] != pivot) ++side;
+    next = {across, side};
+  }
+}
+
+}  // namespace
+
+std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTriangle> triangles) {
+  int count = 0;
+  const std::vector<int> face = face_numbers(points, triangles, count);
+  std::vector<HullFace> faces(at(count));
+  const auto beyond = [&](HalfEdge edge) {
+    return face[at(triangles[at(edge.triangle)].neighbor[edge.side])];
+  };
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    HullFace& result = faces[at(face[t])];
+    if (!result.corner.empty()) continue;
+    for (std::size_t side = 0; side < 3; ++side) {
+      HalfEdge start{static_cast<int>(t), side};
+      if (beyond(start) == face[t]) continue;
+      // Walk to where the neighbour changes, so that the loop starts at a true corner.
+      HalfEdge edge = next_on_boundary(triangles, face, start);
+      while (beyond(edge) == beyond(start)) edge = next_on_boundary(triangles, face, edge);
+      start = edge;
+      int last_beyond = kUnknown;
+      do {
+        if (beyond(edge) != last_beyond) {
+          last_beyond = beyond(edge);
+          result.corner.push_back(triangles[at(edge.triangle)].corner[edge.side]);
+          result.neighbor.push_back(last_beyond);
+        }
+        edge = next_on_boundary(triangles, face, edge);
+      } while (edge.triangle != start.triangle || edge.side != start.side);
+      result.plane = plane_through(points.exact(result.corner[0]), points.exact(result.corner[1]),
+                                   points.exact(result.corner[2]));
+      reduce(result.plane);
+      break;
+    }
+  }
+  return faces;
+}
+
+}  // namespace clearance::exact

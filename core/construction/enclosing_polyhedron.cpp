@@ -1,0 +1,177 @@
+#include "core/enclosing_polyhedron.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "core/numerics/error_constants.hpp"
+#include "core/shapes.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr int kMostRounds = 12;
+
+// The bodies' hull: a body is the hull of balls of these radii around its anchors.
+class Outline {
+ public:
+  explicit Outline(std::span<const PlacedShape> bodies) {
+    for (const PlacedShape& body : bodies) add(body);
+  }
+
+  // An offset d with n.x <= d for every point x of the bodies; n as the doubles are, about unit.
+  [[nodiscard]] double reach(const Vec3& n) const {
+    const double length = n.norm() * kRoundedUp;
+    double farthest = -kInfinity;
+    for (const Ball& ball : balls_) {
+      farthest = std::max(farthest, n.dot(ball.centre) + length * ball.radius);
+    }
+    return farthest + 0x1p-49 * size_;  // three roundings of a product, two of the sum
+  }
+
+  // No point of the bodies is farther from the frame's origin, m.
+  [[nodiscard]] double size() const { return size_; }
+
+  // Points of the bodies, up to rounding, with those around round ends: their hull has about the
+  // facets of the bodies' hull.
+  [[nodiscard]] std::vector<Vec3> samples() const {
+    std::vector<Vec3> points;
+    for (const Ball& ball : balls_) {
+      if (ball.round > 0.0) {
+        around(ball, points);
+      } else {
+        points.push_back(ball.centre);
+      }
+    }
+    return points;
+  }
+
+ private:
+  struct Ball {
+    Vec3 centre;
+    double round;   // the body's radius, m
+    double radius;  // and what placing may have moved it, m
+  };
+
+  void add(const PlacedShape& body) {
+    const ConvexPolyhedron& shape = *body.shape;
+    const double arm = body.frame_from_shape.position.norm() + shape.bounding_radius;
+    const double error = kPlacingError * arm + shape.position_error;
+    for (const Vec3& anchor : shape.anchors) {
+      const Vec3 centre = transform(body.frame_from_shape, anchor);
+      const double radius = (shape.radius + error) * kRoundedUp;
+      balls_.push_back({centre, shape.radius, radius});
+      size_ = std::max(size_, (centre.norm() + radius) * kRoundedUp);
+    }
+  }
+
+  static void around(const Ball& ball, std::vector<Vec3>& points) {
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          const Vec3 direction(x, y, z);
+          if (direction.isZero(0.0)) continue;
+          points.push_back(ball.centre + ball.round * direction.normalized());
+        }
+      }
+    }
+  }
+
+  std::vector<Ball> balls_;
+  double size_ = 0.0;
+};
+
+// The planes to choose from.
+std::vector<HalfSpace> candidates(std::span<const PlacedShape> bodies, const Outline& outline) {
+  std::vector<HalfSpace> planes;
+  const auto add = [&](const Vec3& normal) { planes.push_back({normal, outline.reach(normal)}); };
+  if (bodies.size() == 1 && !bodies[0].shape->facets.empty()) {
+    for (const Facet& facet : bodies[0].shape->facets) {
+      add(transform({.orientation = bodies[0].frame_from_shape.orientation}, facet.normal));
+    }
+    return planes;
+  }
+  const ShapeResult hull = polyhedron_from_vertices(outline.samples());
+  if (const auto* body = std::get_if<ConvexPolyhedron>(&hull)) {
+    for (const Facet& facet : body->facets) add(facet.normal);
+  }
+  return planes;
+}
+
+double beyond(const HalfSpace& plane, const Vec3& point) {
+  return plane.normal.dot(point) - plane.offset;
+}
+
+struct Corner {
+  double sticks_out = 0.0;  // by the plane that cuts it off deepest, m
+  const HalfSpace* plane = nullptr;
+};
+
+Corner judged(const Vec3& corner, const std::vector<HalfSpace>& planes) {
+  Corner result;
+  for (const HalfSpace& plane : planes) {
+    const double depth = beyond(plane, corner);
+    if (depth > result.sticks_out) result = {depth, &plane};
+  }
+  return result;
+}
+
+// The planes to cut with next, at most `room`: no corner twice when one cut takes most of it off.
+std::vector<HalfSpace> next_cuts(const ConvexPolyhedron& body, const std::vector<HalfSpace>& planes,
+                                 double tolerance, std::size_t room) {
+  std::vector<std::pair<Corner, Vec3>> corners;
+  for (const Vertex& vertex : body.vertices) {
+    const Corner corner = judged(vertex.position, planes);
+    if (corner.sticks_out > tolerance) corners.emplace_back(corner, vertex.position);
+  }
+  std::stable_sort(corners.begin(), corners.end(), [](const auto& left, const auto& right) {
+    return left.first.sticks_out > right.first.sticks_out;
+  });
+  // Half of what there is room for, so that later cuts are chosen by what these leave.
+  const std::size_t most = std::min(room, std::max<std::size_t>(2, room / 2));
+  std::vector<HalfSpace> cuts;
+  for (const auto& [corner, position] : corners) {
+    if (cuts.size() == most) break;
+    const Vec3& point = position;
+    const double enough = 0.5 * corner.sticks_out;
+    const bool done = std::any_of(cuts.begin(), cuts.end(), [&](const HalfSpace& cut) {
+      return beyond(cut, point) >= enough;
+    });
+    if (!done) cuts.push_back(*corner.plane);
+  }
+  return cuts;
+}
+
+}  // namespace
+
+std::optional<ConvexPolyhedron> enclosing_polyhedron(std::span<const PlacedShape> bodies,
+                                                     const EnclosingOptions& options) {
+  const bool bounded = std::all_of(bodies.begin(), bodies.end(),
+                                   [](const PlacedShape& body) { return body.shape->bounded(); });
+  if (bodies.empty() || !bounded) return std::nullopt;
+  const Outline outline(bodies);
+  std::vector<HalfSpace> rows;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 normal = sign * Vec3::Unit(axis);
+      rows.push_back({normal, outline.reach(normal)});
+    }
+  }
+  const std::vector<HalfSpace> planes = candidates(bodies, outline);
+  const double tolerance = options.tolerance * outline.size();
+  std::optional<ConvexPolyhedron> best;
+  for (int round = 0; round < kMostRounds; ++round) {
+    ShapeResult made = polyhedron_from_halfspaces(rows);
+    auto* body = std::get_if<ConvexPolyhedron>(&made);
+    if (body == nullptr) return best;  // thinner than a rounding, or out of range
+    best = std::move(*body);
+    if (best->facets.size() >= options.facets) break;
+    const auto cuts = next_cuts(*best, planes, tolerance, options.facets - best->facets.size());
+    if (cuts.empty()) break;
+    rows.insert(rows.end(), cuts.begin(), cuts.end());
+  }
+  return best;
+}
+
+}  // namespace clearance

@@ -1,0 +1,42 @@
+// From exact numbers to doubles, rounded once.
+#pragma once
+
+#include "core/construction/integer_vector.hpp"
+#include "core/convex_polyhedron.hpp"
+#include "core/vec.hpp"
+
+namespace clearance::exact {
+
+// A double and whether it is the number itself.
+struct Rounded {
+  double value;
+  bool exact;
+};
+
+// The double nearest to numerator / denominator. denominator > 0.
+[[nodiscard]] Rounded nearest_quotient(const Integer& numerator, const Integer& denominator);
+
+// The double nearest to numerator / sqrt(square). square > 0.
+[[nodiscard]] Rounded nearest_over_root(const Integer& numerator, const Integer& square);
+
+// direction / |direction|, every component within 0.51 ulp. direction is not zero.
+[[nodiscard]] Vec3 unit(const Integer3& direction);
+
+// A positive multiple of `direction` that is exactly three doubles, if one is: `exact` says so, and
+// otherwise the vector is unit(direction), and `rest` what it leaves of direction / |direction|, to
+// 2^-104. Largest component in [1, 2) when exact.
+struct RoundedDirection {
+  Vec3 vector;
+  bool exact;
+  Vec3 rest = Vec3::Zero();
+};
+[[nodiscard]] RoundedDirection nearest_direction(const Integer3& direction);
+
+// Is the direction, by its shortest integers, no longer than exact_direction() has room for? Sums
+// of products of up to three doubles are: their integers have 3 * 2098 + 2 bits.
+[[nodiscard]] bool has_exact_direction(const Integer3& direction);
+
+// Of one that has_exact_direction().
+[[nodiscard]] ExactDirection exact_direction(const Integer3& direction);
+
+}  // namespace clearance::exact

@@ -1,0 +1,162 @@
+#include "core/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/construction/exact_polyhedron.hpp"
+#include "core/construction/rounded_once.hpp"
+#include "core/model/query_tables.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance {
+namespace {
+
+ShapeResult rounded(const std::variant<exact::Solid, ShapeError>& made) {
+  if (const ShapeError* error = std::get_if<ShapeError>(&made)) return *error;
+  return exact::rounded_polyhedron(std::get<exact::Solid>(made));
+}
+
+ShapeError bad_row(std::size_t row, const std::string& what) {
+  return {"row " + std::to_string(row + 1) + " " + what};
+}
+
+// Nothing when the radius can be used.
+std::string radius_fault(double radius) {
+  if (!std::isfinite(radius) || !(radius >= 0.0)) {
+    return "the radius is not a finite number of at least 0";
+  }
+  return radius <= kLargestCoordinate ? "" : "the radius is more than 1e100 m";
+}
+
+bool is_too_far(const Vec3& point) { return !(point.cwiseAbs().maxCoeff() <= kLargestCoordinate); }
+
+struct SegmentLine {
+  Vec3 direction;
+  exact::Rounded length;
+};
+
+SegmentLine line_from(const Vec3& start, const Vec3& end) {
+  const exact::Integer4 a = exact::integer_multiple({start.x(), start.y(), start.z(), 1.0});
+  const exact::Integer4 b = exact::integer_multiple({end.x(), end.y(), end.z(), 1.0});
+  exact::Integer3 difference;
+  for (std::size_t i = 0; i < 3; ++i) difference[i] = b[i] * a[3] - a[i] * b[3];
+  const exact::Integer squared = exact::dot(difference, difference);
+  const exact::Integer weight = a[3] * b[3];
+  return {exact::unit(difference), exact::nearest_over_root(squared, squared * weight * weight)};
+}
+
+}  // namespace
+
+ShapeResult polyhedron_from_halfspaces(std::span<const HalfSpace> rows) {
+  if (rows.empty()) return ShapeError{"no half-spaces: at least one is needed"};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (!rows[row].normal.allFinite() || !std::isfinite(rows[row].offset)) {
+      return bad_row(row, "has a number that is not finite");
+    }
+    if (rows[row].normal.isZero(0.0)) {
+      return bad_row(row, "has a zero normal: it bounds nothing");
+    }
+  }
+  return rounded(exact::intersection_of(rows));
+}
+
+ShapeResult polyhedron_from_vertices(std::span<const Vec3> points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) {
+      return ShapeError{"point " + std::to_string(i + 1) + " has a coordinate that is not finite"};
+    }
+  }
+  if (points.size() < 4) {
+    return ShapeError{"a solid needs at least four points, found " + std::to_string(points.size())};
+  }
+  return rounded(exact::hull_of(points));
+}
+
+ShapeResult box(const Vec3& half_extents) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isfinite(half_extents[axis]) && half_extents[axis] > 0.0) continue;
+    return ShapeError{std::string("half extent ") + "xyz"[axis] +
+                      " is not a finite number above 0"};
+  }
+  std::vector<Vec3> corners;
+  for (const double z : {-half_extents.z(), half_extents.z()}) {
+    for (const double y : {-half_extents.y(), half_extents.y()}) {
+      for (const double x : {-half_extents.x(), half_extents.x()}) corners.emplace_back(x, y, z);
+    }
+  }
+  return polyhedron_from_vertices(corners);
+}
+
+ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_high) {
+  if (!std::isfinite(z_low) || !std::isfinite(z_high) || !(z_low < z_high)) {
+    return ShapeError{"the prism's low end must be finite and below its high end"};
+  }
+  if (base.size() < 3) {
+    return ShapeError{"a prism's base needs at least three points, found " +
+                      std::to_string(base.size())};
+  }
+  std::vector<Vec3> corners;
+  corners.reserve(2 * base.size());
+  for (const double z : {z_low, z_high}) {
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      if (!base[i].allFinite()) {
+        return ShapeError{"base point " + std::to_string(i + 1) +
+                          " has a coordinate that is not finite"};
+      }
+      corners.emplace_back(base[i].x(), base[i].y(), z);
+    }
+  }
+  ShapeResult made = polyhedron_from_vertices(corners);
+  if (std::holds_alternative<ShapeError>(made)) {
+    return ShapeError{"the prism's base has no area: its points lie in one line"};
+  }
+  return made;
+}
+
+ShapeResult point(const Vec3& position, double radius) {
+  if (!position.allFinite()) return ShapeError{"the point has a coordinate that is not finite"};
+  if (is_too_far(position)) return ShapeError{"the point lies more than 1e100 m from the origin"};
+  if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
+  ConvexPolyhedron body;
+  body.vertices.push_back({position, 0, 0});
+  body.anchors.push_back(position);
+  body.interior = position;
+  body.bounding_radius = position.norm() * (1.0 + 0x1p-50);
+  body.radius = radius;
+  add_walking_tables(body);
+  return body;
+}
+
+ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
+  if (!start.allFinite() || !end.allFinite()) {
+    return ShapeError{"the segment has a coordinate that is not finite"};
+  }
+  if (is_too_far(start) || is_too_far(end)) {
+    return ShapeError{"an end of the segment lies more than 1e100 m from the origin"};
+  }
+  if (start == end) return ShapeError{"the segment's two ends are the same point"};
+  if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
+  const SegmentLine line = line_from(start, end);
+  ConvexPolyhedron body;
+  body.edges.push_back({start,
+                        line.direction,
+                        Eigen::Matrix<double, 2, 3>::Zero(),
+                        0.0,
+                        line.length.value,
+                        {0, 1},
+                        {kNone, kNone}});
+  body.vertices = {{start, 0, 1}, {end, 1, 1}};
+  body.vertex_edges = {{0, 0}, {0, 1}};
+  body.anchors = {start, end};
+  body.interior = 0.5 * start + 0.5 * end;
+  body.bounding_radius = std::max(start.norm(), end.norm()) * (1.0 + 0x1p-50);
+  body.position_error = line.length.exact ? 0.0 : kUlp * line.length.value;
+  body.radius = radius;
+  add_walking_tables(body);
+  return body;
+}
+
+}  // namespace clearance

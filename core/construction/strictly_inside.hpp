@@ -1,0 +1,33 @@
+// Does an intersection of half-spaces have an interior, and where? Decided exactly, with a proof
+// either way.
+#pragma once
+
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/construction/integer_vector.hpp"
+#include "core/shapes.hpp"
+
+namespace clearance::exact {
+
+// Rows whose normals have a positive combination of zero with an offset of zero (`flat`) or less:
+// proof by Farkas that nothing lies strictly inside all of them.
+struct NoInterior {
+  std::vector<int> rows;  // indices, ascending, at most four
+  bool flat;              // the rows still share points, in a common plane
+};
+
+// What the normals span.
+struct NormalSpan {
+  int rank;  // 1 to 3
+  Integer3
+      direction;  // rank 1: the normals' own; rank 2: the one perpendicular to all; rank 3: none
+};
+[[nodiscard]] NormalSpan normal_span(std::span<const HalfSpace> rows);
+
+// A homogeneous point strictly inside every row; or the proof that there is none. Rows: finite, no
+// zero normal. Its depth is about the largest possible, up to the size of the rows' offsets.
+[[nodiscard]] std::variant<Integer4, NoInterior> interior_point(std::span<const HalfSpace> rows);
+
+}  // namespace clearance::exact

@@ -1,0 +1,307 @@
+// From an exact solid to the doubles of the queries: every number rounded once, then joined up.
+#include <algorithm>
+#include <cmath>
+
+#include "core/construction/centre.hpp"
+#include "core/construction/exact_polyhedron.hpp"
+#include "core/construction/rounded_once.hpp"
+#include "core/model/query_tables.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance::exact {
+namespace {
+
+// Rounds the solid's numbers and keeps the largest error made.
+class Rounder {
+ public:
+  double quotient(const Integer& numerator, const Integer& denominator) {
+    return noted(nearest_quotient(numerator, denominator));
+  }
+
+  double over_root(const Integer& numerator, const Integer& square) {
+    return noted(nearest_over_root(numerator, square));
+  }
+
+  Vec3 point(const Integer4& node) {
+    Vec3 result;
+    Vec3 error = Vec3::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Rounded rounded = nearest_quotient(node[i], node[3]);
+      const auto axis = static_cast<Eigen::Index>(i);
+      result[axis] = rounded.value;
+      error[axis] = error_of(rounded);
+    }
+    note(error.norm() * (1.0 + 0x1p-50));
+    return result;
+  }
+
+  [[nodiscard]] double error() const { return error_; }
+
+ private:
+  static double error_of(const Rounded& rounded) {
+    if (rounded.exact) return 0.0;
+    return std::max(kUlp * std::abs(rounded.value), std::numeric_limits<double>::min());
+  }
+
+  void note(double error) { error_ = std::max(error_, error); }
+
+  double noted(const Rounded& rounded) {
+    note(error_of(rounded));
+    return rounded.value;
+  }
+
+  double error_ = 0.0;
+};
+
+Integer squared_norm(const Integer3& v) { return dot(v, v); }
+
+Vec3 unit_cross(const Integer3& a, const Integer3& b) { return unit(cross(a, b)); }
+
+class Assembler {
+ public:
+  explicit Assembler(const Solid& solid) : solid_(solid) {}
+
+  ConvexPolyhedron build() {
+    for (const Integer4& plane : solid_.planes) add_facet(plane);
+    for (const Integer4& node : solid_.nodes) body_.anchors.push_back(rounder_.point(node));
+    for (const SolidEdge& edge : solid_.edges) add_edge(edge);
+    join_facets();
+    const bool lines = std::any_of(solid_.edges.begin(), solid_.edges.end(),
+                                   [](const SolidEdge& edge) { return edge.full_line; });
+    if (!lines) add_vertices();
+    if (solid_.nodes.empty()) anchor_bare_planes();
+    place_facet_points();
+    if (!solid_.rays.empty()) go_on_for_ever();
+    body_.position_error = rounder_.error();
+    return std::move(body_);
+  }
+
+ private:
+  void add_facet(const Integer4& plane) {
+    const Integer3 normal = head(plane);
+    body_.facets.push_back(
+        {unit(normal), rounder_.over_root(plane[3], squared_norm(normal)), 0, 0, 0, 0});
+  }
+
+  void add_edge(const SolidEdge& edge) {
+    const Integer3 left = head(solid_.planes[at(edge.left)]);
+    const Integer3 right = head(solid_.planes[at(edge.right)]);
+    const Integer3 direction = cross(left, right);
+    Edge result;
+    result.point = body_.anchors[at(edge.start)];
+    result.direction = unit(direction);
+    result.begin = edge.full_line ? -kInfinity : 0.0;
+    result.end = edge.full_line || edge.end == kNone ? kInfinity : length(edge);
+    result.vertex[0] = edge.full_line ? kNone : edge.start;
+    result.vertex[1] = edge.full_line ? kNone : edge.end;
+    result.facet[0] = edge.left;
+    result.facet[1] = edge.right;
+    result.inward.row(0) = unit_cross(left, direction);
+    result.inward.row(1) = unit_cross(direction, right);
+    body_.edges.push_back(result);
+  }
+
+  double length(const SolidEdge& edge) {
+    const Integer4& a = solid_.nodes[at(edge.start)];
+    const Integer4& b = solid_.nodes[at(edge.end)];
+    Integer3 difference;
+    for (std::size_t i = 0; i < 3; ++i) difference[i] = b[i] * a[3] - a[i] * b[3];
+    // |difference| / weight = squared / (weight |difference|)
+    const Integer weight = a[3] * b[3];
+    const Integer squared = squared_norm(difference);
+    return rounder_.over_root(squared, squared * weight * weight);
+  }
+
+  // What one facet sees of its edges: leaves `from`, goes to `to` (kNone: infinity), facet on the
+  // left.
+  struct Side {
+    int from, to;
+    EdgeUse use;
+  };
+
+  void join_facets() {
+    std::vector<std::vector<Side>> sides(solid_.planes.size());
+    for (std::size_t e = 0; e < solid_.edges.size(); ++e) {
+      const SolidEdge& edge = solid_.edges[e];
+      const int start = edge.full_line ? kNone : edge.start;
+      const int end = edge.full_line ? kNone : edge.end;
+      const auto number = static_cast<std::int32_t>(e);
+      sides[at(edge.left)].push_back({start, end, {number, 0}});
+      sides[at(edge.right)].push_back({end, start, {number, 1}});
+    }
+    for (std::size_t f = 0; f < sides.size(); ++f) {
+      body_.facets[f].first_side = static_cast<std::int32_t>(body_.facet_edges.size());
+      body_.facets[f].sides = static_cast<std::int32_t>(sides[f].size());
+      chain(sides[f]);
+      add_sharp_corners(body_.facets[f]);
+    }
+  }
+
+  // Head to tail; an open chain starts with the side that comes from infinity, a closed one
+  // anywhere.
+  void chain(std::vector<Side>& sides) {
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return a.from < b.from; });
+    if (sides.empty()) return;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      body_.facet_edges.push_back(sides[next].use);
+      const int reached = sides[next].to;
+      if (reached == kNone) {
+        next = i + 1;  // only full lines go on after infinity
+      } else {
+        next = static_cast<std::size_t>(
+            std::lower_bound(sides.begin(), sides.end(), reached,
+                             [](const Side& side, int from) { return side.from < from; }) -
+            sides.begin());
+      }
+    }
+  }
+
+  void add_sharp_corners(Facet& facet) {
+    facet.limits = facet.sides;
+    const auto use_of = [&](std::int32_t i) {
+      return body_.facet_edges[at(facet.first_side + i % facet.sides)];
+    };
+    const auto along = [&](const EdgeUse& use) {
+      const Vec3& direction = body_.edges[at(use.edge)].direction;
+      return use.side == 0 ? direction : Vec3(-direction);
+    };
+    for (std::int32_t i = 0; i < facet.sides; ++i) {
+      const EdgeUse use = use_of(i), next = use_of(i + 1);
+      const std::int32_t corner = body_.edges[at(use.edge)].vertex[1 - use.side];
+      if (corner == kNone || corner != body_.edges[at(next.edge)].vertex[next.side]) continue;
+      if (!(-along(use).dot(along(next)) > kSharpCorner)) continue;
+      body_.facet_edges.push_back(use);
+      ++facet.limits;
+    }
+  }
+
+  void add_vertices() {
+    std::vector<std::vector<EdgeUse>> around(solid_.nodes.size());
+    for (std::size_t e = 0; e < solid_.edges.size(); ++e) {
+      const auto number = static_cast<std::int32_t>(e);
+      const SolidEdge& edge = solid_.edges[e];
+      around[at(edge.start)].push_back({number, 0});
+      if (edge.end != kNone) around[at(edge.end)].push_back({number, 1});
+    }
+    for (std::size_t v = 0; v < around.size(); ++v) {
+      body_.vertices.push_back({body_.anchors[v],
+                                static_cast<std::int32_t>(body_.vertex_edges.size()),
+                                static_cast<std::int32_t>(around[v].size())});
+      turn(around[v]);
+    }
+  }
+
+  // Counter-clockwise as seen from outside: an edge's left facet, leaving the vertex, is the next
+  // one's right.
+  void turn(std::vector<EdgeUse>& uses) {
+    const auto right_of = [this](const EdgeUse& use) {
+      return body_.edges[at(use.edge)].facet[1 - use.side];
+    };
+    const auto left_of = [this](const EdgeUse& use) {
+      return body_.edges[at(use.edge)].facet[use.side];
+    };
+    std::sort(uses.begin(), uses.end(),
+              [&](const EdgeUse& a, const EdgeUse& b) { return right_of(a) < right_of(b); });
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+      body_.vertex_edges.push_back(uses[next]);
+      next = static_cast<std::size_t>(
+          std::lower_bound(uses.begin(), uses.end(), left_of(uses[next]),
+                           [&](const EdgeUse& use, int facet) { return right_of(use) < facet; }) -
+          uses.begin());
+    }
+  }
+
+  // Half-space and slab: each plane's point nearest to the origin.
+  void anchor_bare_planes() {
+    for (const Integer4& plane : solid_.planes) {
+      const Integer3 normal = head(plane);
+      body_.anchors.push_back(
+          rounder_.point({Integer(normal[0] * plane[3]), Integer(normal[1] * plane[3]),
+                          Integer(normal[2] * plane[3]), squared_norm(normal)}));
+    }
+  }
+
+  // What an unbounded body keeps exactly.
+  void go_on_for_ever() {
+    for (const Integer3& ray : solid_.rays) {
+      const RoundedDirection direction = nearest_direction(ray);
+      body_.rays.push_back(
+          {direction.vector, direction.exact, direction.rest, exact_direction(ray)});
+    }
+    for (const Integer4& plane : solid_.planes) {
+      body_.exact_normals.push_back(exact_direction(head(plane)));
+    }
+    for (const SolidEdge& edge : solid_.edges) body_.edge_rays.push_back(ray_along(edge));
+  }
+
+  std::int32_t ray_along(const SolidEdge& edge) {
+    if (!edge.full_line && edge.end != kNone) return kNone;
+    const Integer3 along =
+        cross(head(solid_.planes[at(edge.left)]), head(solid_.planes[at(edge.right)]));
+    const auto found = std::ranges::find_if(solid_.rays, [&](const Integer3& ray) {
+      return squared_norm(cross(ray, along)) == 0 && sgn(dot(ray, along)) > 0;
+    });
+    return static_cast<std::int32_t>(found - solid_.rays.begin());
+  }
+
+  // The anchor of each facet that is nearest to the origin: it has the smallest rounding error.
+  void place_facet_points() {
+    for (std::size_t f = 0; f < body_.facets.size(); ++f) {
+      Facet& facet = body_.facets[f];
+      if (facet.sides == 0) {
+        facet.anchor = static_cast<std::int32_t>(f);
+        continue;
+      }
+      double nearest = kInfinity;
+      for (std::int32_t i = 0; i < facet.sides; ++i) {
+        const EdgeUse& use = body_.facet_edges[at(facet.first_side + i)];
+        const double square = body_.edges[at(use.edge)].point.squaredNorm();
+        if (square >= nearest) continue;
+        nearest = square;
+        facet.anchor = solid_.edges[at(use.edge)].start;
+      }
+    }
+  }
+
+  const Solid& solid_;
+  ConvexPolyhedron body_;
+  Rounder rounder_;
+};
+
+// Of an unbounded one they are kept.
+bool has_exact_directions(const Solid& solid) {
+  return solid.rays.empty() ||
+         (std::all_of(solid.rays.begin(), solid.rays.end(), has_exact_direction) &&
+          std::all_of(solid.planes.begin(), solid.planes.end(),
+                      [](const Integer4& plane) { return has_exact_direction(head(plane)); }));
+}
+
+}  // namespace
+
+ShapeResult rounded_polyhedron(const Solid& solid) {
+  if (!has_exact_directions(solid)) {
+    return ShapeError{"a direction in which the body goes on for ever takes more than 6300 bits"};
+  }
+  ConvexPolyhedron body = Assembler(solid).build();
+  double farthest = 0.0;
+  for (const Vec3& anchor : body.anchors) {
+    if (!(anchor.cwiseAbs().maxCoeff() <= kLargestCoordinate)) {
+      return ShapeError{"a vertex lies more than 1e100 m from the origin"};
+    }
+    farthest = std::max(farthest, anchor.norm());
+  }
+  body.bounding_radius = farthest * (1.0 + 0x1p-50);
+  Vec3 inside;
+  for (std::size_t i = 0; i < 3; ++i) {
+    inside[static_cast<Eigen::Index>(i)] =
+        nearest_quotient(solid.interior[i], solid.interior[3]).value;
+  }
+  body.interior = well_inside(body, inside);
+  add_walking_tables(body);
+  return body;
+}
+
+}  // namespace clearance::exact

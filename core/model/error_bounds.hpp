@@ -1,0 +1,75 @@
+// What rounding can do to one query, as lengths. Derived once, so that every bound can be widened
+// by it.
+//
+// One ulp here is 2^-53, the largest relative error of one rounding. The counts are upper bounds;
+// the derivation is in core/README.md, "Why the bounds hold in floating point", and
+// core/ROUNDING.md.
+#pragma once
+
+#include <algorithm>
+
+#include "core/convex_polyhedron.hpp"
+#include "core/numerics/error_constants.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+struct Precision {
+  double size;   // m: reach of A + reach of B + |translation|: what ulps are counted in
+  double slack;  // m: no bound computed in doubles from this model is off by more, either way
+  double
+      tight;  // m: an upper bound this close to the lower one (before slack) is as good as it gets
+  double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
+
+  // Are bounds, slack included, this near to each other what a converged answer promises?
+  [[nodiscard]] bool converged(double gap) const noexcept {
+    return gap <= std::max(tight + 2.0 * slack, kConvergedGap * size);
+  }
+};
+
+// How well B's place as seen from A is known, and how far away it is (m).
+struct PlacePrecision {
+  double rotation_error, translation_error;  // as in RelativePose
+  double apart;                              // |translation|
+};
+
+// `farthest`: an upper bound of the distance or depth (m), which limits where on an unbounded body
+// to look.
+//
+// A wrong rotation moves a point of B by its error times reach_b. Or else B may be thought of as
+// fixed: the wrong rotation then turns A about B's origin, from where A reaches no farther than
+// reach_a + apart, and what it is short of a rotation stretches the distance. Both are bounds, so
+// the smaller one counts.
+[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const PlacePrecision& b_in_a, double farthest) noexcept {
+  Precision p;
+  const double apart = b_in_a.apart;
+  double tight = kTightUlps[0], on_features = a.slack_as_a + b.slack_as_b;
+  p.reach_a = a.bounding_radius;
+  p.reach_b = b.bounding_radius;
+  if (!a.bounded()) {
+    p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
+    on_features += kUlp * kUlpsOnA * p.reach_a;
+  }
+  if (!b.bounded()) {
+    p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
+    on_features += kUlp * kUlpsOnB * p.reach_b;
+  }
+  if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
+  p.size = p.reach_a + p.reach_b + apart;
+  const double turned =
+      a.bounded() ? std::min(p.reach_b, p.reach_a + apart + kStretched * farthest) : p.reach_b;
+  p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
+            b_in_a.rotation_error * turned;
+  p.tight = tight * kUlp * p.size;
+  return p;
+}
+
+[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const RelativePose& a_from_b, double farthest) noexcept {
+  return precision(
+      a, b, {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation.norm()},
+      farthest);
+}
+
+}  // namespace clearance

@@ -1,0 +1,54 @@
+// From the cores to the bodies: each is its core plus a ball of its radius.
+#pragma once
+
+#include <cmath>
+
+#include "core/distance_result.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance {
+
+[[nodiscard]] inline double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+  return a.radius + b.radius;
+}
+
+// What taking their sum off a bound of the cores' distance, about `distance`, rounds.
+[[nodiscard]] inline double rounding_of_radii(double sum, double distance) noexcept {
+  return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
+}
+
+// Will bounds of the cores' distance, `gap` from each other, be as near as a converged answer's
+// when the radii are taken off? Each is widened by what that may round, and then rounded, by as
+// much at most. `size`: Precision::size.
+[[nodiscard]] inline bool is_as_promised(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         double size, double distance, double gap) noexcept {
+  const double sum = radii(a, b);
+  return gap + 4.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
+}
+
+// B's witness point of a result with radii, from the core's (TrackingState); both and the result's
+// normal in the same frame.
+[[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_core, const Vec3& normal,
+                                       const ConvexPolyhedron& b) noexcept {
+  return on_core - b.radius * normal;
+}
+
+// Witness points move from the cores' surfaces to the rounded bodies'.
+inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
+                      const ConvexPolyhedron& b) noexcept {
+  const double sum = radii(a, b);
+  if (sum == 0.0 || r.upper == -kInfinity) return;  // what no translation parts stays so
+  const double rounding = rounding_of_radii(sum, r.upper);
+  r.distance -= sum;
+  r.lower -= sum + rounding;
+  r.upper -= sum - rounding;
+  r.point_on_a += a.radius * r.normal;
+  r.point_on_b = on_rounded_b(r.point_on_b, r.normal, b);
+  if (r.upper < 0.0) {
+    r.status = DistanceStatus::kOverlapping;
+  } else if (r.lower <= 0.0 && r.status == DistanceStatus::kConverged) {
+    r.status = DistanceStatus::kTouching;
+  }
+}
+
+}  // namespace clearance

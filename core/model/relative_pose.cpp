@@ -1,0 +1,28 @@
+// Compiled once a vector width.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/model/relative_pose.cpp"
+#include "core/numerics/simd_targets.hpp"
+// That comes first.
+#include "core/model/relative_pose-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+
+RelativePose relate(const Pose& world_from_a, const Pose& world_from_b) {
+  return pose_of(relative_quads(world_from_a, world_from_b), world_from_a, world_from_b);
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clearance {
+
+HWY_EXPORT(relate);
+
+RelativePose relative_pose(const Pose& world_from_a, const Pose& world_from_b) noexcept {
+  return HWY_DYNAMIC_DISPATCH(relate)(world_from_a, world_from_b);
+}
+
+}  // namespace clearance
+#endif

@@ -1,0 +1,112 @@
+// The counts of roundings that the bounds are made of, for the scalar and the vector code of a
+// query.
+#pragma once
+
+namespace clearance {
+
+// Half an ulp of 1: the largest relative error of one rounding.
+inline constexpr double kUlp = 0x1p-53;
+
+// Times this, a result of up to six roundings is no longer below the exact one.
+inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
+
+// For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
+inline constexpr double kNearlyUnit = 0x1p-28;
+
+// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its
+// reciprocal over- or underflow, and the quaternions are brought to about unit length first.
+inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
+[[nodiscard]] constexpr bool is_in_range(double square) noexcept {
+  return square >= kLeastSquare && square <= kMostSquare;
+}
+
+// What follows is to first order; the second is 2^-50 of it, and every count is rounded up by more.
+// tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at once are
+// worst.
+
+// Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
+// - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
+//   quotient 1. (Or of nearly unit ones: from 1 on the sum is off by 1 and 2 - |q|^2 exact; below
+//   1, by 1/2 and 1; 2^-55 is 1/4.) That scales R - I, which is 2|x| long: 6|x|.
+// - The squares, there and on the diagonal 1 - 2p, p = x_j^2 + x_k^2: 4 p (1 - p); beside it
+//   |R_ij|.
+// - The other products beside the diagonal: 2 (|x_i x_j| + |w x_k|).
+// - The sum in an entry and the product with the factor: 4 p and 2|R_ij|. 1 - 2p: 1/2.
+// The last three make a matrix of bounds; its 2-norm and 6|x| are together at most 15.52.
+inline constexpr double kMatrixError = 15.6 * kUlp;
+
+// Error of a Hamilton product a b of unit length. b's components multiply four vectors, all of unit
+// length and at right angles: the products are off by |b_i| ulps each, together at most 2; the two
+// pair sums by sqrt(b_x^2 + b_y^2) and sqrt(b_z^2 + b_w^2), together sqrt 2; their sum by 1. The
+// rotation turns by twice the angle: 8.83.
+inline constexpr double kProductError = 9 * kUlp;
+
+// R(q/|q|)^T v by two cross products, q = (x, w) of unit length and exact inputs. A cross product
+// of u and v is off by 2/sqrt 3 ulps of |u||v| in its products and 1 of itself: c = x cross v
+// by 2.16 |x|, which x cross c - w c turns and no more. That has 2.16 |x|, |w| and 1 of its own, of
+// |c| <= |x|: all in all below 5.37, twice 5.37. The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5.
+// The product with it: 2, the sum: 1.
+inline constexpr double kTurnError = 21.25 * kUlp;
+
+// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
+// the last where the turn only permutes axes.
+inline constexpr double kRotationError = kMatrixError + kProductError;
+inline constexpr double kTranslationError = kTurnError + kUlp;
+inline constexpr double kPermutedTranslationError = 4 * kUlp;
+
+// How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
+inline constexpr double kStretched = kMatrixError / kRotationError;
+
+// Of a matrix each entry of which is rounded once: in the 2-norm no more ulps than that of its
+// entries' magnitudes, which for a rotation is at most 5/3. All of it may be a stretch.
+inline constexpr double kRoundedRotationError = 1.7 * kUlp / kStretched;
+
+// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
+// in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
+// in ulps of |a|, |b| and |t|
+//   rotating a vector (the products 3^(1/2), two of them summed 2^(1/2), together 3; all three 1):
+//   4; placing it, and the difference of a and b: 1 each of what is placed, which is no longer than
+//   all three together; a cross product with an edge 2.16, a norm 2.5, a product with a normal 3, a
+//   norm's quotient 2.5 + 1;
+//   an edge is at right angles to n but for 3.2, over twice a body's reach.
+// Of an edge and a vertex that is 12, 11 and 7, of a facet and a vertex 9, 9 and 9. Across edges it
+// is 10, 22 and 9, most of it from how well B's edge is known; not all of that can go with the
+// rotation's own error at once, and where it is worst 15 % of the whole is left (the test's kind
+// "edge, edge").
+inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
+
+// Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
+inline constexpr double kUnderflow = 1e-150;
+
+// Bounds no farther apart than this, before the slack, are as good as it gets, and nothing else is
+// tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
+inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
+
+// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
+inline constexpr double kConvergedGap = 90 * kUlp;
+
+// Of a sum of radii, and of what is left when it is taken off a bound.
+inline constexpr double kRadiusRounding = 0x1.1p-53;
+
+// Of a vector at an angle below this to an edge, rounding may turn its cross product with the edge
+// (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
+inline constexpr double kSlender = 0x1p-20;
+
+// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give
+// with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of their
+// product all but the last sum, which is exact there or as small as the rate, by 2: 7 of 8.
+inline constexpr double kCertainRate = 0x1p-50;
+
+// Facets that are level along two edges may be tilted by a little more than either.
+inline constexpr double kLevelTilt = 2.0 * kCertainRate;
+
+// How far off the tilt of an edge or facet against a direction may be: rotating the direction (4),
+// both directions' own rounding (1 each). What their product adds, 2 over the smaller body's size,
+// is left over of the counts above: a point on a level feature takes 12 and 9 of them.
+inline constexpr double kTiltError = 6 * kUlp;
+
+// Edges nearer to parallel than this (the sine's square) have no direction across both that is
+// worth trusting.
+inline constexpr double kCrossingSine2 = 1e-6;
+
+}  // namespace clearance

@@ -1,0 +1,198 @@
+#include "core/penetration/depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/active_set/polar_cone.hpp"
+#include "core/active_set/separating_direction.hpp"
+#include "core/numerics/error_constants.hpp"
+#include "core/penetration/normal_search.hpp"
+
+namespace clearance {
+namespace {
+
+// Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
+// the exact one next to it on the exact arc (6), a corner in its plane (6).
+constexpr double kOnArc = 12 * kUlp;
+// How near two bounds of h must come, in the same unit.
+constexpr double kTight = 8 * kUlp;
+
+using Source = DepthSearch::Source;
+
+// Where the best direction is exactly a facet's, the certificate may use the facet.
+Separator separator(const DifferenceBody& body, const DepthSearch::Best& best, const ActiveSide& a,
+                    const ActiveSide& b) noexcept {
+  if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
+    return {body.to_common(best.n).normalized()};
+  }
+  const bool of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
+  if (!of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
+  const Vec3& normal = b.body().facets[best.facet].normal;
+  return {-b.direction_to_common(normal).normalized(), kNone, best.facet};
+}
+
+// At no distance, for heights: corners are anchors, and of an unbounded body, too, no more than
+// those counts there.
+Precision precision_of_corners(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                               const RelativePose& a_from_b) noexcept {
+  Precision p = precision(a, b, a_from_b, 0.0);
+  const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;
+  p.size -= beyond_a + beyond_b;
+  p.slack -= kUlp * (kUlpsOnA * beyond_a + kUlpsOnB * beyond_b);
+  return p;
+}
+
+// What a height that the search has found may be off by.
+double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
+                          double height) noexcept {
+  // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
+  const double apart = a_from_b.translation.norm();
+  const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(height));
+  return kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
+}
+
+// How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
+// edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
+// that comes out too far from `lower`, Depth's, every ulp counts, and both ways are gone.
+double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
+                 const ActiveSide& a, const ActiveSide& b, const Precision& p, double rounding,
+                 double lower) noexcept {
+  const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
+  const double by_feature = feature_of_x && body.y().bounded() ? best.height + rounding : kInfinity;
+  if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
+  return std::min(by_feature, -separation(s, a, b, p) + p.slack);
+}
+
+// Bodies with one line each, which cross: the direction across both, or its opposite, parts them or
+// none does.
+void bound_across_lines(const PolarCone& cone, const ActiveSide& a, const ActiveSide& b,
+                        const Precision& p, Depth& out) noexcept {
+  const auto [n, off] = cone.only_direction();
+  if (!(off < kInfinity)) return;
+  double least = kInfinity;
+  for (const Vec3& m : {n, Vec3(-n)}) {
+    const Vec3& on_a = a.body().anchors[support(a.body(), m).anchor];
+    const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(m)).anchor];
+    const Vec3 corner = on_a - b.point_to_common(on_b);
+    const double value = m.dot(corner), rounding = off * p.size + p.slack;
+    const PolarCone::Rise rise = cone.rise_of_others({m, off});
+    if (rise == PolarCone::Rise::kRise) continue;
+    least = std::min(least, value - rounding);
+    if (rise == PolarCone::Rise::kUnknown || !(value + rounding < out.upper)) continue;
+    out.value = value;
+    out.upper = value + rounding;
+    out.normal = m;
+  }
+  if (least < kInfinity) out.lower = std::max(out.lower, least);
+}
+
+// Directions between two unbounded bodies that the search does not say: across lines that all but
+// run along each other; and a facet's, where it took another one for the best that doubles cannot
+// tell from it, but along which one of the bodies goes on for ever.
+void try_further_directions(const ActiveSide& a, const ActiveSide& b, const Precision& p,
+                            Depth& out) noexcept {
+  const auto attempt = [&](const Separator& s) {
+    const double value = -separation(s, a, b, p);
+    if (!(value + p.slack < out.upper)) return;
+    out.value = value;
+    out.upper = value + p.slack;
+    out.normal = s.normal;
+  };
+  const PolarCone cone(a, b);
+  cone.across_near_parallels(attempt);
+  if (p.converged(out.upper - out.lower)) return;
+  bound_across_lines(cone, a, b, p, out);
+  if (p.converged(out.upper - out.lower)) return;
+  const auto count = [](const ActiveSide& s) {
+    return static_cast<std::int32_t>(s.body().facets.size());
+  };
+  for (std::int32_t i = 0; i < count(a); ++i) attempt({a.body().facets[i].normal, i, kNone});
+  for (std::int32_t i = 0; i < count(b); ++i) {
+    attempt({-b.direction_to_common(b.body().facets[i].normal).normalized(), kNone, i});
+  }
+}
+
+// How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
+double off_rotation(const Mat3& r) noexcept {
+  return 0.5 * (r.transpose() * r - Mat3::Identity()).norm() + 0x1p-50;
+}
+
+// Depth::lower from the least h that the search has found anywhere.
+double depth_from_below(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+                        const Precision& p, double least) noexcept {
+  const double rounding = rounding_of_height(a_from_b, p, least);
+  if (least > rounding) return least - rounding;
+  // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
+  // If the bodies overlap there, they are no farther apart than B is from there.
+  RelativePose placed = a_from_b;
+  const double off = off_rotation(a_from_b.rotation);
+  placed.rotation_error = off;
+  placed.translation_error = 0.0;
+  const Precision there = precision_of_corners(a.body(), b.body(), placed);
+  if (!(least > rounding_of_height(placed, there, least))) return -kInfinity;
+  return least - rounding - 2.0 * off * p.reach_b;
+}
+
+// Two points or segments have no inside: they meet in a point and are parted by next to nothing.
+Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+  const auto along = [](const ActiveSide& s) {
+    return s.body().edges.empty() ? Vec3::Zero().eval()
+                                  : s.direction_to_common(s.body().edges[0].direction);
+  };
+  const Vec3 n = towards_case::across_both(along(a), along(b));
+  const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
+  Depth out;
+  out.normal = forth >= back ? n : Vec3(-n);
+  out.value = -std::max(forth, back);
+  out.upper = out.value + p.slack;
+  return out;
+}
+
+}  // namespace
+
+Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+            const Separator* guess) noexcept {
+  const Precision start = precision_of_corners(a.body(), b.body(), a_from_b);
+  if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
+  const DifferenceBody body(a.body(), b.body(), a_from_b);
+  DepthSearch search(body, kTight * start.size, a_from_b.rotation_error + 0x1p-50);
+  if (guess != nullptr) {
+    const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
+    const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
+    if (of_x != kNone) {
+      search.guess_facet_of_x(of_x);
+    } else if (of_y != kNone) {
+      search.guess_facet_of_y(of_y);
+    } else {
+      const std::int32_t edge_of_x = body.x_is_b() ? guess->edge_of_b : guess->edge_of_a;
+      search.guess(body.from_common(guess->normal), edge_of_x);
+    }
+  }
+  if (!search.ended_early()) search.run();
+
+  Depth out;
+  const DepthSearch::Best& best = search.best();
+  if (best.source == Source::kNothing) {
+    const double rounding = kOnArc * start.size + start.slack;
+    if (search.lower() > rounding) out.lower = search.lower() - rounding;
+    if (!body.y().bounded()) try_further_directions(a, b, start, out);
+    return out;
+  }
+  const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
+  const Separator s = separator(body, best, a, b);
+  out.normal = s.normal;
+  if (!search.ended_early()) {
+    out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
+  }
+  out.upper = certified(body, best, s, a, b, p, rounding_of_height(a_from_b, start, best.height),
+                        out.lower);
+  if (!(out.upper < kInfinity)) {
+    out.value = kInfinity;
+  } else {
+    out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
+  }
+  if (!body.y().bounded()) try_further_directions(a, b, p, out);
+  return out;
+}
+
+}  // namespace clearance

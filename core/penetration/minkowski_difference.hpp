@@ -1,0 +1,101 @@
+// The set of all differences x - y of two bodies' points, as the depth search sees it.
+//
+// Everything is in the frame of one of the two, X. Translating Y by v parts the bodies when v is
+// not inside this set; how far the set reaches along a unit direction n is how far Y must go along
+// n until the two only touch.
+#pragma once
+
+#include "core/convex_polyhedron.hpp"
+#include "core/model/support_function.hpp"
+#include "core/model/wide_rotation.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// Points of one frame in another: turn (p - before) + after.
+struct Placement {
+  Mat3 turn;
+  Vec3 before, after;
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const noexcept {
+    return turn * (p - before) + after;
+  }
+};
+
+class DifferenceBody {
+ public:
+  // X is the body whose edges the search follows: the unbounded one of two, the one without facets
+  // (a segment or a point), or else the one with fewer edges.
+  DifferenceBody(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                 const RelativePose& a_from_b) noexcept
+      : x_is_b_(prefers_second(a, b)),
+        x_(x_is_b_ ? b : a),
+        y_(x_is_b_ ? a : b),
+        x_from_y_(x_is_b_ ? Mat3(a_from_b.rotation.transpose()) : a_from_b.rotation),
+        origin_of_y_(x_is_b_ ? Vec3(-(a_from_b.rotation.transpose() * a_from_b.translation))
+                             : a_from_b.translation),
+        a_from_b_(a_from_b) {}
+
+  [[nodiscard]] const ConvexPolyhedron& x() const noexcept { return x_; }
+  [[nodiscard]] const ConvexPolyhedron& y() const noexcept { return y_; }
+  [[nodiscard]] bool x_is_b() const noexcept { return x_is_b_; }
+  [[nodiscard]] const RelativePose& a_from_b() const noexcept { return a_from_b_; }
+
+  [[nodiscard]] Vec3 direction_from_y(const Vec3& v) const noexcept { return x_from_y_ * v; }
+  [[nodiscard]] Vec3 direction_to_y(const Vec3& v) const noexcept {
+    return x_from_y_.transpose() * v;
+  }
+  [[nodiscard]] Vec3 point_from_y(const Vec3& p) const noexcept {
+    return x_from_y_ * p + origin_of_y_;
+  }
+  [[nodiscard]] Placement x_from_y() const noexcept {
+    return {x_from_y_, Vec3::Zero(), origin_of_y_};
+  }
+  [[nodiscard]] Placement y_from_x() const noexcept {
+    return {x_from_y_.transpose(), origin_of_y_, Vec3::Zero()};
+  }
+  // Between directions from X towards Y in X's frame and from A towards B in A's.
+  [[nodiscard]] Vec3 to_common(const Vec3& n) const noexcept {
+    return x_is_b_ ? Vec3(-(a_from_b_.rotation * n)) : n;
+  }
+  [[nodiscard]] Vec3 from_common(const Vec3& n) const noexcept {
+    return x_is_b_ ? Vec3(-(a_from_b_.rotation.transpose() * n)) : n;
+  }
+
+  // The rotation from Y's frame, for two unbounded bodies.
+  [[nodiscard]] WideRotation wide_x_from_y() const noexcept {
+    const WideRotation rotation = wide_rotation(a_from_b_);
+    return x_is_b_ ? rotation.transposed() : rotation;
+  }
+
+  // Of Y, farthest against n: an anchor, and where it is.
+  [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
+    return support(y_, -direction_to_y(n)).anchor;
+  }
+  [[nodiscard]] Vec3 lowest_of_y(const Vec3& n) const noexcept {
+    return point_from_y(y_.anchors[lowest_anchor_of_y(n)]);
+  }
+  // A corner of the set that is farthest along n, of those that have `on_x` for their part of X.
+  [[nodiscard]] Vec3 corner(const Vec3& on_x, const Vec3& n) const noexcept {
+    return on_x - lowest_of_y(n);
+  }
+  // The same with a point of Y.
+  [[nodiscard]] Vec3 corner_on_x(const Vec3& on_y, const Vec3& n) const noexcept {
+    return x_.anchors[support(x_, n).anchor] - point_from_y(on_y);
+  }
+
+ private:
+  static bool prefers_second(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+    if (a.bounded() != b.bounded()) return a.bounded();
+    if (a.facets.empty() != b.facets.empty()) return b.facets.empty();
+    return b.edges.size() < a.edges.size();
+  }
+
+  bool x_is_b_;
+  const ConvexPolyhedron& x_;
+  const ConvexPolyhedron& y_;
+  Mat3 x_from_y_;
+  Vec3 origin_of_y_;
+  const RelativePose& a_from_b_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,201 @@
+// One search for the direction in which two bodies part soonest (see core/penetration/depth.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/model/lean.hpp"
+#include "core/penetration/deepest_points.hpp"
+#include "core/penetration/deepest_vertices.hpp"
+#include "core/penetration/minkowski_difference.hpp"
+
+namespace clearance {
+
+class DepthSearch {
+ public:
+  enum class Source : std::uint8_t { kNothing, kGuess, kFacetOfX, kFacetOfY, kArc };
+  struct Best {
+    double height = kInfinity;  // m: h(n)
+    Vec3 n = Vec3::Zero();      // X's frame
+    Source source = Source::kNothing;
+    std::int32_t facet = kNone;
+  };
+
+  // tight: m, how near to the best h a bound from below must come. direction_error: of a direction
+  // turned into the other body's frame.
+  DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
+      : body_(body),
+        tight_(tight),
+        level_(0x1p-46 + direction_error),
+        certain_(0x1p-50 + direction_error) {
+    if (!body.y().bounded()) {
+      wide_ = body.wide_x_from_y();
+      if (wide_.says_all()) lean_.emplace(body.a_from_b(), wide_.of_quaternions);
+    }
+  }
+
+  // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
+  // all on the arc of `edge_of_x`, unless that is kNone.
+  void guess(const Vec3& n, std::int32_t edge_of_x) noexcept;
+  // All of them stay the best where others are no better than to rounding.
+  void guess_facet_of_x(std::int32_t facet) noexcept {
+    look_at_facet_of_x(facet);
+    hold(best_.n);
+  }
+  void guess_facet_of_y(std::int32_t facet) noexcept {
+    look_at_facet_of_y(facet);
+    hold(best_.n);
+  }
+  // Everything there is; stops early when the bodies turn out to be apart.
+  void run() noexcept;
+
+  [[nodiscard]] const Best& best() const noexcept { return best_; }
+  // No h is lower (before rounding): valid after run() unless ended_early().
+  [[nodiscard]] double lower() const noexcept { return lower_; }
+  [[nodiscard]] bool ended_early() const noexcept { return best_.height <= tight_; }
+
+ private:
+  using Vec2 = Eigen::Vector2d;
+
+  // Directions x u + y w of the plane across an edge of X, and a point of that edge.
+  struct Arc {
+    Vec3 u, w, on_edge;
+    const Edge& edge;
+    [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept { return at.x() * u + at.y() * w; }
+    [[nodiscard]] Vec2 project(const Vec3& v) const noexcept { return {v.dot(u), v.dot(w)}; }
+  };
+  // What is known in one direction of an arc.
+  struct Sample {
+    Vec2 at;      // the direction
+    Vec2 corner;  // a farthest corner of the difference body along it, projected
+    [[nodiscard]] double height() const noexcept { return corner.dot(at); }
+  };
+
+  void hold(const Vec3& n) noexcept {
+    held_ = n;
+    steady_ = 0.5 * tight_;
+  }
+  // The direction guessed, as facets and arcs have it.
+  [[nodiscard]] bool is_held(const Vec3& n) const noexcept {
+    return (n - held_).squaredNorm() < kSame * kSame;
+  }
+  static constexpr double kSame = 0x1p-26;
+
+  // m: of how far a point of one body is inside a facet of the other, in roundings of both bodies'
+  // size: 6 for its place, 2 for the normal, 4 for the product and the difference. tight_ is 8.
+  [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * tight_; }
+
+  [[nodiscard]] double goal() const noexcept { return best_.height - tight_; }
+  void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
+  void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
+
+  // No facet or arc whose h is certain to be at least this can be better.
+  [[nodiscard]] double settled() const noexcept { return best_.height - steady_; }
+
+  void look_at_facet_of_x(std::int32_t facet) noexcept;
+  void look_at_facet_of_y(std::int32_t facet) noexcept;
+  void facets_of_x() noexcept;
+  void facets_of_y() noexcept;
+  void arcs() noexcept;
+  void arc_of(const Edge& edge) noexcept;
+  void run_bounded() noexcept;
+  // One of the bodies, whose facets are looked at, and the other.
+  struct Facing {
+    const ConvexPolyhedron& body;
+    const ConvexPolyhedron& other;
+    Placement body_from_other;
+    Source source;
+    // The direction in the other's frame in which it is the deepest below a facet.
+    [[nodiscard]] Vec3 against(const Facet& facet) const noexcept {
+      return -(body_from_other.turn.transpose() * facet.normal);
+    }
+    // How deep one of the other's corners lies below a facet, m.
+    [[nodiscard]] double below(const Facet& facet, std::int32_t corner) const noexcept {
+      return facet.offset - facet.normal.dot(body_from_other(other.anchors[corner]));
+    }
+  };
+  [[nodiscard]] Facing x_facing_y() const noexcept {
+    return {body_.x(), body_.y(), body_.x_from_y(), Source::kFacetOfX};
+  }
+  [[nodiscard]] Facing y_facing_x() const noexcept {
+    return {body_.y(), body_.x(), body_.y_from_x(), Source::kFacetOfY};
+  }
+  void take_least(const Facing& facing, const DeepestCorners& corners) noexcept;
+  std::int32_t look_up(const Facing& facing, std::int32_t facet) noexcept;
+  DeepestPoints::Shallow narrow_down(const Facing& facing, DeepestPoints& points) noexcept;
+  void look_at_facets(const Facing& facing, DeepestPoints& points) noexcept;
+  void look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
+                   std::uint16_t* corners) noexcept;
+  [[nodiscard]] bool is_settled(const Facing& facing, std::int32_t facet,
+                                std::int32_t corner) noexcept;
+  void few_corners() noexcept;
+  void facets_of_y_bounded() noexcept;
+  // 82 kB of stack each, which a body of few corners does not go past.
+  [[gnu::noinline]] void many_corners() noexcept;
+  [[gnu::noinline]] void facets_of_y_by_points() noexcept;
+  void arcs(DeepestCorners& of_y) noexcept;
+  void arcs(DeepestPoints& of_y) noexcept;
+  void arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept;
+  [[nodiscard]] Vec3 corner_below(std::int32_t facet, DeepestPoints& of_y) const noexcept;
+  [[nodiscard]] bool settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
+                             const DeepestPoints::Point* ball) noexcept;
+  void arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept;
+  void full_circle(const Edge& edge) noexcept;
+  [[nodiscard]] Arc across(const Edge& edge) const noexcept;
+  // Does a direction of the arc's plane lie between the normals of the edge's facets?
+  [[nodiscard]] bool within(const Arc& arc, const Vec2& at) const noexcept;
+
+  [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
+  // How a ray of Y rises over an arc: by rate.dot(at), off by at most `error`.
+  struct Rise {
+    Vec2 rate;
+    double error;
+    // The direction where it is level, on this side; pushed out by what that may be off.
+    [[nodiscard]] Vec2 level(const Vec2& side) const noexcept;
+  };
+  [[nodiscard]] Rise rise(const Arc& arc, const Ray& ray) const noexcept;
+  // Which way a ray of Y leans away from one of X, both in X's frame; about unit, or zero.
+  [[nodiscard]] Vec3 part_across(const Ray& of_x, const Ray& of_y) const noexcept;
+  // Does X, or Y, go on for ever along a facet of the other one, which looks along n in its frame?
+  // For certain. Which of them it is must be told: both may be the same object.
+  [[nodiscard]] bool goes_on_along(bool is_y, const Vec3& n,
+                                   const ExactDirection& normal) const noexcept;
+  // A multiple of what a ray falls by along a facet's normal of the other body.
+  [[nodiscard]] LongSum<10> fall(const Ray& ray, bool of_y,
+                                 const ExactDirection& normal) const noexcept;
+  [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
+                                   const ExactDirection& normal) const noexcept;
+  // What is left of an arc ends where these rays of Y are level; null: at its facet's normal.
+  using ArcEnds = std::array<const Ray*, 2>;
+  // At the first or second end, where `level` is.
+  [[nodiscard]] bool rises_exactly(const Ray& ray, const Arc& arc, std::size_t end,
+                                   const Ray* level) const noexcept;
+  // False: nothing is left of it, because Y is unbounded along all of it. X is unbounded as well,
+  // and all of its edges have facets.
+  [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
+  void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
+  void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
+
+  const DifferenceBody& body_;
+  double tight_;
+  // Rays that rise by less, per unit length, may be level; X's, along a facet of Y, by less than
+  // the smaller one: the facet's normal is off by 5 ulps when turned, the ray by 1, their product
+  // by 3.
+  double level_, certain_;
+  WideRotation wide_;         // from Y's frame, where both are unbounded
+  std::optional<Lean> lean_;  // there, where the quaternions say more
+  Vec3 held_ = Vec3::Zero();  // the direction guessed
+  double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
+  Best best_;
+  double lower_ = kInfinity;
+
+  // Corners found on the way, by where the directions point that they were found for: six axes by
+  // the signs of the other two components.
+  static std::size_t cell(const Vec3& n) noexcept;
+  std::array<Vec3, 24> corners_;
+  std::array<bool, 24> has_corner_{};
+};
+
+}  // namespace clearance

@@ -1,0 +1,278 @@
+#include "core/penetration/penetration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/active_set/dqp3.hpp"
+#include "core/feature_walk/feature_walk.hpp"
+#include "core/model/error_bounds.hpp"
+#include "core/model/support_function.hpp"
+#include "core/numerics/error_constants.hpp"
+#include "core/penetration/depth.hpp"
+
+namespace clearance {
+namespace {
+
+// To find the points that meet when B has been moved by its depth, B is moved a little farther: by
+// the depth again, at least by this part of the bodies' size, so that the direction between the
+// closest points is not lost in rounding.
+constexpr double kFarther = 0x1p-20;
+
+// At a distance f a point that lies beside the closest one by sqrt(2 f) roundings is as close as
+// doubles can tell. Where edges are nearly parallel that is more than this part of the size, and B
+// is moved out by no more than the other one: there it is sqrt(2^-43 2^-53) = 2^-48.
+constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
+
+// The direction along which the features of a tracking state part the bodies. False: they do not
+// say.
+bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState& state,
+                  Separator& out) noexcept {
+  const auto has = [](const TrackingState::Side& side, int dimension, std::size_t count) {
+    return side.dimension == dimension && side.feature >= 0 &&
+           static_cast<std::size_t>(side.feature) < count;
+  };
+  if (has(state.a, 2, a.body().facets.size())) {
+    out = {a.body().facets[state.a.feature].normal, state.a.feature, kNone};
+    return true;
+  }
+  if (has(state.b, 2, b.body().facets.size())) {
+    const Vec3& normal = b.body().facets[state.b.feature].normal;
+    out = {-b.direction_to_common(normal).normalized(), kNone, state.b.feature};
+    return true;
+  }
+  if (!has(state.a, 1, a.body().edges.size()) || !has(state.b, 1, b.body().edges.size())) {
+    return false;
+  }
+  const Edge& e = a.body().edges[state.a.feature];
+  const Vec3 n =
+      e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
+  const double sine2 = n.squaredNorm();
+  if (!(sine2 > kCrossingSine2)) return false;
+  const double inwards = (e.inward * n).sum(), sine = std::sqrt(sine2);
+  out = {n / (inwards > 0.0 ? -sine : sine), kNone, kNone, state.a.feature, state.b.feature};
+  return true;
+}
+
+// Where nothing is remembered: from one middle to the other.
+Separator between_middles(const ActiveSide& a, const ActiveSide& b) noexcept {
+  const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
+  return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
+}
+
+Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                    const RelativePose& a_from_b, const TrackingState& state) noexcept {
+  const ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  Separator guess;
+  if (!direction_of(side_a, side_b, state, guess)) guess = between_middles(side_a, side_b);
+  return depth(side_a, side_b, a_from_b, &guess);
+}
+
+// The closest points of A and of B as `moved`, from the features of the state on.
+std::uint16_t settle_apart(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                           const RelativePose& moved, TrackingState& state) noexcept {
+  ActiveSide side_a(a, nullptr), side_b(b, &moved);
+  const double apart = moved.translation.norm();
+  side_a.place_near(state.a, side_b, apart);
+  side_b.place_near(state.b, side_a, apart);
+  const std::uint16_t iterations = dqp3(side_a, side_b, 0.0).iterations;
+  state = {side_a.tracked(), side_b.tracked()};
+  return iterations;
+}
+
+// Takes the state's points for the witness points; how far from the normal their difference ends.
+double take_points(const RelativePose& a_from_b, const TrackingState& state,
+                   DistanceResult& r) noexcept {
+  r.point_on_a = state.a.point;
+  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+  return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
+}
+
+// An anchor is as far along a direction as another one, and a ray is level, if they rise by no more
+// than this, per unit length.
+constexpr double kLevelTop = 0x1p-40;
+
+// Where the body reaches farthest along m: of the points between anchors and along level rays,
+// about the nearest.
+Vec3 farthest_near(const ConvexPolyhedron& body, const Vec3& m, const Vec3& point) noexcept {
+  const Vec3& top = body.anchors[support(body, m).anchor];
+  Vec3 at = top;
+  const auto step = [&](const Vec3& way, double most) {
+    const double square = way.squaredNorm();
+    if (!(std::abs(m.dot(way)) <= kLevelTop * std::sqrt(square)) || !(square > 0.0)) return;
+    at += std::clamp((point - at).dot(way) / square, 0.0, most) * way;
+  };
+  for (const Vec3& anchor : body.anchors) {
+    if (m.dot(top - anchor) <= kLevelTop * (top - anchor).norm()) step(anchor - at, 1.0);
+  }
+  for (const Ray& ray : body.rays) step(ray.direction, kInfinity);
+  return at;
+}
+
+// Points that are less than this part of the size, or of how far away they are, from where the
+// normal leads, stay where they are: rounding does as much.
+constexpr double kLevelPoints = 0x1p-47;
+
+double reach_of(const DistanceResult& r) noexcept {
+  return std::max(r.point_on_a.norm(), r.point_on_b.norm());
+}
+double off_normal(const DistanceResult& r) noexcept {
+  return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
+}
+
+// Puts the points to where two rays that are level across the normal meet, one of each body, if
+// that is right to the rounding of what lies there.
+bool meet_along_rays(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const Vec3 n = r.normal, m = -(a_from_b.rotation.transpose() * n);
+  const Vec3& top_a = a.anchors[support(a, n).anchor];
+  const Vec3& top_b = b.anchors[support(b, m).anchor];
+  const Vec3 from = a_from_b.rotation * top_b + a_from_b.translation - r.distance * n;
+  for (const Ray& of_a : a.rays) {
+    const Vec3 e = of_a.direction.normalized();
+    if (!(std::abs(n.dot(e)) <= kLevelTop)) continue;
+    for (const Ray& of_b : b.rays) {
+      const Vec3 own = of_b.direction.normalized(), f = a_from_b.rotation * own;
+      if (!(std::abs(n.dot(f)) <= kLevelTop)) continue;
+      const double s = (from - top_a).cross(f).dot(n) / e.cross(f).dot(n);
+      const double t = (top_a + s * e - from).dot(f);
+      if (!(s >= 0.0 && s < kInfinity && t >= 0.0)) continue;
+      DistanceResult there = r;
+      there.point_on_a = top_a + s * e;
+      const Vec3 own_b = top_b + t * own;
+      there.point_on_b = a_from_b.rotation * own_b + a_from_b.translation;
+      const double reach = reach_of(there);
+      if (!(reach < kInfinity && off_normal(there) <= kLevelPoints * reach)) continue;
+      state.a.point = there.point_on_a;
+      state.b.point = own_b;
+      r = there;
+      return true;
+    }
+  }
+  return false;
+}
+
+// Lines that all but run along each other meet, the bodies being parted, far away, where the walk's
+// points are not; or so far away that no points there can be told: then at least they are as far
+// apart along the normal as they should be.
+void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, double size, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const double rounding = kLevelPoints * std::max(size, reach_of(r));
+  if (off_normal(r) <= rounding || meet_along_rays(a, b, a_from_b, state, r)) return;
+  const Vec3 way = r.distance * r.normal;
+  if (!(std::abs((r.point_on_b - r.point_on_a - way).dot(r.normal)) > rounding)) return;
+  const Mat3 b_from_a = a_from_b.rotation.transpose();
+  const Vec3 near = b_from_a * (r.point_on_a + way - a_from_b.translation);
+  state.b.point = farthest_near(b, -(b_from_a * r.normal), near);
+  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
+  state.a.point = farthest_near(a, r.normal, r.point_on_b - way);
+  r.point_on_a = state.a.point;
+}
+
+// From the features of the state, unless that brings the points farther beside each other than
+// `beside`; how far they are then.
+double bring_together(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                      const RelativePose& a_from_b, const RelativePose& moved, double beside,
+                      TrackingState& state, DistanceResult& r) noexcept {
+  const DistanceResult before = r;
+  r.iterations += settle_apart(a, b, moved, state);
+  const double after = take_points(a_from_b, state, r);
+  if (after < beside) return after;
+  r = before;
+  return beside;
+}
+
+// At the vertices that are farthest along the normal, of bodies that have any.
+TrackingState at_farthest(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                          const RelativePose& a_from_b, const Vec3& normal) noexcept {
+  const std::int32_t of_a = support(a, normal).anchor;
+  const std::int32_t of_b = support(b, -(a_from_b.rotation.transpose() * normal)).anchor;
+  return {{0, false, of_a, a.anchors[of_a]}, {0, false, of_b, b.anchors[of_b]}};
+}
+
+// The points that meet when B has been moved clear of A.
+void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, const Depth& found, TrackingState& state,
+                     DistanceResult& r) noexcept {
+  const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation.norm();
+  const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
+  RelativePose moved = a_from_b;
+  moved.translation += (found.value + farther) * found.normal;
+  DistanceResult apart;
+  if (walk_features(a, b, moved, state, apart) != WalkEnd::kLost) {
+    r.iterations = apart.iterations;
+  } else {
+    r.iterations = settle_apart(a, b, moved, state);
+  }
+  const double beside = take_points(a_from_b, state, r);
+  if (!(beside > kBeside * size)) return;
+  moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
+  const double nearer = bring_together(a, b, a_from_b, moved, beside, state, r);
+  if (!a.bounded() && !b.bounded()) return level_witnesses(a, b, a_from_b, size, state, r);
+  // Features that are level to more than rounding, and yet at so small a distance not to be told
+  // from the right ones, nor left by steps.
+  const double along = (r.point_on_b - r.point_on_a).dot(r.normal) - r.distance;
+  if (std::abs(along) <= kLevelPoints * size || a.vertices.empty() || b.vertices.empty()) return;
+  TrackingState farthest = at_farthest(a, b, a_from_b, found.normal);
+  if (bring_together(a, b, a_from_b, moved, nearer, farthest, r) < nearer) state = farthest;
+}
+
+void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                          const RelativePose& a_from_b, const Depth& found, TrackingState& state,
+                          DistanceResult& r) noexcept {
+  r.status = DistanceStatus::kOverlapping;
+  r.lower = -found.upper;
+  r.upper = -found.lower;
+  if (!(found.value < kInfinity)) {
+    r.distance = -kInfinity;
+    r.normal = Vec3::Zero();
+    return;
+  }
+  r.distance = std::clamp(-found.value, r.lower, r.upper);
+  r.normal = found.normal;
+  place_witnesses(a, b, a_from_b, found, state, r);
+  state.a.deep = true;
+}
+
+}  // namespace
+
+bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                       const RelativePose& a_from_b, TrackingState& state,
+                       DistanceResult& result) noexcept {
+  if (!state.a.deep) return false;
+  state.a.deep = false;
+  const Depth found = tracked_depth(a, b, a_from_b, state);
+  if (!(found.lower > 0.0 && found.value < kInfinity)) return false;
+  conclude_overlapping(a, b, a_from_b, found, state, result);
+  return true;
+}
+
+void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                     const RelativePose& a_from_b, TrackingState& state,
+                     DistanceResult& result) noexcept {
+  const Depth found = tracked_depth(a, b, a_from_b, state);
+  if (found.lower > 0.0) {
+    conclude_overlapping(a, b, a_from_b, found, state, result);
+    return;
+  }
+  if (-found.upper > result.lower) {
+    result.lower = -found.upper;
+    result.normal = found.normal;
+  }
+  result.upper = std::min(result.upper, -found.lower);
+  result.distance = std::max(std::min(result.distance, result.upper), result.lower);
+  const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
+  // An overlap by less than the slack can be seen from one side only: thrice.
+  const bool tight = result.upper - result.lower <= 3.0 * p.slack + 5.0 * p.tight;
+  if (tight) {
+    result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
+    return;
+  }
+  result.status = DistanceStatus::kIterationLimit;
+  const Vec3 between = result.point_on_b - result.point_on_a;
+  if (!between.isZero(0.0)) result.normal = unit_along(between);
+}
+
+}  // namespace clearance

@@ -1,0 +1,27 @@
+// What the walk leaves open: the loop, the robust path, the depth (core/README.md).
+#pragma once
+
+#include "core/distance_result.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// Whether a pose says where a body is.
+[[nodiscard]] bool is_a_place(const RelativePose& pose) noexcept;
+// The answer where it does not.
+[[nodiscard]] DistanceResult nothing_known() noexcept;
+
+// Adds the radii to an answer about the cores. Of lengths that overflowed nothing is known.
+void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& result) noexcept;
+
+// distance() by the loop from the features of the state on, and if need be by the robust path; if
+// `depth`, of bodies that overlap by the depth as well.
+[[nodiscard]] DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                       const RelativePose& a_from_b, TrackingState& state,
+                                       bool depth) noexcept;
+
+// distance() of bodies that overlapped in the last query.
+[[nodiscard]] DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                      const RelativePose& a_from_b, TrackingState& state) noexcept;
+
+}  // namespace clearance

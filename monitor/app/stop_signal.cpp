@@ -1,0 +1,47 @@
+#include "monitor/app/stop_signal.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <ctime>
+
+namespace clearance {
+namespace {
+
+int status_at_the_end = 0;
+const char* words_at_the_end = "";
+
+extern "C" void end_now(int) {
+  [[maybe_unused]] const auto written =
+      write(STDERR_FILENO, words_at_the_end, std::strlen(words_at_the_end));
+  _exit(status_at_the_end);
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  sigemptyset(&signals_);
+  sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals_, &before_);
+  // Whoever reads our output may leave first: then a write fails, that is all.
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void StopSignal::end_with(int status, const char* last_words) {
+  status_at_the_end = status;
+  words_at_the_end = last_words;
+  std::signal(SIGINT, end_now);
+  std::signal(SIGTERM, end_now);
+  std::signal(SIGPIPE, SIG_DFL);
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+bool StopSignal::wait(std::int64_t timeout_ms) {
+  const timespec timeout{.tv_sec = timeout_ms / 1000, .tv_nsec = timeout_ms % 1000 * 1'000'000};
+  if (!came_) came_ = sigtimedwait(&signals_, nullptr, &timeout) > 0;
+  return came_;
+}
+
+}  // namespace clearance

@@ -1,0 +1,88 @@
+#include "monitor/broad_phase/motion_wheel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// What is farther ahead is due at this: far beyond any cell, and within the widest ring.
+constexpr double kFarthest = 512.0;  // m
+
+std::int64_t units(double travelled) noexcept {
+  return static_cast<std::int64_t>(std::floor(travelled / WakeWheels::kUnit));
+}
+
+}  // namespace
+
+WakeWheels::WakeWheels(std::size_t objects, std::size_t pairs)
+    : wheels_(objects), first_(objects * kLevels * kRing, kNobody), hooks_(2 * pairs) {}
+
+bool WakeWheels::set(std::uint32_t hook, std::uint32_t object, double travel) noexcept {
+  const double travelled = wheels_[object].travelled;
+  const std::int64_t now = units(travelled);
+  const std::int64_t due = units(rounded_down(travelled + std::min(travel, kFarthest)));
+  if (due <= now) return false;
+  const auto width = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(due - now)));
+  int level = std::max(0, width - 3);
+  if ((due >> level) - (now >> level) >= kRing) ++level;
+  const auto place = static_cast<std::uint32_t>((due >> level) & (kRing - 1));
+  const std::uint32_t bucket =
+      (object * kLevels + static_cast<std::uint32_t>(level)) * kRing + place;
+
+  hooks_[hook] = {.next = first_[bucket], .before = kHead | bucket};
+  if (first_[bucket] != kNobody) hooks_[first_[bucket]].before = hook;
+  first_[bucket] = hook;
+  return true;
+}
+
+void WakeWheels::cancel(std::uint32_t hook) noexcept {
+  const Hook at = hooks_[hook];
+  if (at.before == kLoose) return;
+  if (at.before & kHead) {
+    first_[at.before & ~kHead] = at.next;
+  } else {
+    hooks_[at.before].next = at.next;
+  }
+  if (at.next != kNobody) hooks_[at.next].before = at.before;
+  hooks_[hook] = {};
+}
+
+void WakeWheels::advance(std::uint32_t object, double by) noexcept {
+  if (by > 0.0) wheels_[object].travelled = rounded_up(wheels_[object].travelled + by);
+}
+
+bool WakeWheels::take_due(std::uint32_t object, std::size_t most,
+                          std::vector<std::uint32_t>& pairs) noexcept {
+  Wheel& wheel = wheels_[object];
+  const std::int64_t now = units(wheel.travelled);
+  for (std::uint32_t level = 0; level < kLevels; ++level) {
+    const std::int64_t last = now >> level;
+    const std::int64_t passed = std::min<std::int64_t>(last - (wheel.done >> level), kRing);
+    if (passed == 0) break;  // nor has a wider bucket been passed
+    const std::uint32_t ring = (object * kLevels + level) * kRing;
+    for (std::int64_t bucket = last - passed + 1; bucket <= last; ++bucket) {
+      const auto place = static_cast<std::uint32_t>(bucket & (kRing - 1));
+      if (!empty_bucket(ring + place, most, pairs)) return false;
+    }
+  }
+  wheel.done = now;
+  return true;
+}
+
+bool WakeWheels::empty_bucket(std::uint32_t bucket, std::size_t most,
+                              std::vector<std::uint32_t>& pairs) noexcept {
+  while (first_[bucket] != kNobody) {
+    if (pairs.size() >= most) return false;
+    const std::uint32_t hook = first_[bucket];
+    cancel(hook);
+    cancel(hook ^ 1u);
+    pairs.push_back(hook / 2);
+  }
+  return true;
+}
+
+}  // namespace clearance

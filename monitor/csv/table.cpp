@@ -1,0 +1,147 @@
+#include "monitor/csv/table.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include "monitor/mcap/unreadable.hpp"
+
+namespace clearance {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n\"";
+  const std::size_t begin = text.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
+}
+
+// The whole text as a number.
+template <class Number>
+bool parsed(std::string_view text, Number& value) {
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  return result.ec == std::errc{} && result.ptr == end;
+}
+
+std::string joined(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) text.append(text.empty() ? "" : ",").append(name);
+  return text;
+}
+
+}  // namespace
+
+void CsvTable::CloseGzip::operator()(void* file) const { gzclose(static_cast<gzFile>(file)); }
+
+CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::string_view> columns)
+    : path_(file),
+      columns_(columns.begin(), columns.end()),
+      file_(gzopen(file.c_str(), "rb")),
+      place_(columns.size()) {
+  if (!file_) {
+    error_ = unreadable(file);
+    return;
+  }
+  gzbuffer(static_cast<gzFile>(file_.get()), 1 << 18);
+  read_header();
+}
+
+std::string CsvTable::located(const std::string& what) const {
+  return path_.string() + ":" + std::to_string(line_) + ": " + what;
+}
+
+bool CsvTable::fail(const std::string& what) {
+  error_ = located(what);
+  return false;
+}
+
+bool CsvTable::read_line(std::string& line) {
+  line.clear();
+  auto* const file = static_cast<gzFile>(file_.get());
+  std::array<char, 512> piece;
+  while (gzgets(file, piece.data(), static_cast<int>(piece.size())) != nullptr) {
+    line += piece.data();
+    if (line.back() == '\n') break;
+  }
+  int status = Z_OK;
+  const char* const what = gzerror(file, &status);
+  if (status != Z_OK && status != Z_STREAM_END) {
+    ++line_;
+    return fail(std::string("cannot be read any further: ") + what);
+  }
+  if (line.empty()) return false;
+  ++line_;
+  return true;
+}
+
+bool CsvTable::split(const std::string& line) {
+  fields_.clear();
+  std::string_view rest = line;
+  for (;;) {
+    const std::size_t comma = rest.find(',');
+    fields_.push_back(trimmed(rest.substr(0, comma)));
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  return fields_.size() > 1 || !fields_.front().empty();  // false: a blank line
+}
+
+bool CsvTable::read_header() {
+  const std::string expected =
+      "; expected a first line that names " + joined(columns_) + ", each once, in any order";
+  if (!read_line(text_)) {
+    if (!error_.empty()) return false;
+    line_ = 1;
+    return fail("is empty" + expected);
+  }
+  if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // byte order mark
+  split(text_);
+  width_ = fields_.size();
+  for (std::size_t column = 0; column < columns_.size(); ++column) {
+    const std::string name(columns_[column]);
+    const auto found = std::ranges::find(fields_, columns_[column]);
+    if (found == fields_.end()) return fail("no column '" + name + "'" + expected);
+    if (std::find(found + 1, fields_.end(), columns_[column]) != fields_.end()) {
+      return fail("two columns are named '" + name + "'" + expected);
+    }
+    place_[column] = static_cast<std::size_t>(found - fields_.begin());
+  }
+  return true;
+}
+
+bool CsvTable::next() {
+  if (!error_.empty()) return false;
+  do {
+    if (!read_line(text_)) return false;
+  } while (!split(text_));
+  if (fields_.size() == width_) return true;
+  return fail("has " + std::to_string(fields_.size()) + " fields; expected " +
+              std::to_string(width_) + ", as the header names");
+}
+
+bool CsvTable::number(std::size_t column, double& value) {
+  if (parsed(text(column), value) && std::isfinite(value)) return true;
+  return fail(std::string(columns_[column]) + " is '" + std::string(text(column)) +
+              "'; expected a finite number");
+}
+
+bool CsvTable::time_ns(std::size_t column, std::int64_t& value) {
+  const std::string name(columns_[column]);
+  const std::string found(text(column));
+  if (!parsed(text(column), value) || value < 0) {
+    return fail(name + " is '" + found + "'; expected whole nanoseconds, 0 or more");
+  }
+  if (value < last_t_ns_) {
+    return fail(name + " goes back from " + std::to_string(last_t_ns_) + " to " + found +
+                "; sort the log by " + name);
+  }
+  last_t_ns_ = value;
+  return true;
+}
+
+}  // namespace clearance

@@ -1,0 +1,178 @@
+#include "monitor/dds/participant.hpp"
+
+#include <netdb.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#if defined(__SANITIZE_THREAD__)
+// The packaged Cyclone is built without ThreadSanitizer, which therefore sees its locks but not its
+// atomic operations: what it reports inside the library says nothing. Reports in our code are not
+// affected.
+extern "C" const char* __tsan_default_suppressions() { return "race:libddsc.so\n"; }
+#endif
+
+namespace clearance {
+namespace {
+
+// A stopped reader must not hold a writer up: keep-last drops the oldest instead of waiting, and
+// what could still wait (a full send buffer) ends here.
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
+
+constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+Qos partition_qos(const std::string& partition) {
+  Qos qos(dds_create_qos());
+  if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
+  return qos;
+}
+
+Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
+  Qos qos(dds_create_qos());
+  const bool latched = delivery == Delivery::kLatched;
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
+  dds_qset_durability(qos.get(),
+                      latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, latched ? 1 : depth);
+  // A writer that leaves takes nothing back: readers keep what it said.
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  return qos;
+}
+
+// Measured on loopback: whole batches in one datagram. The default of 14720 B cuts a batch of 100
+// poses in two. On a real network Cyclone's own sizes fit an Ethernet frame better.
+std::string configuration(const DdsOptions& options) {
+  const bool loopback = options.interface == "lo";
+  std::string xml =
+      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"" +
+      options.interface + "\"/></Interfaces>";
+  xml += loopback ? "<AllowMulticast>false</AllowMulticast>"
+                    "<MaxMessageSize>65000B</MaxMessageSize><FragmentSize>64000B</FragmentSize>"
+                  : "<AllowMulticast>spdp</AllowMulticast>";
+  xml +=
+      "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>";
+  if (loopback) xml += "<Peer Address=\"127.0.0.1\"/>";
+  for (const std::string& peer : options.peers) xml += "<Peer Address=\"" + peer + "\"/>";
+  xml += "</Peers></Discovery></Domain></CycloneDDS>";
+  // What a person sets for all of Cyclone comes last, so it wins.
+  if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
+  return xml;
+}
+
+// A process can configure a domain once: participants of the same domain share it, and the first
+// one's options hold.
+std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<const dds_entity_t>> domains;
+  const std::lock_guard lock(mutex);
+  if (auto open = domains[options.domain].lock()) return open;
+  const dds_entity_t handle =
+      check_dds(dds_create_domain(options.domain, configuration(options).c_str()),
+                "configuring DDS domain " + std::to_string(options.domain));
+  std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
+                                             [](const dds_entity_t* entity) {
+                                               dds_delete(*entity);
+                                               delete entity;
+                                             });
+  domains[options.domain] = domain;
+  return domain;
+}
+
+std::string describe(const DdsOptions& options) {
+  return "domain " + std::to_string(options.domain) + ", " +
+         (options.partition.empty() ? "default partition" : "partition " + options.partition) +
+         ", interface " + options.interface;
+}
+
+// "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
+std::string host_of(const std::string& peer) {
+  if (peer.starts_with('[')) return peer.substr(1, peer.find(']') - 1);
+  const bool has_port = std::count(peer.begin(), peer.end(), ':') == 1;
+  return has_port ? peer.substr(0, peer.find(':')) : peer;
+}
+
+}  // namespace
+
+bool can_be_looked_up(const std::string& peer) {
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host_of(peer).c_str(), nullptr, nullptr, &found) != 0) return false;
+  freeaddrinfo(found);
+  return true;
+}
+
+DdsError::DdsError(const std::string& attempted, dds_return_t code)
+    : std::runtime_error("DDS: " + attempted + " failed: " + dds_strretcode(code)) {}
+
+dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
+  if (code < 0) throw DdsError(attempted, code);
+  return code;
+}
+
+Participant::Participant(const DdsOptions& options) : where_(describe(options)) {
+  if (options.domain > kMaxDomain) {
+    throw DdsError("joining domain " + std::to_string(options.domain) + " (0 to 232 exist)",
+                   DDS_RETCODE_BAD_PARAMETER);
+  }
+  domain_ = open_domain(options);
+  participant_ =
+      check_dds(dds_create_participant(options.domain, nullptr, nullptr), "joining " + where_);
+  const Qos qos = partition_qos(options.partition);
+  publisher_ =
+      check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");
+  subscriber_ =
+      check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
+}
+
+Participant::~Participant() { dds_delete(participant_); }
+
+dds_entity_t Participant::topic(const dds_topic_descriptor_t& type, const std::string& name) {
+  return check_dds(dds_create_topic(participant_, &type, name.c_str(), nullptr, nullptr),
+                   "making topic " + name);
+}
+
+dds_entity_t Participant::reader(const dds_topic_descriptor_t& type, const std::string& name,
+                                 Delivery delivery, std::int32_t depth,
+                                 const dds_listener_t* listener) {
+  const Qos qos = endpoint_qos(delivery, depth);
+  return check_dds(dds_create_reader(subscriber_, topic(type, name), qos.get(), listener),
+                   "making a reader of " + name);
+}
+
+dds_entity_t Participant::writer(const dds_topic_descriptor_t& type, const std::string& name,
+                                 Delivery delivery, std::int32_t depth,
+                                 const dds_listener_t* listener) {
+  const Qos qos = endpoint_qos(delivery, depth);
+  return check_dds(dds_create_writer(publisher_, topic(type, name), qos.get(), listener),
+                   "making a writer of " + name);
+}
+
+DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_t>& readers)
+    : waitset_(check_dds(dds_create_waitset(participant.handle()), "making a waitset")),
+      guard_(
+          check_dds(dds_create_guardcondition(participant.handle()), "making a guard condition")) {
+  check_dds(dds_waitset_attach(waitset_, guard_, 0), "attaching to a waitset");
+  for (const dds_entity_t reader : readers) {
+    const dds_entity_t condition =
+        check_dds(dds_create_readcondition(reader, DDS_ANY_STATE), "making a read condition");
+    check_dds(dds_waitset_attach(waitset_, condition, reader), "attaching to a waitset");
+  }
+}
+
+bool DataWait::wait(std::int64_t timeout_ns) {
+  const dds_return_t triggered = dds_waitset_wait(waitset_, nullptr, 0, timeout_ns);
+  bool woken = false;
+  dds_take_guardcondition(guard_, &woken);
+  return triggered > 0 && !woken;
+}
+
+void DataWait::wake() noexcept { dds_set_guardcondition(guard_, true); }
+
+}  // namespace clearance

@@ -1,0 +1,147 @@
+#include "monitor/dds/report_writer.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+#include "monitor/daemon/realtime.hpp"
+#include "monitor/pair_name.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+// What a client that is held up for a moment can still be sent again.
+constexpr std::int32_t kDistancesDepth = 64;
+
+void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
+                      void*) {
+  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
+  char topic[128] = "?";
+  dds_get_name(dds_get_topic(writer), topic, sizeof topic);
+  spdlog::warn(
+      "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: "
+      "only catalogue, "
+      "zones and health are latched; 24: another type; idl/README.md has the whole contract",
+      topic, status.last_policy_id);
+}
+
+// "entered at cycle 12: hand - box, 0.043 m clear, 0.041 m since the tick before".
+std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
+  const std::string at_cycle = "at cycle " + std::to_string(cycle);
+  if (!zone.active) return "left " + at_cycle;
+  const std::string pair = "entered " + at_cycle + ": " + pair_name(scene, zone.pair);
+  if (zone.clearance == -kInfinity) return pair + " unknown: no pose of one of them, or too old";
+  if (zone.clearance_since == -kInfinity) return pair + ", which may have been anywhere: one leapt";
+  return fmt::format("{}, {:.3f} m clear, {:.3f} m since the tick before", pair, zone.clearance,
+                     zone.clearance_since);
+}
+
+template <class T>
+dds_entity_t make_writer(Participant& participant, const std::string& topic, Delivery delivery,
+                         std::int32_t depth = 1) {
+  dds_listener_t* listener = dds_create_listener(nullptr);
+  dds_lset_offered_incompatible_qos(listener, log_incompatible);
+  const dds_entity_t writer =
+      participant.writer(topic_descriptor<T>(), topic, delivery, depth, listener);
+  dds_delete_listener(listener);
+  return writer;
+}
+
+}  // namespace
+
+DdsReports::DdsReports(const Scene& scene, Participant& participant, ReportQueue& queue,
+                       const DdsPoses& poses)
+    : scene_(scene),
+      queue_(queue),
+      poses_(poses),
+      distances_(make_writer<clearance_msg_Distances>(participant, scene.topics.distances,
+                                                      Delivery::kStream, kDistancesDepth)),
+      catalogue_(make_writer<clearance_msg_Catalogue>(participant, scene.topics.catalogue,
+                                                      Delivery::kLatched)),
+      zones_(make_writer<clearance_msg_ZoneState>(participant, scene.topics.zones,
+                                                  Delivery::kLatched)),
+      health_(
+          make_writer<clearance_msg_Health>(participant, scene.topics.health, Delivery::kLatched)),
+      distances_sample_(make_distances(scene)),
+      zone_written_(scene.zones.size()),
+      zone_active_(scene.zones.size()),
+      health_log_(scene) {
+  const auto catalogue = make_catalogue(scene);
+  check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
+  thread_ = std::thread([this] { run(); });
+}
+
+DdsReports::~DdsReports() { finish(); }
+
+void DdsReports::finish() {
+  if (!thread_.joinable()) return;
+  queue_.close();
+  thread_.join();
+}
+
+std::uint32_t DdsReports::distance_readers() const {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(distances_, &status) == DDS_RETCODE_OK
+             ? status.current_count
+             : 0;
+}
+
+void DdsReports::run() {
+  name_thread("reports");
+  for (bool closed = false; !closed;) {
+    queue_.wait();
+    closed = queue_.closed();  // asked before the last look, so that nothing is left behind
+    while (const QueuedReport* queued = queue_.reports().front()) {
+      write_report(*queued);
+      queue_.reports().pop();
+    }
+    while (const Vitals* vitals = queue_.vitals().front()) {
+      write_health(*vitals);
+      queue_.vitals().pop();
+    }
+  }
+}
+
+void DdsReports::write_report(const QueuedReport& queued) {
+  to_wire(queued.report, queued.sources(), dds_time(), *distances_sample_);
+  write(distances_, &*distances_sample_, "distances");
+  write_zones(queued.report);
+}
+
+// Compared with what was written last, not with Report's own `changed`: a change must come through
+// even when the report in which it happened was dropped.
+void DdsReports::write_zones(const Report& report) {
+  for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
+    const bool active = report.zones[zone].active;
+    if (zone_written_[zone] && zone_active_[zone] == active) continue;
+    clearance_msg_ZoneState state{};
+    to_wire(scene_, report, zone, state);
+    write(zones_, &state, "zone state");
+    if (zone_written_[zone] || active) {
+      spdlog::info("zone '{}' {}", scene_.zones[zone].name,
+                   change_of_zone(scene_, report.zones[zone], report.cycle));
+    }
+    zone_written_[zone] = true;
+    zone_active_[zone] = active;
+  }
+}
+
+void DdsReports::write_health(const Vitals& vitals) {
+  const auto sample =
+      make_health(scene_, vitals, poses_, queue_.dropped_reports() + failed_writes_.load());
+  write(health_, &*sample, "health");
+  health_log_.update(*sample);
+}
+
+void DdsReports::write(dds_entity_t writer, const void* sample, const char* what) {
+  const dds_return_t result = dds_write(writer, sample);
+  if (result == DDS_RETCODE_OK) return;
+  // At a tick rate the log would be flooded: powers of two say it often enough.
+  const std::uint64_t failed = failed_writes_.fetch_add(1) + 1;
+  if ((failed & (failed - 1)) == 0) {
+    spdlog::error("writing {} failed: {} ({} failed so far)", what, dds_strretcode(result), failed);
+  }
+}
+
+}  // namespace clearance

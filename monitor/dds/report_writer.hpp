@@ -1,0 +1,50 @@
+// Reports onto DDS: a thread of its own converts and writes what the tick thread queued.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/daemon/health.hpp"
+#include "monitor/daemon/report_queue.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+class DdsReports {
+ public:
+  // Publishes the catalogue at once. Everything given must outlive this.
+  DdsReports(const Scene& scene, Participant& participant, ReportQueue& queue,
+             const DdsPoses& poses);
+  ~DdsReports();  // finishes
+
+  // After the last tick: writes what is queued.
+  void finish();
+
+  // Clients that are listening for distances right now.
+  [[nodiscard]] std::uint32_t distance_readers() const;
+  [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
+
+ private:
+  void run();
+  void write_report(const QueuedReport& queued);
+  void write_zones(const Report& report);
+  void write_health(const Vitals& vitals);
+  void write(dds_entity_t writer, const void* sample, const char* what);
+
+  const Scene& scene_;
+  ReportQueue& queue_;
+  const DdsPoses& poses_;
+  dds_entity_t distances_, catalogue_, zones_, health_;
+  Sample<clearance_msg_Distances> distances_sample_;
+  std::vector<bool> zone_written_, zone_active_;  // as last written
+  HealthLog health_log_;
+  std::atomic<std::uint64_t> failed_writes_{0};
+  std::thread thread_;
+};
+
+}  // namespace clearance

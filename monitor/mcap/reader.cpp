@@ -1,0 +1,227 @@
+#include "monitor/mcap/reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "monitor/mcap/unreadable.hpp"
+
+namespace clearance {
+namespace {
+
+std::string seconds(std::uint64_t ns) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.3f s", static_cast<double>(ns) * 1e-9);
+  return text.data();
+}
+
+}  // namespace
+
+McapReader::McapReader(const std::filesystem::path& file, const McapWindow& window)
+    : path_(file), window_(window), file_(file) {
+  begin();
+}
+
+McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name,
+                       const McapWindow& window)
+    : path_(name), window_(window), file_(bytes) {
+  begin();
+}
+
+void McapReader::begin() {
+  if (!read_magic()) return;
+  summary_ = read_mcap_summary(file_);
+  const bool whole = window_.start_ns == 0 && window_.end_ns == McapWindow{}.end_ns;
+  if (whole || !summary_ || summary_->chunks.empty()) return;
+  indexed_ = true;
+  channels_ = summary_->channels;
+  metadata_ = summary_->metadata;
+}
+
+bool McapReader::read_magic() {
+  std::array<std::byte, kMcapMagic.size()> magic{};
+  done_ = true;
+  readable_ = false;
+  if (!file_.open()) {
+    error_ = unreadable(path_);
+    return false;
+  }
+  if (file_.size() == 0) {
+    error_ =
+        path_.string() + " is empty: nothing was recorded, or the recorder was stopped at once";
+    return false;
+  }
+  if (!file_.read(0, magic) || !std::ranges::equal(magic, std::as_bytes(std::span(kMcapMagic)))) {
+    error_ = path_.string() + " is not an MCAP file: it does not begin with the MCAP magic bytes";
+    return false;
+  }
+  done_ = false;
+  readable_ = true;
+  offset_ = magic.size();
+  crc_ = mcap_crc(0, magic);
+  return true;
+}
+
+double McapReader::progress() const noexcept {
+  return file_.size() == 0 ? 1.0 : static_cast<double>(offset_) / static_cast<double>(file_.size());
+}
+
+void McapReader::damage(std::uint64_t offset, const std::string& what) {
+  done_ = true;
+  chunk_ = {};
+  error_ = path_.string() + " is damaged at byte " + std::to_string(offset) + " of " +
+           std::to_string(file_.size()) + ": " + what + ". Before that, " +
+           std::to_string(messages_) + " messages were read";
+  if (messages_ > 0) error_ += ", the last " + seconds(last_ns_ - first_ns_) + " after the first";
+}
+
+void McapReader::cut_off(std::uint64_t offset) {
+  damage(offset,
+         "the file is cut off here (the recorder was stopped hard, or the copy is incomplete)");
+}
+
+bool McapReader::next(McapMessage& message) {
+  bool found = false;
+  while (!found && !done_) {
+    if (!chunk_.empty() || chunk_cut_off_) {
+      take_from_chunk(message, found);
+      continue;
+    }
+    Record record{};
+    if (indexed_ ? next_indexed_chunk(record) : next_record(record)) take(record, message, found);
+  }
+  return found;
+}
+
+void McapReader::take(const Record& record, McapMessage& message, bool& found) {
+  // Behind the data stands the summary, which repeats definitions.
+  if (data_ended_ && record.kind != McapKind::kFooter) return pass_over(record);
+  // No writer does that; a flipped bit in an index does, and no checksum would tell in time.
+  if (has_chunks_ && record.kind == McapKind::kMessage) {
+    return damage(record.offset, "a message outside the chunks of a file that has chunks");
+  }
+  switch (record.kind) {
+    case McapKind::kChunk:
+      return open_chunk(record);
+    case McapKind::kDataEnd:
+      return end_data(record);
+    case McapKind::kFooter:
+      return end_file(record);
+    case McapKind::kMessage:
+    case McapKind::kSchema:
+    case McapKind::kChannel:
+    case McapKind::kMetadata:
+      break;
+    default:
+      return pass_over(record);
+  }
+  if (!read_body(record)) return;
+  const bool sound = record.kind == McapKind::kMessage ? take_message(body_, message, found)
+                                                       : take_definition(record.kind, body_);
+  if (!sound && !done_) damage(record.offset, "a record whose content does not fit its length");
+}
+
+void McapReader::open_chunk(const Record& record) {
+  // A chunk that the end of the file cuts through still gives its first messages.
+  const std::uint64_t there = file_.size() - offset_;
+  has_chunks_ = true;
+  chunk_cut_off_ = record.length > there;
+  const Record present{record.kind, record.offset, std::min(record.length, there)};
+  if (!read_body(present)) return;
+  McapFields fields(body_);
+  static_cast<void>(fields.get<std::uint64_t>());  // smallest log time
+  static_cast<void>(fields.get<std::uint64_t>());  // largest
+  const auto uncompressed = fields.get<std::uint64_t>();
+  const auto crc = fields.get<std::uint32_t>();
+  const std::string compression = fields.get_text();
+  const auto length = fields.get<std::uint64_t>();
+  if (!fields.ok()) {
+    if (chunk_cut_off_) return cut_off(record.offset);
+    return damage(record.offset, "a chunk whose content does not fit its length");
+  }
+  if (!compression.empty()) return refuse_compression(compression);
+  chunk_ = chunk_cut_off_ ? fields.rest() : fields.get_raw(length);
+  chunk_end_ = offset_;
+  if (chunk_cut_off_) return;
+  if (!fields.ok() || uncompressed != length) {
+    return damage(record.offset, "a chunk whose content does not fit its length");
+  }
+  if (crc != 0 && crc != mcap_crc(0, chunk_)) {
+    damage(record.offset, "the checksum of the chunk does not match its content");
+  }
+}
+
+void McapReader::refuse_compression(const std::string& compression) {
+  done_ = true;
+  readable_ = false;
+  chunk_cut_off_ = false;
+  error_ = path_.string() + " has compressed chunks (" + compression +
+           "), which Clearance does not read. Rewrite it with the command-line tool of mcap.dev: "
+           "mcap decompress IN.mcap -o OUT.mcap";
+}
+
+void McapReader::take_from_chunk(McapMessage& message, bool& found) {
+  McapFields fields(chunk_);
+  const auto kind = static_cast<McapKind>(fields.get<std::uint8_t>());
+  const auto body = fields.get_raw(fields.get<std::uint64_t>());
+  const std::uint64_t offset = chunk_end_ - chunk_.size();
+  if (!fields.ok()) {
+    if (chunk_cut_off_) return cut_off(file_.size());
+    return damage(offset, "a record in a chunk that is longer than the chunk");
+  }
+  chunk_ = fields.rest();
+  bool sound = true;
+  if (kind == McapKind::kMessage) {
+    sound = take_message(body, message, found);
+  } else if (kind == McapKind::kSchema || kind == McapKind::kChannel) {
+    sound = take_definition(kind, body);
+  }
+  if (!sound && !done_) damage(offset, "a record in a chunk whose content does not fit its length");
+}
+
+bool McapReader::take_definition(McapKind kind, std::span<const std::byte> body) {
+  McapFields fields(body);
+  if (kind == McapKind::kMetadata) {
+    const std::string name = fields.get_text();
+    metadata_[name] = fields.get_map();
+    return fields.ok();
+  }
+  const auto id = fields.get<std::uint16_t>();
+  if (kind == McapKind::kSchema) {
+    McapSchema schema{fields.get_text(), fields.get_text(), fields.get_text()};
+    return fields.ok() && id != 0 && schemas_.try_emplace(id, schema).first->second == schema;
+  }
+  McapChannel channel;
+  channel.id = id;
+  channel.schema_id = fields.get<std::uint16_t>();
+  channel.topic = fields.get_text();
+  channel.encoding = fields.get_text();
+  channel.metadata = fields.get_map();
+  if (!fields.ok()) return false;
+  if (indexed_) return channels_.contains(id);  // known from the summary, schema and all
+  if (channel.schema_id != 0) {
+    const auto schema = schemas_.find(channel.schema_id);
+    if (schema == schemas_.end()) return false;
+    channel.schema = schema->second;
+  }
+  return channels_.try_emplace(id, channel).first->second == channel;
+}
+
+bool McapReader::take_message(std::span<const std::byte> body, McapMessage& message, bool& found) {
+  McapFields fields(body);
+  const auto channel = channels_.find(fields.get<std::uint16_t>());
+  message.sequence = fields.get<std::uint32_t>();
+  message.log_time = fields.get<std::uint64_t>();
+  message.publish_time = fields.get<std::uint64_t>();
+  message.payload = fields.rest();
+  if (!fields.ok() || channel == channels_.end()) return false;
+  message.channel = &channel->second;
+  if (message.log_time < window_.start_ns || message.log_time > window_.end_ns) return true;
+  first_ns_ = messages_ == 0 ? message.log_time : std::min(first_ns_, message.log_time);
+  last_ns_ = std::max(last_ns_, message.log_time);
+  ++messages_;
+  found = true;
+  return true;
+}
+
+}  // namespace clearance

@@ -1,0 +1,128 @@
+// Reads MCAP files of any origin and in any state: streamed from the front up to the end or the
+// damage, or, for a window of time, through the index.
+//
+// Uncompressed chunks and files without chunks are read; compressed chunks are refused by name.
+// Padding and unknown records are skipped. No length in the file is trusted beyond the file's size.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "monitor/mcap/file.hpp"
+#include "monitor/mcap/format.hpp"
+
+namespace clearance {
+
+struct McapMessage {
+  const McapChannel* channel = nullptr;  // valid as long as the reader
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0, publish_time = 0;  // ns
+  std::span<const std::byte> payload;            // valid until the next call
+};
+
+// What the end of a closed file says about the rest.
+struct McapSummary {
+  McapStatistics statistics;
+  std::map<std::uint16_t, McapChannel> channels;
+  std::vector<McapChunkIndex> chunks;  // in file order
+  std::map<std::string, McapMap> metadata;
+};
+
+// None when the file was never closed, or its summary is missing or damaged.
+[[nodiscard]] std::optional<McapSummary> read_mcap_summary(McapFile& file);
+
+struct McapWindow {  // log times, ns, both included
+  std::uint64_t start_ns = 0;
+  std::uint64_t end_ns = std::numeric_limits<std::uint64_t>::max();
+};
+
+class McapReader {
+ public:
+  // Only messages inside the window are returned; when the file is indexed, only their chunks are
+  // read.
+  explicit McapReader(const std::filesystem::path& file, const McapWindow& window = {});
+  // The same from memory, which must outlive the reader; `name` is used in messages.
+  McapReader(std::span<const std::byte> bytes, const std::string& name,
+             const McapWindow& window = {});
+
+  // The next message in file order. False at the end, or where the file stops making sense: then
+  // error() is not empty.
+  [[nodiscard]] bool next(McapMessage& message);
+
+  // A sentence with file, byte offset, reason and how much was read before; empty for a sound file.
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  // The messages before the damage are sound and complete: the file was cut off or hit by an error,
+  // instead of being no MCAP file, or one that this reader does not take.
+  [[nodiscard]] bool readable() const noexcept { return readable_; }
+
+  [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept { return summary_; }
+  // Those seen so far.
+  [[nodiscard]] const std::map<std::string, McapMap>& metadata() const noexcept {
+    return metadata_;
+  }
+  [[nodiscard]] std::uint64_t messages() const noexcept { return messages_; }
+  // Share of the file that has been read, 0 to 1.
+  [[nodiscard]] double progress() const noexcept;
+
+ private:
+  struct Record {
+    McapKind kind;
+    std::uint64_t offset;  // of its first byte in the file
+    std::uint64_t length;  // of its body
+  };
+
+  void begin();
+  void damage(std::uint64_t offset, const std::string& what);
+  void cut_off(std::uint64_t offset);
+  [[nodiscard]] bool read_magic();
+  [[nodiscard]] bool next_record(Record& record);
+  [[nodiscard]] bool next_indexed_chunk(Record& record);
+  // False, and the reading has ended: it is cut off, or too long.
+  [[nodiscard]] bool read_body(const Record& record);
+  void pass_over(const Record& record);
+  void take(const Record& record, McapMessage& message, bool& found);
+  void open_chunk(const Record& record);
+  void refuse_compression(const std::string& compression);
+  void take_from_chunk(McapMessage& message, bool& found);
+  void end_data(const Record& record);
+  void end_file(const Record& record);
+  // A record that stands outside chunks and in them alike; false when its content makes no sense.
+  [[nodiscard]] bool take_definition(McapKind kind, std::span<const std::byte> body);
+  [[nodiscard]] bool take_message(std::span<const std::byte> body, McapMessage& message,
+                                  bool& found);
+
+  std::filesystem::path path_;
+  McapWindow window_;
+  McapFile file_;
+  std::optional<McapSummary> summary_;
+  bool indexed_ = false;        // reading chunks through the summary
+  std::size_t next_chunk_ = 0;  // into summary_->chunks
+
+  std::uint64_t offset_ = 0;  // of the next record
+  std::uint32_t crc_ = 0;     // of everything before it, when streaming
+  bool has_chunks_ = false;
+  bool data_ended_ = false;
+  bool done_ = false;
+  bool readable_ = true;
+  std::string error_;
+
+  std::vector<std::byte> body_;
+  std::span<const std::byte> chunk_;  // what is left of the open chunk; part of body_
+  std::uint64_t chunk_end_ = 0;       // its file offset
+  bool chunk_cut_off_ = false;
+
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::map<std::string, McapMap> metadata_;
+  std::uint64_t messages_ = 0;
+  std::uint64_t first_ns_ = 0, last_ns_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,93 @@
+// Writes MCAP files: uncompressed chunks with message indexes, a summary and checksums, so that
+// every reader can seek in them, and a file that a crash cut off loses no more than its last chunk.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "monitor/mcap/format.hpp"
+
+namespace clearance {
+
+struct McapWriterOptions {
+  // A chunk goes to the file when it holds this much or spans this much log time, whichever comes
+  // first.
+  std::size_t chunk_bytes = std::size_t{1} << 20;
+  std::uint64_t chunk_span_ns = 200'000'000;
+  bool overwrite = true;  // false: an existing file is an error
+};
+
+// Errors are kept: after the first one nothing more is written, and error() says what happened to
+// which file. The same calls give the same bytes.
+class McapWriter {
+ public:
+  McapWriter(const std::filesystem::path& file, const McapWriterOptions& options = {});
+  ~McapWriter();  // closes
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  [[nodiscard]] bool ok() const noexcept { return error_.empty(); }
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  [[nodiscard]] std::uint64_t messages() const noexcept { return statistics_.messages; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return offset_ + chunk_.size(); }
+
+  // Equal schemas are written once. Returns the channel's id, from 1.
+  std::uint16_t add_channel(const McapSchema& schema, std::string_view topic,
+                            std::string_view encoding, const McapMap& metadata = {});
+
+  // Sequence numbers are counted per channel. Times in ns.
+  void write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
+             std::span<const std::byte> payload);
+
+  // A named set of texts, outside the messages.
+  void metadata(std::string_view name, const McapMap& values);
+
+  // Ends the chunk and hands it to the operating system.
+  void flush();
+
+  // Writes the summary and closes the file; true when everything is in it.
+  bool close();
+
+ private:
+  struct Channel {
+    std::uint32_t sequence = 0;
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // (log time, offset) in this chunk
+  };
+  struct MetadataIndex {
+    std::uint64_t offset, length;
+    std::string name;
+  };
+
+  void fail(const std::string& what);
+  void put_out(std::span<const std::byte> bytes);
+  void write_message_indexes(McapChunkIndex& index);
+  void write_summary();
+
+  std::filesystem::path file_;
+  McapWriterOptions options_;
+  int descriptor_ = -1;
+  std::string error_;
+  std::uint64_t offset_ = 0;  // bytes in the file
+  std::uint32_t crc_ = 0;     // of them
+
+  std::vector<McapSchema> schemas_;
+  std::vector<McapChannel> channels_;
+  std::vector<Channel> in_chunk_;  // by channel id - 1
+  McapBytes chunk_;                // its records
+  std::uint64_t chunk_messages_ = 0;
+  std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
+  McapBytes out_;  // scratch
+
+  McapStatistics statistics_;
+  std::vector<McapChunkIndex> chunk_indexes_;
+  std::vector<MetadataIndex> metadata_indexes_;
+};
+
+}  // namespace clearance

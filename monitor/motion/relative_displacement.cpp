@@ -1,0 +1,54 @@
+#include "monitor/motion/relative_displacement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// Beyond this the vector part of a quaternion says too little about the angle, rad.
+constexpr double kMostTurn = 1.0;
+
+// From the last pose to the one in use: 2 sin(angle / 2) along the shorter turn's axis, in the
+// world.
+Vec3 turning_of(const ObjectState& object) noexcept {
+  if (object.motion.turn == 0.0) return Vec3::Zero();
+  const Eigen::Quaterniond q = object.pose.orientation.normalized() *
+                               object.pose_before.orientation.normalized().conjugate();
+  return std::copysign(2.0, q.w()) * q.vec();
+}
+
+// How far that may be from the turn, rad: with v its half, |v| = sin(angle / 2) <= 1/2, it lacks
+// 2 (asin |v| - |v|) <= 0.38 |v|^3; and as much at most do 4 sin(angle / 4) of the angle.
+double turn_error(const Motion& motion) noexcept {
+  return motion.turn == 0.0 ? 0.0
+                            : 0.0625 * motion.turn * motion.turn * motion.turn + kTurnRounding;
+}
+
+}  // namespace
+
+double relative_travel(const ObjectState& a, const ObjectState& b) noexcept {
+  const bool from_a = b.reach <= a.reach;
+  const ObjectState& resting = from_a ? a : b;
+  const ObjectState& moving = from_a ? b : a;
+  const Motion& frame = resting.motion;
+  const Motion& body = moving.motion;
+  if (!(std::max(frame.turn, body.turn) <= kMostTurn)) return kInfinity;
+
+  const Vec3 shift = (moving.pose.position - moving.pose_before.position) -
+                     (resting.pose.position - resting.pose_before.position);
+  const Vec3 turning_frame = turning_of(resting), turning_body = turning_of(moving);
+  const Vec3 between = moving.pose_before.position - resting.pose_before.position;
+  const double apart = between.norm(), shifted = shift.norm() + kShiftUnderflow;
+  const double frame_turn = frame.turn + turn_error(frame);
+  const double turned =
+      (turning_body - turning_frame).norm() + turn_error(body) + turn_error(frame);
+  const double of_origin = (shift - turning_frame.cross(between)).norm() + kShiftUnderflow +
+                           turn_error(frame) * apart + frame_turn * shifted;
+  const double sizes = frame.shift + body.shift + frame_turn * (apart + shifted);
+  return rounded_up(of_origin + swept(turned, moving.reach) + kVelocityError * sizes);
+}
+
+}  // namespace clearance

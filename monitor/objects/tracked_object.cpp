@@ -1,0 +1,135 @@
+#include "monitor/objects/tracked_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// A unit quaternion's norm is within a thousandth of 1; here squared.
+constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
+constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
+// A jump beyond any cell. Adding it to what was travelled would cost digits for good: after 1e4 km
+// of travel, 1 m/s for four months, they still tell 1e-8 m apart.
+constexpr double kJump = 1e4;  // m
+
+bool usable(const Vec3& v) noexcept {
+  return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
+}
+
+// All but the orientation.
+bool usable(const PoseSample& sample) noexcept {
+  return usable(sample.world_from_object.position) &&
+         (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
+}
+
+// later - earlier for any two stamps; what does not fit becomes the largest.
+std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (later <= earlier) return 0;
+  const std::uint64_t apart =
+      static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+  return static_cast<std::int64_t>(apart < kMost ? apart : kMost);
+}
+
+// Mean velocity that leads from one pose to the next. The shorter way round is taken.
+Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
+  const Eigen::Quaterniond turn =
+      to.orientation.normalized() * from.orientation.normalized().conjugate();
+  const double sine = turn.vec().norm();
+  const double angle = 2.0 * std::atan2(sine, std::abs(turn.w()));
+  const double per_sine = sine > 0.0 ? std::copysign(angle / sine, turn.w()) / seconds : 0.0;
+  return {.linear = (to.position - from.position) / seconds, .angular = turn.vec() * per_sine};
+}
+
+bool same(const Pose& a, const Pose& b) noexcept {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+}  // namespace
+
+ObjectState initial_state(const Object& object) noexcept {
+  ObjectState state;
+  if (!object.fixed) return state;
+  state.seen = state.seen_last_tick = true;
+  state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
+  state.age_ns = 0;
+  state.twist_known = true;  // at rest
+  state.plain = true;
+  return state;
+}
+
+std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+                              std::int64_t now_ns, std::int64_t future_limit_ns) noexcept {
+  if (!usable(sample)) return Reject::kNonFinite;
+  const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
+  const double squared = orientation.squaredNorm();
+  if (!(squared >= kLeastUnit && squared <= kMostUnit)) {
+    return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
+  }
+  if (elapsed(now_ns, sample.stamp_ns) > future_limit_ns) return Reject::kFuture;
+  if (state.seen && sample.stamp_ns < state.stamp_ns) return Reject::kBackwards;
+  return std::nullopt;
+}
+
+void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept {
+  const std::int64_t apart_ns = elapsed(state.stamp_ns, sample.stamp_ns);
+  if (sample.has_twist) {
+    state.twist = sample.twist;
+    state.twist_known = true;
+  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
+    // of that age does.
+    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
+    const double seconds = static_cast<double>(apart_ns) * 1e-9;
+    state.twist =
+        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
+  }
+  state.pose = sample.world_from_object;
+  state.stamp_ns = sample.stamp_ns;
+  state.seen = true;
+}
+
+void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept {
+  if (object.fixed || !state.seen) return;
+  const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
+  state.began = !(unseen_before < kInfinity);
+  state.moved = !state.seen_last_tick || !same(state.pose_last_tick, state.pose);
+  state.motion = state.moved && state.seen_last_tick
+                     ? motion_between(state.pose_last_tick, state.pose)
+                     : Motion{};
+  if (state.moved) {
+    state.pose_before = state.began ? state.pose : state.pose_last_tick;
+    state.pose_last_tick = state.pose;
+  }
+  state.seen_last_tick = true;
+
+  state.age_ns = elapsed(state.stamp_ns, now_ns);
+  state.late = state.age_ns > object.age_limit_ns;
+  const double age_s = static_cast<double>(state.age_ns) * 1e-9;
+  state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
+  state.unseen_since =
+      state.began ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
+}
+
+void travel(double reach, ObjectState& state) noexcept {
+  state.reach = reach;
+  state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
+  state.bend = state.moved ? bend_at_most(state.motion, reach) : 0.0;
+  state.travelled_before = state.travelled;
+  if (state.motion.turn > 0.0) state.turned = rounded_up(state.turned + state.motion.turn);
+  state.leapt = false;
+  if (!(state.travel < kJump)) {
+    state.leapt = !state.began && (reach < kInfinity || !(state.motion.shift < kJump));
+    state.travel = kInfinity;
+  } else if (state.travel > 0.0) {
+    state.travelled = rounded_up(state.travelled + state.travel);
+  }
+  state.plain =
+      state.seen && !state.began && !state.late && !state.leapt && state.unseen_since == 0.0;
+}
+
+}  // namespace clearance

@@ -1,0 +1,78 @@
+// One object of the scene as the tick knows it: the pose in use, where it came from and how it
+// moves.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "config/scene.hpp"
+#include "monitor/motion/displacement.hpp"
+#include "monitor/pose_batch.hpp"
+
+namespace clearance {
+
+struct ObjectState {
+  // What every pair asks of both its objects each tick comes first: one cache line, to `turned`.
+  bool seen = false;   // some pose is in use; always so for a fixed object
+  bool late = false;   // that pose is older than the object's limit
+  bool moved = false;  // it is not that of the last tick
+  bool began = false;  // nothing was known of it at the last tick
+  bool leapt = false;  // something was, but that is farther off than anything moves
+  // None of the exceptions: known and on time, now and at the last tick, and no leap between.
+  bool plain = false;
+  double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
+  double unseen_since = 0.0;    // the larger of that at the last tick, if known then, and now, m
+  // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
+  // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
+  // m, set by travel().
+  double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
+  // At any instant since the last tick no point of it was farther than this from where it would
+  // have been had it gone straight and evenly from its place then to its place now, m.
+  double bend = 0.0;
+  double turned = 0.0;       // Motion::turn, in all
+  double reach = kInfinity;  // no point of it is farther from its origin, m; set by travel()
+  std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
+
+  // As sent; the orientation is normalised where it is used.
+  Pose pose;
+  std::int64_t stamp_ns = 0;
+  // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
+  // after a gap longer than twice the age limit: over that a difference says nothing about now.
+  Twist twist;
+  bool twist_known = false;
+  Motion motion;  // since the last tick; none when first seen
+  std::array<std::uint64_t, kRejects> rejected{};
+
+  Pose pose_last_tick;
+  Pose pose_before;  // while it has moved: the one in use at the last tick; after `began`, now
+  bool seen_last_tick = false;
+
+  // Whether anything can be said about where it is now.
+  [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
+  // Whether `twist` is how it moves now: a late object may do anything since its stamp.
+  [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
+
+  // As `travel`, since the last tick or since something has been known of it, m.
+  [[nodiscard]] double travel_since() const noexcept { return began ? 0.0 : travel; }
+};
+
+// Before any input: a fixed object stands where the scene says.
+[[nodiscard]] ObjectState initial_state(const Object& object) noexcept;
+
+// Why this sample must not be used, if so. `object` is a moving one and the one that the sample
+// names.
+[[nodiscard]] std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+                                            std::int64_t now_ns,
+                                            std::int64_t future_limit_ns) noexcept;
+
+// Takes an unrefused sample into use.
+void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept;
+
+// Ends the tick's input: motion since the last tick, age and lateness.
+void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept;
+
+// Counts this tick's motion in; no point of the object is farther than `reach` from its origin.
+void travel(double reach, ObjectState& state) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,36 @@
+#include "monitor/pairs/carried_gap.hpp"
+
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// Of the sums here and of the direction, rounded from one frame to another: relative to the lengths
+// that take part.
+constexpr double kError = 0x1p-46;
+
+double rounding_of(double gap, double turning, const PlacedPart& a, const PlacedPart& b) noexcept {
+  return kError * (std::abs(gap) + turning + a.coordinates + b.coordinates);
+}
+
+}  // namespace
+
+double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
+                const PlacedPart& b) noexcept {
+  if (!a.keeps_direction || !b.keeps_direction || normal.isZero(0.0)) return -kInfinity;
+  const double turning = a.turning + b.turning;
+  const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
+  const double gap = lower - middles + turning - rounding_of(lower, turning, a, b);
+  return std::isfinite(gap) ? gap : -kInfinity;
+}
+
+double lower_along(const Vec3& normal, double kept_gap, const PlacedPart& a,
+                   const PlacedPart& b) noexcept {
+  const double turning = a.turning + b.turning;
+  const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
+  return kept_gap + middles - turning - rounding_of(kept_gap, turning, a, b);
+}
+
+}  // namespace clearance

@@ -1,0 +1,57 @@
+#include "monitor/pairs/hull_bound.hpp"
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// In its object's frame, so that it is where the object is, without rounding.
+PlacedPart around(const ConvexPolyhedron& hull) {
+  PlacedPart placed;
+  placed.shape = &hull;
+  placed.extent = rounded_up(hull.bounding_radius + hull.position_error);
+  return placed;
+}
+
+}  // namespace
+
+HullQuery::HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts)
+    : hulls_(enclosing_hulls(scene)),
+      placed_(scene.objects.size()),
+      only_part_(scene.objects.size(), kNoModel) {
+  for (std::size_t i = 0; i < hulls_.size(); ++i) {
+    if (hulls_[i]) placed_[i] = around(*hulls_[i]);
+  }
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    const std::uint32_t object = parts[part].object;
+    if (scene.objects[object].parts.size() == 1) only_part_[object] = part;
+  }
+}
+
+bool HullQuery::possible(const PairEntry& pair) const noexcept {
+  const auto has_hull = [this](std::uint32_t object) { return hulls_[object] != nullptr; };
+  const auto has_model = [&](std::uint32_t object) {
+    return has_hull(object) || only_part_[object] != kNoModel;
+  };
+  return has_model(pair.object_a) && has_model(pair.object_b) &&
+         (has_hull(pair.object_a) || has_hull(pair.object_b));
+}
+
+double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  const PlacedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
+  const PlacedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
+  TrackingState cold;
+  --evaluation.queries_left;
+  const DistanceResult found =
+      distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold,
+               {.depth = false});
+  return rounded_down(found.lower - placing_error(a, b));
+}
+
+const PlacedPart& HullQuery::model(std::uint32_t object, const Evaluation& evaluation) noexcept {
+  if (hulls_[object] == nullptr) return evaluation.parts[only_part_[object]];
+  placed_[object].world_from_part = evaluation.objects[object].pose;
+  return placed_[object];
+}
+
+}  // namespace clearance

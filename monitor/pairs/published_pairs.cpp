@@ -1,0 +1,91 @@
+#include "monitor/pairs/published_pairs.hpp"
+
+#include <algorithm>
+
+#include "config/refresh_share.hpp"
+#include "monitor/pairs/evaluate_pairs.hpp"
+
+namespace clearance {
+namespace {
+
+// Enough for vector code to fill its lanes, few enough for workers to share: about 10 us.
+constexpr std::size_t kGroup = 256;
+
+bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
+  return table.rows_of(pair) == 1;
+}
+
+}  // namespace
+
+AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
+                       const PairTable& table, bool every_tick)
+    : every_tick_(every_tick) {
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    if (!is_asked(scene.pairs[p], scene)) continue;
+    pairs_.push_back(p);
+    rows_ += table.rows_of(p);
+  }
+  if (every_tick_) form_groups(parts, table);
+}
+
+void AskedPairs::form_groups(const std::vector<PlacedPart>& parts, const PairTable& table) {
+  std::vector<std::uint32_t> single;
+  for (const std::uint32_t pair : pairs_) {
+    (is_single(pair, table) ? single : many_parts_).push_back(pair);
+  }
+  known_.reserve(many_parts_.size());
+
+  constexpr std::uint32_t kUnnumbered = ~0u;
+  std::vector<std::uint32_t> body_of(parts.size(), kUnnumbered);
+  std::vector<const ConvexPolyhedron*> bodies;
+  const auto body = [&](std::uint32_t part) {
+    if (body_of[part] == kUnnumbered) {
+      body_of[part] = static_cast<std::uint32_t>(bodies.size());
+      bodies.push_back(parts[part].shape);
+      body_parts_.push_back(part);
+    }
+    return body_of[part];
+  };
+  std::vector<BodyPair> of_bodies;
+  for (const std::uint32_t pair : single) {
+    const std::uint32_t row = table.entries[pair].first_row;
+    of_bodies.push_back({body(table.part_a[row]), body(table.part_b[row])});
+  }
+  world_from_body_.resize(bodies.size());
+  for (std::size_t first = 0; first < single.size(); first += kGroup) {
+    const std::size_t count = std::min(kGroup, single.size() - first);
+    const auto own = std::span(single).subspan(first, count);
+    groups_.push_back({{own.begin(), own.end()},
+                       DistanceBatch(bodies, std::span(of_bodies).subspan(first, count)),
+                       0});
+  }
+}
+
+void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
+  for (std::size_t i = 0; i < body_parts_.size(); ++i) {
+    world_from_body_[i] = evaluation.parts[body_parts_[i]].world_from_part;
+  }
+  const auto one = [this, &evaluation](std::uint32_t i) noexcept {
+    evaluate_group(groups_[i], evaluation);
+  };
+  pool.run(static_cast<std::uint32_t>(groups_.size()), {.claim = 1, .least = 2}, one);
+  for (const Group& group : groups_) evaluation.queries_left -= group.known;
+  known_.clear();
+  for (const std::uint32_t pair : many_parts_) {
+    if (is_known(pair, evaluation)) known_.push_back(pair);
+  }
+  clearance::evaluate(known_, pool, evaluation);
+}
+
+// Also those that are not known, to no use: which they are differs from tick to tick.
+void AskedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
+  const auto found = group.batch.evaluate(world_from_body_);
+  group.known = 0;
+  for (std::size_t i = 0; i < group.pairs.size(); ++i) {
+    if (!is_known(group.pairs[i], evaluation)) continue;
+    ++group.known;
+    settle(group.pairs[i], found[i], group.batch.point_on_b(i), evaluation);
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,52 @@
+// The pairs whose figures somebody asked for: those that are published, or all.
+//
+// They are evaluated in every tick that has room for them, in one straight loop: pairs of single
+// parts by vector code, many at once (core/batch.hpp), the others one by one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/batch.hpp"
+#include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/pairs/worker_pool.hpp"
+
+namespace clearance {
+
+class AskedPairs {
+ public:
+  // every_tick: as RefreshShare has it.
+  AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
+             bool every_tick);
+
+  [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
+  // How many queries they can take.
+  [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
+  // All of them fit into the budget, so that they are never left to the broad phase.
+  [[nodiscard]] bool every_tick() const noexcept { return every_tick_; }
+
+  // Evaluates all that are known, the budget covering them.
+  void evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept;
+
+ private:
+  // Pairs of single parts that are evaluated together.
+  struct Group {
+    std::vector<std::uint32_t> pairs;
+    DistanceBatch batch;
+    std::uint32_t known = 0;  // of the pairs, in this tick
+  };
+  void form_groups(const std::vector<PlacedPart>& parts, const PairTable& table);
+  void evaluate_group(Group& group, const Evaluation& evaluation) noexcept;
+
+  std::vector<std::uint32_t> pairs_;
+  std::uint32_t rows_ = 0;
+  bool every_tick_;
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> body_parts_;  // what part each body of the groups is
+  std::vector<Pose> world_from_body_;      // of this tick
+  std::vector<std::uint32_t> many_parts_;  // pairs of more than one row
+  std::vector<std::uint32_t> known_;       // of those, in this tick
+};
+
+}  // namespace clearance

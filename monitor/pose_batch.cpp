@@ -1,0 +1,23 @@
+#include "monitor/pose_batch.hpp"
+
+namespace clearance {
+
+const char* name(Reject cause) noexcept {
+  switch (cause) {
+    case Reject::kUnknownObject:
+      return "unknown object";
+    case Reject::kNonFinite:
+      return "not finite";
+    case Reject::kNotUnit:
+      return "quaternion not of unit length";
+    case Reject::kBackwards:
+      return "time going backwards";
+    case Reject::kFuture:
+      return "stamp in the future";
+    case Reject::kWrongRevision:
+      return "made for another scene";
+  }
+  return "";
+}
+
+}  // namespace clearance

@@ -1,0 +1,77 @@
+#include "monitor/recording/reader.hpp"
+
+#include "monitor/recording/writer.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance {
+namespace {
+
+std::optional<TopicKind> kind_of(const McapChannel& channel) {
+  if (channel.encoding != kCdrEncoding) return std::nullopt;
+  return topic_kind(channel.schema.name);
+}
+
+// From the summary: which kinds the file has; none when there is no summary.
+std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKind kind) {
+  if (!summary || summary->statistics.messages == 0) return std::nullopt;
+  for (const auto& [id, count] : summary->statistics.channel_messages) {
+    const auto channel = summary->channels.find(id);
+    if (channel != summary->channels.end() && kind_of(channel->second) == kind && count > 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+RecordingReader::RecordingReader(const std::filesystem::path& file, const McapWindow& window)
+    : mcap_(file, window) {}
+
+bool RecordingReader::next(RecordedMessage& message) {
+  McapMessage raw;
+  while (mcap_.next(raw)) {
+    const auto [known, added] = kinds_.try_emplace(raw.channel);
+    if (added) known->second = kind_of(*raw.channel);
+    if (!known->second) continue;
+    message = {*known->second, static_cast<std::int64_t>(raw.log_time),
+               static_cast<std::int64_t>(raw.publish_time), raw.payload, raw.channel};
+    return true;
+  }
+  return false;
+}
+
+std::string RecordingReader::build() const {
+  const auto about = mcap_.metadata().find(std::string(kRecordingMetadata));
+  if (about == mcap_.metadata().end()) return {};
+  const auto build = about->second.find("build");
+  return build == about->second.end() ? std::string() : build->second;
+}
+
+RecordingOutline outline(const std::filesystem::path& file) {
+  RecordingOutline found;
+  RecordingReader reader(file);
+  const std::optional<bool> reports = says_kind(reader.summary(), TopicKind::kDistances);
+  const std::optional<bool> catalogue = says_kind(reader.summary(), TopicKind::kCatalogue);
+  found.has_reports = reports.value_or(false);
+  bool first = true;
+  RecordedMessage message;
+  CdrDecoder decoder;
+  while (reader.next(message)) {
+    if (std::exchange(first, false)) {
+      found.first_ns = message.log_ns;
+      found.build = reader.build();  // stands in front
+    }
+    if (message.kind == TopicKind::kDistances) found.has_reports = true;
+    if (message.kind == TopicKind::kCatalogue && !found.catalogue) {
+      Sample<clearance_msg_Catalogue> sample;
+      if (decoder.decode(message.cdr, sample)) found.catalogue = std::move(sample);
+    }
+    const bool reports_known = found.has_reports || reports.has_value();
+    if (reports_known && (found.catalogue || catalogue == false)) return found;
+  }
+  if (!reader.readable()) found.error = reader.error();
+  return found;
+}
+
+}  // namespace clearance

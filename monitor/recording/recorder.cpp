@@ -1,0 +1,90 @@
+#include "monitor/recording/recorder.hpp"
+
+#include <algorithm>
+
+#include "monitor/recording/build.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+// Batches that no report names (made for another scene) are written all the same when so many wait.
+constexpr std::size_t kMostWaiting = 4096;
+
+// The source's stamp of a batch: its newest pose.
+std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
+  const auto newest = std::ranges::max_element(batch.samples, {}, &PoseSample::stamp_ns);
+  return newest == batch.samples.end() ? otherwise : newest->stamp_ns;
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+                   bool overwrite)
+    : scene_(scene),
+      writer_(file, scene.topics, {.overwrite = overwrite}),
+      batch_(make_batch(clearance_msg_kMaxPoses)),
+      distances_(make_distances(scene)),
+      zone_written_(scene.zones.size(), false),
+      zone_active_(scene.zones.size(), false),
+      last_ns_(now_ns) {
+  writer_.catalogue(*make_catalogue(scene), now_ns, kBuild);
+}
+
+void Recorder::poses(const PoseBatch& batch) {
+  to_wire(batch, *batch_);
+  const std::span<const std::byte> cdr = encoder_.encode(*batch_);
+  waiting_.push_back({batch.source, batch.sequence_number, stamp_of(batch, last_ns_),
+                      std::vector<std::byte>(cdr.begin(), cdr.end())});
+}
+
+void Recorder::report(const Report& report, std::span<const SourceUse> sources) {
+  last_ns_ = report.now_ns;
+  write_used(sources, report.now_ns);
+  to_wire(report, sources, 0, *distances_);
+  writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
+  write_zones(report);
+}
+
+// Batches may already wait that belong to later ticks: all up to the last one that this tick names.
+void Recorder::write_used(std::span<const SourceUse> sources, std::int64_t log_ns) {
+  const auto named = [sources](const Waiting& batch) {
+    return std::ranges::any_of(sources, [&batch](const SourceUse& use) {
+      return use.source == batch.source && use.sequence_number == batch.sequence_number;
+    });
+  };
+  const auto last = std::find_if(waiting_.rbegin(), waiting_.rend(), named);
+  write_waiting(static_cast<std::size_t>(waiting_.rend() - last), log_ns);
+  if (waiting_.size() > kMostWaiting) write_waiting(waiting_.size(), log_ns);
+}
+
+void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
+  for (std::size_t i = 0; i < count; ++i) {
+    writer_.write(TopicKind::kPoses, log_ns, waiting_[i].stamp_ns,
+                  std::span<const std::byte>(waiting_[i].cdr));
+  }
+  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+void Recorder::write_zones(const Report& report) {
+  for (std::uint32_t zone = 0; zone < scene_.zones.size(); ++zone) {
+    const bool active = report.zones[zone].active;
+    if (zone_written_[zone] && zone_active_[zone] == active) continue;
+    zone_written_[zone] = true;
+    zone_active_[zone] = active;
+    clearance_msg_ZoneState state{};
+    to_wire(scene_, report, zone, state);
+    writer_.write(TopicKind::kZones, report.now_ns, report.now_ns, state);
+  }
+}
+
+void Recorder::health(const clearance_msg_Health& health) {
+  writer_.write(TopicKind::kHealth, std::max(last_ns_, health.now_ns), health.now_ns, health);
+}
+
+bool Recorder::close() {
+  write_waiting(waiting_.size(), last_ns_);
+  return writer_.close();
+}
+
+}  // namespace clearance

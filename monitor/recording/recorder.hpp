@@ -1,0 +1,63 @@
+// Records a running daemon: the catalogue, and for every tick the batches that it used, then its
+// report and the zones that it changed. An offline replay of the file gives the same reports again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "monitor/batch.hpp"
+#include "monitor/recording/writer.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+// Called from one thread, never the tick's: it converts, allocates and writes to disk. What it is
+// given is in the file at most 200 ms later, so that is what a crash can cost. After an error (a
+// full disk) nothing more is written and error() says why.
+class Recorder {
+ public:
+  // Writes the catalogue. `overwrite` false: an existing file is an error.
+  Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+           bool overwrite = false);
+
+  // A batch that a tick used, in the order of use; written in front of that tick's report.
+  void poses(const PoseBatch& batch);
+
+  // The report of a tick and what it used, which poses() has been given before.
+  void report(const Report& report, std::span<const SourceUse> sources);
+
+  void health(const clearance_msg_Health& health);
+
+  // True when everything is in the file.
+  bool close();
+  [[nodiscard]] bool ok() const noexcept { return writer_.ok(); }
+  [[nodiscard]] const std::string& error() const noexcept { return writer_.error(); }
+  [[nodiscard]] std::uint64_t messages() const noexcept { return writer_.messages(); }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return writer_.bytes(); }
+
+ private:
+  struct Waiting {  // a batch whose report has not come yet
+    SourceName source;
+    std::uint64_t sequence_number;
+    std::int64_t stamp_ns;
+    std::vector<std::byte> cdr;
+  };
+
+  void write_used(std::span<const SourceUse> sources, std::int64_t log_ns);
+  void write_waiting(std::size_t count, std::int64_t log_ns);
+  void write_zones(const Report& report);
+
+  const Scene& scene_;
+  RecordingWriter writer_;
+  std::vector<Waiting> waiting_;
+  Sample<clearance_msg_PoseBatch> batch_;
+  Sample<clearance_msg_Distances> distances_;
+  CdrEncoder encoder_;
+  std::vector<bool> zone_written_, zone_active_;
+  std::int64_t last_ns_;
+};
+
+}  // namespace clearance

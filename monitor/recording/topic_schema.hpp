@@ -1,0 +1,43 @@
+// The five topics as a recording holds them: type, schema text, message encoding.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "config/scene.hpp"
+#include "monitor/mcap/format.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+enum class TopicKind : std::uint8_t { kCatalogue, kPoses, kDistances, kZones, kHealth };
+inline constexpr std::array kTopicKinds = {TopicKind::kCatalogue, TopicKind::kPoses,
+                                           TopicKind::kDistances, TopicKind::kZones,
+                                           TopicKind::kHealth};
+
+inline constexpr std::string_view kCdrEncoding = "cdr";
+inline constexpr std::string_view kIdlEncoding = "omgidl";
+
+[[nodiscard]] const dds_topic_descriptor_t& descriptor(TopicKind kind) noexcept;
+
+// The name of the topic in this scene.
+[[nodiscard]] const std::string& topic_name(const Topics& topics, TopicKind kind) noexcept;
+
+// Which of our topics has this schema name, if any.
+[[nodiscard]] std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept;
+
+// Name, encoding and self-contained IDL text of the topic's type.
+[[nodiscard]] const McapSchema& topic_schema(TopicKind kind);
+
+// idl/clearance.idl as it was when this was built.
+extern const char* const kIdlText;
+
+// What `type` (e.g. PoseBatch) needs out of `idl`, which is written as clearance.idl is: constants
+// of one line and structs, inside modules, each used after its definition. Comments are left out.
+// Empty when there is no such struct.
+[[nodiscard]] std::string self_contained_idl(std::string_view idl, std::string_view type);
+
+}  // namespace clearance

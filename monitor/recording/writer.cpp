@@ -1,0 +1,35 @@
+#include "monitor/recording/writer.hpp"
+
+namespace clearance {
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
+                                 const McapWriterOptions& options)
+    : mcap_(file, options) {
+  for (const TopicKind kind : kTopicKinds) {
+    channels_[static_cast<std::size_t>(kind)] =
+        mcap_.add_channel(topic_schema(kind), topic_name(topics, kind), kCdrEncoding);
+  }
+}
+
+void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
+  McapMap about = {{"version", CLEARANCE_VERSION},
+                   {"scene", catalogue.scene},
+                   {"scene_revision", std::to_string(catalogue.scene_revision)},
+                   {"cell", catalogue.cell_yaml}};
+  if (!build.empty()) about["build"] = build;
+  mcap_.metadata(kRecordingMetadata, about);
+}
+
+void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
+                                const std::string& build) {
+  describe(catalogue, build);
+  write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
+}
+
+void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
+                            std::span<const std::byte> cdr) {
+  mcap_.write(channels_[static_cast<std::size_t>(kind)], static_cast<std::uint64_t>(log_ns),
+              static_cast<std::uint64_t>(publish_ns), cdr);
+}
+
+}  // namespace clearance

@@ -1,0 +1,64 @@
+#include "monitor/replay/object_map.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "config/spelling.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded)
+    : revision_(recorded == nullptr ? scene.revision : recorded->scene_revision) {
+  if (recorded == nullptr) return;
+  same_scene_ = identity_ = recorded->scene_revision == scene.revision;
+  if (identity_) return;
+  any_ = false;
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects) names.push_back(object.name);
+  std::vector<bool> met(names.size(), false);
+  for (std::uint32_t i = 0; i < recorded->objects._length; ++i) {
+    const clearance_msg_CatalogueObject& object = recorded->objects._buffer[i];
+    const auto found = std::ranges::find(names, object.name);
+    const auto id = static_cast<std::uint32_t>(found - names.begin());
+    if (object.id >= clearance_msg_kMaxObjects) continue;
+    if (object.id >= id_.size()) id_.resize(object.id + 1, kLeftOut);
+    if (found == names.end()) {
+      notes_.push_back("object '" + std::string(object.name) +
+                       "' of the recording is not in the cell: its poses are left out" +
+                       did_you_mean(object.name, names));
+      continue;
+    }
+    met[id] = true;
+    if (!scene.objects[id].fixed) {
+      id_[object.id] = id;
+      any_ = true;
+    } else if (!object.is_fixed) {
+      notes_.push_back("object '" + names[id] +
+                       "' is fixed in the cell: its recorded poses are left out");
+    }
+  }
+  for (std::size_t id = 0; id < names.size(); ++id) {
+    if (!met[id] && !scene.objects[id].fixed) {
+      notes_.push_back("object '" + names[id] +
+                       "' of the cell is not in the recording: its pairs stay unknown");
+    }
+  }
+}
+
+bool ObjectMap::translate(PoseBatch& batch) const {
+  if (!made_for(batch, revision_)) return false;
+  if (identity_) return true;
+  std::erase_if(batch.samples, [this](PoseSample& sample) {
+    sample.object = sample.object < id_.size() ? id_[sample.object] : kLeftOut;
+    return sample.object == kLeftOut;
+  });
+  return true;
+}
+
+}  // namespace clearance

@@ -1,0 +1,297 @@
+#include "monitor/replay/offline_replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "monitor/recording/build.hpp"
+#include "monitor/replay/expectations.hpp"
+#include "monitor/replay/tick_feed.hpp"
+#include "monitor/replay/zone_difference.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+std::int64_t whole_ns(double seconds) {
+  constexpr double kCentury = 3.2e9;  // s: fits
+  return std::llround(std::min(seconds, kCentury) * 1e9);
+}
+
+std::optional<ReferenceCheck> reference_of(const Scene& scene,
+                                           const OfflineReplayOptions& options) {
+  if (options.reference.empty()) return std::nullopt;
+  return ReferenceCheck(scene, options.reference, options.tolerance);
+}
+
+// Behind a difference: whether another build may be the reason.
+std::string other_build(const std::string& recorded) {
+  if (recorded == kBuild) return {};
+  const std::string ours = kBuild;
+  if (recorded.empty()) {
+    return "; the recording does not name its build: if that is not this one (" + ours +
+           "), it may be the reason";
+  }
+  return "; it was recorded by another build (" + recorded +
+         "), which may be the reason: this is " + ours;
+}
+
+class Replay {
+ public:
+  Replay(const Scene& scene, const std::filesystem::path& recording,
+         const OfflineReplayOptions& options, const RecordingOutline& outline)
+      : scene_(scene),
+        options_(options),
+        has_reports_(outline.has_reports),
+        other_build_(other_build(outline.build)),
+        feed_(recording, scene, outline),
+        expectations_(scene, options.expect_min_distance, options.expect_no_zone),
+        reference_(reference_of(scene, options)),
+        zones_(scene),
+        replayed_(make_distances(scene)),
+        monitor_(std::make_unique<Monitor>(scene)) {}
+
+  OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
+
+ private:
+  void run_ticks(const std::function<void(const ReplayedTick&)>& on_tick);
+  void judge_the_whole();
+  [[nodiscard]] std::string refusal() const;
+  void begin_tick(const TickInput& input);
+  void end_tick(const TickInput& input, const Report& report,
+                const std::function<void(const ReplayedTick&)>& on_tick);
+  void compare(const TickInput& input, const Report& report);
+  void compare_zones();
+  void finish_reference();
+  [[nodiscard]] std::string nothing_in_window() const;
+  void note_counts();
+  void show_progress();
+  void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
+  [[nodiscard]] double seconds(std::int64_t now_ns) const {
+    return static_cast<double>(now_ns - result_.first_ns) * 1e-9;
+  }
+
+  const Scene& scene_;
+  const OfflineReplayOptions& options_;
+  bool has_reports_;
+  std::string other_build_;  // what to say of it where something differs
+  TickFeed feed_;
+  Expectations expectations_;
+  std::optional<ReferenceCheck> reference_;
+  ZoneDifference zones_;
+  Sample<clearance_msg_Distances> replayed_;
+  std::unique_ptr<Monitor> monitor_;
+
+  OfflineReplay result_;
+  std::uint64_t in_window_ = 0;  // ticks
+  bool differs_ = false;
+  bool gap_noted_ = false;
+  bool restarted_ = false;
+  std::uint64_t cycle_offset_ = 0;  // recorded less replayed
+  std::uint64_t last_recorded_cycle_ = 0;
+  double shown_ = -1.0;
+};
+
+std::string Replay::refusal() const {
+  if (!expectations_.error().empty()) return expectations_.error();
+  if (reference_ && !reference_->error().empty()) return reference_->error();
+  if (!feed_.objects().any()) {
+    std::string text =
+        "the recording has no object that moves in this cell; expected the cell that "
+        "it was made for, or one with the same names";
+    for (const std::string& note : feed_.objects().notes()) text += "\n" + note;
+    return text;
+  }
+  if (!options_.compare) return {};
+  if (!has_reports_) return "nothing to compare with: the recording holds no reports";
+  if (*options_.compare == Comparison::kBits && !feed_.objects().same_scene()) {
+    return "nothing to compare with: the recording was made with another cell, or another state of "
+           "this one (its scene revision differs)";
+  }
+  return {};
+}
+
+OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tick) {
+  result_.error = refusal();
+  if (!result_.error.empty()) return std::move(result_);
+  result_.notes = feed_.objects().notes();
+  run_ticks(on_tick);
+  result_.damage = feed_.damage();
+  result_.batches = feed_.batches();
+  if (!result_.stopped) judge_the_whole();
+  note_counts();
+  return std::move(result_);
+}
+
+void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) {
+  TickInput input;
+  while (feed_.next(input)) {
+    result_.stopped = options_.stop && options_.stop();
+    if (result_.stopped) return;
+    begin_tick(input);
+    const Report& report = monitor_->tick(input.samples, input.now_ns);
+    end_tick(input, report, on_tick);
+    show_progress();
+  }
+  if (options_.progress) options_.progress(1.0);
+}
+
+// What can be said only after the last tick.
+void Replay::judge_the_whole() {
+  compare_zones();
+  if (in_window_ == 0) {
+    result_.error = nothing_in_window();
+    return;
+  }
+  if (options_.compare && result_.compared == 0) {
+    fail(0, result_.last_ns, "no report could be compared");
+  }
+  finish_reference();
+  if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
+}
+
+void Replay::begin_tick(const TickInput& input) {
+  if (result_.ticks++ == 0) result_.first_ns = input.now_ns;
+  result_.last_ns = input.now_ns;
+  if (input.restart) {
+    restarted_ = true;
+    monitor_ = std::make_unique<Monitor>(scene_);
+    result_.notes.push_back("the daemon was started anew " + std::to_string(seconds(input.now_ns)) +
+                            " s after the first tick");
+  }
+  if (input.recorded == nullptr) return;
+  const std::uint64_t cycle = input.recorded->cycle;
+  const bool first = result_.ticks == 1 || input.restart;
+  if (first) {
+    cycle_offset_ = cycle - 1;
+    if (cycle > 1) {
+      result_.notes.push_back("the recording begins at tick " + std::to_string(cycle) +
+                              " of the daemon: what the monitor knew by then is not in it, so only "
+                              "bounds can be compared");
+    }
+  } else if (cycle != last_recorded_cycle_ + 1) {
+    if (!std::exchange(gap_noted_, true)) {
+      result_.notes.push_back("reports are missing in the recording, the first between ticks " +
+                              std::to_string(last_recorded_cycle_) + " and " +
+                              std::to_string(cycle));
+    }
+    cycle_offset_ += cycle - last_recorded_cycle_ - 1;
+  }
+  last_recorded_cycle_ = cycle;
+}
+
+void Replay::end_tick(const TickInput& input, const Report& report,
+                      const std::function<void(const ReplayedTick&)>& on_tick) {
+  const std::int64_t after_ns = input.now_ns - result_.first_ns;
+  const bool in_window =
+      after_ns >= whole_ns(options_.start_s) && after_ns <= whole_ns(options_.end_s);
+  for (const std::string& what : expectations_.check(report, *monitor_, in_window)) {
+    fail(report.cycle, report.now_ns, what);
+  }
+  if (options_.compare) {
+    // What is certain of other poses says nothing about these.
+    const bool comparable = input.complete || *options_.compare == Comparison::kBits;
+    if (in_window && comparable && !differs_) compare(input, report);
+    zones_.replayed(report, cycle_offset_);
+  }
+  if (!in_window) return;
+  ++in_window_;
+  if (reference_) {
+    for (const std::string& what : reference_->check(report, *monitor_)) {
+      fail(report.cycle, report.now_ns, what);
+    }
+  }
+  const bool closer = report.minimum_known &&
+                      (!result_.closest || report.minimum.distance < result_.closest->distance);
+  if (closer) {
+    result_.closest = report.minimum;
+    result_.closest_tick = {report.cycle, report.cycle + cycle_offset_};
+  }
+  result_.rejected = report.rejected;
+  if (on_tick) on_tick({report, input.sources, *monitor_});
+}
+
+void Replay::compare(const TickInput& input, const Report& report) {
+  to_wire(report, input.sources, 0, *replayed_);
+  const auto difference =
+      report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
+  ++result_.compared;
+  if (!difference) return;
+  differs_ = true;
+  const std::string what = "the replay differs in " + *difference;
+  fail(report.cycle, report.now_ns,
+       input.complete
+           ? what + other_build_
+           : "poses that this tick used are not in the recording: it cannot be compared (" + what +
+                 ")");
+}
+
+// Zone changes come on a topic of their own and are compared when all are known; only where the
+// recording is whole, since a change can hang on any tick before.
+void Replay::compare_zones() {
+  if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
+  if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
+  if (const auto found = zones_.first(feed_.zones())) {
+    fail(found->cycle, found->now_ns, "the replay differs in " + found->what + other_build_);
+  }
+}
+
+std::string Replay::nothing_in_window() const {
+  if (result_.ticks == 0) {
+    return result_.damage.empty() ? "the recording holds neither reports nor poses"
+                                  : "nothing can be replayed: no tick is whole before the damage";
+  }
+  return "no tick lies between the start and the end given: the recording lasts " +
+         std::to_string(seconds(result_.last_ns)) + " s";
+}
+
+void Replay::finish_reference() {
+  if (!reference_) return;
+  result_.reference = reference_->totals();
+  for (const std::string& note : reference_->notes()) result_.notes.push_back(note);
+  if (result_.reference->compared == 0) {
+    fail(0, result_.last_ns, "no reference value could be compared");
+  }
+}
+
+void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what) {
+  const TickNumber tick{cycle, cycle > 0 ? cycle + cycle_offset_ : 0};
+  result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
+}
+
+void Replay::note_counts() {
+  const auto note = [this](std::uint64_t count, const std::string& what) {
+    if (count > 0) result_.notes.push_back(std::to_string(count) + " " + what);
+  };
+  note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
+  note(feed_.of_other_scenes(), "batches were made for another scene and left out");
+  note(feed_.undecodable(), "messages do not decode as what their channel says and were left out");
+  for (std::size_t cause = 0; cause < kRejects; ++cause) {
+    note(result_.rejected[cause],
+         std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
+  }
+}
+
+void Replay::show_progress() {
+  const double share = feed_.progress();
+  if (!options_.progress || share < shown_ + 0.01) return;
+  shown_ = share;
+  options_.progress(share);
+}
+
+}  // namespace
+
+OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
+                             const OfflineReplayOptions& options,
+                             const std::function<void(const ReplayedTick&)>& on_tick) {
+  const RecordingOutline outlined = outline(recording);
+  if (!outlined.error.empty()) {
+    OfflineReplay failed;
+    failed.error = outlined.error;
+    return failed;
+  }
+  return Replay(scene, recording, options, outlined).run(on_tick);
+}
+
+}  // namespace clearance

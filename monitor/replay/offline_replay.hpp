@@ -1,0 +1,101 @@
+// A recording through Monitor::tick, without a clock and without DDS: the same reports again, as
+// fast as they can be computed. For a user's own tests:
+//
+//   const CellResult cell = read_cell("cell.yaml");
+//   const OfflineReplay replay =
+//       replay_offline(std::get<Scene>(cell), "run.mcap",
+//                      {.expect_min_distance = 0.05, .expect_no_zone = {"stop"}});
+//   EXPECT_TRUE(replay.ok()) << replay.text();
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/batch.hpp"
+#include "monitor/monitor.hpp"
+#include "monitor/replay/reference_check.hpp"
+#include "monitor/replay/report_difference.hpp"
+
+namespace clearance {
+
+struct OfflineReplayOptions {
+  // Ticks in this window are compared, judged and handed out; s after the first tick. Those before
+  // it are run all the same, since bounds and zones have a history.
+  double start_s = 0.0;
+  double end_s = std::numeric_limits<double>::infinity();
+
+  std::optional<Comparison> compare = {};  // with the recorded reports and zones
+
+  // Expectations begin when every moving object of the cell has been seen once.
+  // Every pair is proved to be at least this far apart, m.
+  std::optional<double> expect_min_distance = {};
+  // Names of zones that are never active.
+  std::vector<std::string> expect_no_zone = {};
+
+  // Distances that something else computed (monitor/replay/reference_check.hpp): every one of a
+  // pair and tick of the replay is met within the tolerance, m, and lies within the bounds. A pair
+  // that a tick left out does not meet it: let the scene evaluate all, with a budget for that.
+  std::filesystem::path reference = {};  // empty: none
+  double tolerance = 1e-6;
+
+  std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
+  std::function<bool()> stop = {};  // asked before every tick: true ends the replay there
+};
+
+// The tick that was just run.
+struct ReplayedTick {
+  const Report& report;
+  std::span<const SourceUse> sources;
+  const Monitor& monitor;
+};
+
+// How a person finds a tick: the replay counts its own from 1, and the daemon that was recorded may
+// have been further by then.
+struct TickNumber {
+  std::uint64_t cycle = 0;     // of the replay; 0: no tick, all of it
+  std::uint64_t recorded = 0;  // of the daemon; as `cycle` where the recording holds no reports
+  // "tick 12", or "tick 12 of the replay, 4012 of the daemon".
+  [[nodiscard]] std::string text() const;
+};
+
+struct ReplayFailure {
+  TickNumber tick;
+  std::int64_t now_ns = 0;
+  double time_s = 0.0;  // after the first tick
+  std::string what;     // which pair, zone or field, and the figures
+};
+
+struct OfflineReplay {
+  std::string error;                    // not empty: it could not be run at all
+  std::string damage;                   // not empty: the recording was read up to a damage
+  bool stopped = false;                 // options.stop ended it: nothing is known of what follows
+  std::vector<std::string> notes;       // what a person should know, in sentences
+  std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
+
+  std::uint64_t ticks = 0, compared = 0, batches = 0;
+  std::int64_t first_ns = 0, last_ns = 0;
+  std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
+  TickNumber closest_tick;
+  std::array<std::uint64_t, kRejects> rejected{};
+  std::optional<ReferenceTotals> reference;
+
+  [[nodiscard]] bool ok() const noexcept { return error.empty() && failures.empty(); }
+  // Everything that went wrong or is worth knowing, a line each.
+  [[nodiscard]] std::string text() const;
+};
+
+// The same recording and cell give the same ticks, bit for bit.
+[[nodiscard]] OfflineReplay replay_offline(
+    const Scene& scene, const std::filesystem::path& recording,
+    const OfflineReplayOptions& options = {},
+    const std::function<void(const ReplayedTick&)>& on_tick = {});
+
+}  // namespace clearance

@@ -1,0 +1,133 @@
+#include "monitor/replay/reference_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "monitor/csv/table.hpp"
+#include "monitor/pair_name.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::array<std::string_view, 4> kColumns = {"t_ns", "object_a", "object_b", "distance"};
+enum Column : std::size_t { kTime, kObjectA, kObjectB, kDistance };
+
+using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t, std::less<>>;
+
+PairIds pair_ids(const Scene& scene) {
+  PairIds ids;
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    const std::string& a = scene.objects[scene.pairs[p].first].name;
+    const std::string& b = scene.objects[scene.pairs[p].second].name;
+    ids[{a, b}] = ids[{b, a}] = p;
+  }
+  return ids;
+}
+
+// Half a unit of the last digit written: 0.0005 for "0.125" and for "125e-3".
+double rounding_of(std::string_view text) {
+  const std::size_t mantissa = std::min(text.find_first_of("eE"), text.size());
+  std::int64_t exponent = 0;
+  if (mantissa < text.size()) {
+    const std::size_t digits = mantissa + (text[mantissa + 1] == '+' ? 2 : 1);
+    std::from_chars(text.data() + digits, text.data() + text.size(), exponent);
+  }
+  const std::size_t point = text.find('.');
+  if (point < mantissa) exponent -= static_cast<std::int64_t>(mantissa - point - 1);
+  return 0.5 * std::pow(10.0, static_cast<double>(exponent));
+}
+
+// A depth counts as contact where the reference does not tell it.
+double seen_by(double reference, double ours) {
+  return reference == 0.0 && ours < 0.0 ? 0.0 : ours;
+}
+
+std::string metres(double value) {
+  std::array<char, 40> text;
+  std::snprintf(text.data(), text.size(), "%.12g m", value);
+  return text.data();
+}
+
+}  // namespace
+
+ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
+                               double tolerance)
+    : scene_(scene), tolerance_(tolerance) {
+  const PairIds ids = pair_ids(scene);
+  CsvTable table(file, kColumns);
+  Value value;
+  while (table.next() && table.time_ns(kTime, value.t_ns) &&
+         table.number(kDistance, value.distance)) {
+    const std::pair names(std::string(table.text(kObjectA)), std::string(table.text(kObjectB)));
+    value.rounding = rounding_of(table.text(kDistance));
+    if (const auto found = ids.find(names); found != ids.end()) {
+      value.pair = found->second;
+      values_.push_back(value);
+    } else if (totals_.other_pairs++ == 0) {
+      other_pair_ = pair_name(names.first, names.second);
+    }
+  }
+  error_ = table.error();
+}
+
+std::vector<std::string> ReferenceCheck::check(const Report& report, const Monitor& monitor) {
+  std::vector<std::string> broken;
+  for (; next_ < values_.size() && values_[next_].t_ns <= report.now_ns; ++next_) {
+    const Value& value = values_[next_];
+    if (value.t_ns < report.now_ns) {
+      ++totals_.other_times;
+    } else {
+      compare(value, monitor.pair(value.pair), broken);
+    }
+  }
+  return broken;
+}
+
+void ReferenceCheck::compare(const Value& value, const PairReport& ours,
+                             std::vector<std::string>& broken) {
+  ++totals_.compared;
+  const std::string who = pair_name(scene_, ours);
+  const std::string reference = ", reference " + metres(value.distance);
+  const bool evaluated = ours.status != PairStatus::kCarried;  // else it is that of another tick
+  const double difference = std::abs(seen_by(value.distance, ours.distance) - value.distance);
+  if (evaluated && difference > totals_.largest) totals_.largest = difference;
+  if (!(evaluated && difference <= tolerance_) && totals_.off++ == 0) {
+    broken.push_back(who + ": " + name(ours.status) + ", distance " + metres(ours.distance) +
+                     reference + ": not within the tolerance of " + metres(tolerance_));
+  }
+  const bool within = seen_by(value.distance, ours.lower) <= value.distance + value.rounding &&
+                      seen_by(value.distance, ours.upper) >= value.distance - value.rounding;
+  if (!within && totals_.outside++ == 0) {
+    broken.push_back(who + ": bounds " + metres(ours.lower) + " to " + metres(ours.upper) +
+                     reference + ": outside");
+  }
+}
+
+ReferenceTotals ReferenceCheck::totals() const {
+  ReferenceTotals totals = totals_;
+  totals.other_times += values_.size() - next_;
+  return totals;
+}
+
+std::vector<std::string> ReferenceCheck::notes() const {
+  std::vector<std::string> notes;
+  const ReferenceTotals all = totals();
+  if (all.other_pairs > 0) {
+    notes.push_back(std::to_string(all.other_pairs) +
+                    " reference values are of pairs that the cell does not watch, such as " +
+                    other_pair_);
+  }
+  if (all.other_times > 0) {
+    notes.push_back(std::to_string(all.other_times) +
+                    " reference values are of times at which there is no tick to compare");
+  }
+  return notes;
+}
+
+}  // namespace clearance

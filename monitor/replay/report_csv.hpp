@@ -1,0 +1,42 @@
+// Replayed ticks as a table: one row a tick and pair.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "config/scene.hpp"
+#include "monitor/replay/offline_replay.hpp"
+
+namespace clearance {
+
+// Columns: tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax,ay,az,bx,by,bz,
+// nx,ny,nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles; SI units, world
+// frame, numbers that read back exactly. Errors are kept: error() says what happened.
+class ReportCsv {
+ public:
+  // `all_pairs`: every pair of the scene; otherwise those that it publishes.
+  ReportCsv(const std::filesystem::path& file, const Scene& scene, bool all_pairs);
+
+  void add(const ReplayedTick& tick);
+  bool close();
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void add_row(const Report& report, const PairReport& pair);
+  void write();
+
+  std::filesystem::path path_;
+  const Scene& scene_;
+  bool all_pairs_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<std::string> names_;  // of the objects, quoted where needed
+  std::string rows_;                // not written yet
+  std::string error_;
+};
+
+}  // namespace clearance

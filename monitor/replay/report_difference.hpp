@@ -1,0 +1,28 @@
+// In what do two reports of the same tick differ?
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "config/scene.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+enum class Comparison : std::uint8_t {
+  kBits,    // every field of the tick, to the bit
+  kBounds,  // only what is certain: bounds of one pair overlap; for other builds, or without the
+            // history
+};
+
+// The first field that differs, with both values, e.g. "pairs[2] (hand - box).lower: recorded 0.5,
+// replayed 0.25"; none when they agree. When and whether a report was published is no part of a
+// tick. Cycle numbers in `recorded` may be ahead of those in `replayed` by `cycle_offset`.
+[[nodiscard]] std::optional<std::string> report_difference(const Scene& scene,
+                                                           const clearance_msg_Distances& recorded,
+                                                           const clearance_msg_Distances& replayed,
+                                                           std::uint64_t cycle_offset,
+                                                           Comparison comparison);
+
+}  // namespace clearance

@@ -1,0 +1,35 @@
+// Replayed ticks as a recording: catalogue, reports and zone changes, in bytes that depend on
+// nothing but the replayed recording, the cell and the build.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "monitor/recording/recorder.hpp"
+#include "monitor/replay/offline_replay.hpp"
+
+namespace clearance {
+
+class ReportRecorder {
+ public:
+  ReportRecorder(const std::filesystem::path& file, const Scene& scene)
+      : file_(file), scene_(scene) {}
+
+  void add(const ReplayedTick& tick) {
+    // The catalogue is stamped with the first tick: nothing else here has a time.
+    if (!recorder_) recorder_.emplace(file_, scene_, tick.report.now_ns, true);
+    recorder_->report(tick.report, tick.sources);
+  }
+  bool close() {
+    if (!recorder_) recorder_.emplace(file_, scene_, 0, true);
+    return recorder_->close();
+  }
+  [[nodiscard]] std::string error() const { return recorder_ ? recorder_->error() : ""; }
+
+ private:
+  std::filesystem::path file_;
+  const Scene& scene_;
+  std::optional<Recorder> recorder_;
+};
+
+}  // namespace clearance

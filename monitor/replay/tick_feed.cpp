@@ -1,0 +1,170 @@
+#include "monitor/replay/tick_feed.hpp"
+
+#include <algorithm>
+
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+// How far behind a report, in log time, a batch that it used may stand in the file: recorded over
+// DDS, topics overtake each other.
+constexpr std::int64_t kReadAheadNs = 2'000'000'000;
+
+}  // namespace
+
+TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
+                   const RecordingOutline& outline)
+    : reader_(file),
+      objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
+      by_report_(outline.has_reports) {}
+
+bool TickFeed::next(TickInput& tick) {
+  tick.samples.clear();
+  tick.sources.clear();
+  tick.recorded = nullptr;
+  tick.restart = false;
+  tick.complete = true;
+  return by_report_ ? next_by_report(tick) : next_by_time(tick);
+}
+
+bool TickFeed::read_one() {
+  RecordedMessage message;
+  if (!reader_.next(message)) return false;
+  read_to_ns_ = message.log_ns;
+  if (message.kind == TopicKind::kPoses) read_batch(message);
+  if (message.kind == TopicKind::kDistances) {
+    WaitingReport waiting{.report = {}, .log_ns = message.log_ns};
+    if (decoder_.decode(message.cdr, waiting.report)) {
+      reports_waiting_.push_back(std::move(waiting));
+    } else {
+      ++undecodable_;
+    }
+  }
+  if (message.kind == TopicKind::kZones) {
+    Sample<clearance_msg_ZoneState> zone;
+    if (decoder_.decode(message.cdr, zone)) zones_.push_back(*zone);
+  }
+  return true;
+}
+
+void TickFeed::read_batch(const RecordedMessage& message) {
+  if (!decoder_.decode(message.cdr, wire_batch_)) {
+    ++undecodable_;
+    return;
+  }
+  Waiting waiting{.batch = {}, .log_ns = message.log_ns};
+  from_wire(*wire_batch_, waiting.batch);
+  // The daemon took such a batch in, but not its poses.
+  if (!objects_.translate(waiting.batch)) {
+    waiting.batch.samples.clear();
+    ++of_other_scenes_;
+  }
+  batches_waiting_.push_back(std::move(waiting));
+}
+
+bool TickFeed::next_by_report(TickInput& tick) {
+  while (reports_waiting_.empty()) {
+    if (!read_one()) return false;
+  }
+  current_ = std::move(reports_waiting_.front());
+  reports_waiting_.pop_front();
+  const clearance_msg_Distances& report = *current_.report;
+  tick.recorded = &report;
+  tick.now_ns = report.now_ns;
+  tick.restart = last_cycle_ != 0 && report.cycle <= last_cycle_;
+  last_cycle_ = report.cycle;
+  if (tick.restart) {
+    consumed_.clear();
+    missing_.clear();
+  }
+  for (std::uint32_t i = 0; i < report.sources._length; ++i) {
+    const clearance_msg_SourceUse& use = report.sources._buffer[i];
+    tick.sources.push_back({SourceName(use.source), use.sequence_number});
+  }
+  while (!all_there(tick.sources) && read_to_ns_ < current_.log_ns + kReadAheadNs) {
+    if (!read_one()) break;
+  }
+  take_used(tick.sources, tick.samples);
+  tick.complete = missing_.empty();
+  forget_unused(current_.log_ns);
+  return true;
+}
+
+std::size_t TickFeed::place_of(const SourceUse& use) const {
+  const auto found = std::ranges::find_if(batches_waiting_, [&use](const Waiting& waiting) {
+    return waiting.batch.sequence_number == use.sequence_number &&
+           waiting.batch.source == use.source;
+  });
+  return static_cast<std::size_t>(found - batches_waiting_.begin());
+}
+
+bool TickFeed::consumed(const SourceUse& use) const {
+  const auto last = consumed_.find(use.source.c_str());
+  return last != consumed_.end() && last->second == use.sequence_number;
+}
+
+bool TickFeed::all_there(std::span<const SourceUse> sources) const {
+  return std::ranges::all_of(sources, [this](const SourceUse& use) {
+    return place_of(use) < batches_waiting_.size() || consumed(use);
+  });
+}
+
+// Of each source everything up to the batch that is named, all sources in file order.
+void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSample>& samples) {
+  std::vector<std::size_t> until;  // by source: one past the place of its last batch
+  for (const SourceUse& use : sources) {
+    const std::size_t place = place_of(use);
+    const bool found = place < batches_waiting_.size();
+    if (found) {
+      missing_.erase(use.source.c_str());
+    } else if (!consumed(use)) {
+      ++not_in_the_file_;
+      missing_.insert(use.source.c_str());
+    }
+    until.push_back(found ? place + 1 : 0);
+    consumed_[use.source.c_str()] = use.sequence_number;
+  }
+  std::size_t place = 0;
+  std::erase_if(batches_waiting_, [&](const Waiting& waiting) {
+    const std::size_t here = place++;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (here >= until[i] || !(waiting.batch.source == sources[i].source)) continue;
+      samples.insert(samples.end(), waiting.batch.samples.begin(), waiting.batch.samples.end());
+      ++batches_;
+      return true;
+    }
+    return false;
+  });
+}
+
+// What no report has named in time, the daemon did not use.
+void TickFeed::forget_unused(std::int64_t log_ns) {
+  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
+    batches_waiting_.pop_front();
+  }
+}
+
+bool TickFeed::next_by_time(TickInput& tick) {
+  while (batches_waiting_.empty()) {
+    if (!read_one()) return false;
+  }
+  tick.now_ns = batches_waiting_.front().log_ns;
+  while (read_to_ns_ == tick.now_ns && read_one()) {
+  }
+  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns == tick.now_ns) {
+    const PoseBatch& batch = batches_waiting_.front().batch;
+    tick.samples.insert(tick.samples.end(), batch.samples.begin(), batch.samples.end());
+    const auto use = std::ranges::find(tick.sources, batch.source, &SourceUse::source);
+    if (use != tick.sources.end()) {
+      use->sequence_number = batch.sequence_number;
+    } else if (tick.sources.size() < kMaxSources) {
+      tick.sources.push_back({batch.source, batch.sequence_number});
+    }
+    ++batches_;
+    batches_waiting_.pop_front();
+  }
+  return true;
+}
+
+}  // namespace clearance

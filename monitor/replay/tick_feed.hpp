@@ -1,0 +1,93 @@
+// A recording, tick by tick: what each tick of the daemon had taken in, and at what time.
+//
+// Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
+// report names as used (by source and sequence number), wherever they stand in the file. Where it
+// holds none (pose logs), a tick is a distinct log time and gets the batches of that time in file
+// order.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/batch.hpp"
+#include "monitor/recording/reader.hpp"
+#include "monitor/replay/object_map.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance {
+
+struct TickInput {
+  std::int64_t now_ns = 0;
+  std::vector<PoseSample> samples;
+  std::vector<SourceUse> sources;
+  const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
+  bool restart = false;  // the daemon had been started anew: its monitor knew nothing
+  bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
+};
+
+class TickFeed {
+ public:
+  TickFeed(const std::filesystem::path& file, const Scene& scene, const RecordingOutline& outline);
+
+  // The next tick; its content is valid until the next call. False at the end or the damage.
+  [[nodiscard]] bool next(TickInput& tick);
+
+  [[nodiscard]] const ObjectMap& objects() const noexcept { return objects_; }
+  // What the recording said of its zones so far, in file order.
+  [[nodiscard]] const std::vector<clearance_msg_ZoneState>& zones() const noexcept {
+    return zones_;
+  }
+  [[nodiscard]] const std::string& damage() const noexcept { return reader_.error(); }
+  [[nodiscard]] double progress() const noexcept { return reader_.progress(); }
+
+  // Counts of what could not be used.
+  [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
+  [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
+  [[nodiscard]] std::uint64_t not_in_the_file() const noexcept { return not_in_the_file_; }
+  [[nodiscard]] std::uint64_t undecodable() const noexcept { return undecodable_; }
+
+ private:
+  struct Waiting {
+    PoseBatch batch;
+    std::int64_t log_ns = 0;
+  };
+  struct WaitingReport {
+    Sample<clearance_msg_Distances> report;
+    std::int64_t log_ns = 0;
+  };
+
+  [[nodiscard]] bool read_one();
+  void read_batch(const RecordedMessage& message);
+  [[nodiscard]] bool next_by_report(TickInput& tick);
+  [[nodiscard]] bool next_by_time(TickInput& tick);
+  [[nodiscard]] bool all_there(std::span<const SourceUse> sources) const;
+  [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
+  [[nodiscard]] bool consumed(const SourceUse& use) const;
+  void take_used(std::span<const SourceUse> sources, std::vector<PoseSample>& samples);
+  void forget_unused(std::int64_t log_ns);
+
+  RecordingReader reader_;
+  ObjectMap objects_;
+  bool by_report_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_PoseBatch> wire_batch_;
+
+  std::deque<Waiting> batches_waiting_;        // in file order
+  std::deque<WaitingReport> reports_waiting_;  // in file order
+  WaitingReport current_;
+  std::map<std::string, std::uint64_t> consumed_;  // by source: the last sequence number
+  std::set<std::string> missing_;                  // sources whose last batch is not in the file
+  std::vector<clearance_msg_ZoneState> zones_;
+  std::int64_t read_to_ns_ = 0;
+  std::uint64_t last_cycle_ = 0;
+  std::uint64_t batches_ = 0, of_other_scenes_ = 0, not_in_the_file_ = 0, undecodable_ = 0;
+};
+
+}  // namespace clearance

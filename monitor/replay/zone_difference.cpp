@@ -1,0 +1,80 @@
+#include "monitor/replay/zone_difference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+
+#include "monitor/pair_name.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+using States = std::vector<clearance_msg_ZoneState>;
+
+States changes_of(const States& recorded, std::uint32_t zone) {
+  States changes;
+  bool active = false;  // as every monitor begins
+  for (const clearance_msg_ZoneState& state : recorded) {
+    if (state.zone != zone || state.active == active) continue;
+    active = state.active;
+    changes.push_back(state);
+  }
+  return changes;
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
+  return a.cycle == b.cycle && a.active == b.active && a.pair == b.pair &&
+         same_bits(a.clearance, b.clearance) && same_bits(a.clearance_since, b.clearance_since);
+}
+
+std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
+  std::array<char, 120> clearance;
+  std::snprintf(clearance.data(), clearance.size(),
+                " at tick %llu, clearance %.17g m, since the last tick %.17g m",
+                static_cast<unsigned long long>(state.cycle), state.clearance,
+                state.clearance_since);
+  const std::string pair = pair_name(scene, state.pair);
+  return std::string(state.active ? "active" : "inactive") + clearance.data() + " (" + pair + ")";
+}
+
+}  // namespace
+
+void ZoneDifference::replayed(const Report& report, std::uint64_t cycle_offset) {
+  for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
+    if (!report.zones[zone].changed) continue;
+    clearance_msg_ZoneState state{};
+    to_wire(scene_, report, zone, state);
+    state.cycle += cycle_offset;
+    changes_[zone].push_back(state);
+  }
+}
+
+std::optional<ZoneDifference::Found> ZoneDifference::first(const States& recorded) const {
+  std::optional<Found> earliest;
+  for (std::uint32_t zone = 0; zone < changes_.size(); ++zone) {
+    const States theirs = changes_of(recorded, zone);
+    const States& ours = changes_[zone];
+    const auto [there, here] = std::ranges::mismatch(theirs, ours, same);
+    if (there == theirs.end() && here == ours.end()) continue;
+    const bool theirs_first =
+        here == ours.end() || (there != theirs.end() && there->cycle <= here->cycle);
+    const clearance_msg_ZoneState& at = theirs_first ? *there : *here;
+    if (earliest && earliest->cycle <= at.cycle) continue;
+    const auto side = [this](bool has, auto state) {
+      return has ? described(scene_, *state) : std::string("no change");
+    };
+    earliest = Found{at.cycle, at.now_ns,
+                     "zone '" + scene_.zones[zone].name + "': recorded " +
+                         side(there != theirs.end(), there) + ", replayed " +
+                         side(here != ours.end(), here)};
+  }
+  return earliest;
+}
+
+}  // namespace clearance

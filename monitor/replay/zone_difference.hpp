@@ -1,0 +1,38 @@
+// Did the zones change at the same ticks as recorded, and for the same reason?
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/report.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Only changes between active and inactive count: a recording repeats states that did not change.
+class ZoneDifference {
+ public:
+  struct Found {
+    std::uint64_t cycle;  // as recorded
+    std::int64_t now_ns;
+    std::string what;
+  };
+
+  explicit ZoneDifference(const Scene& scene) : scene_(scene), changes_(scene.zones.size()) {}
+
+  // Every tick's report; its recorded cycle number is `cycle_offset` larger.
+  void replayed(const Report& report, std::uint64_t cycle_offset);
+
+  // The earliest change that only one side has, or that differs in pair or clearance.
+  [[nodiscard]] std::optional<Found> first(
+      const std::vector<clearance_msg_ZoneState>& recorded) const;
+
+ private:
+  const Scene& scene_;
+  std::vector<std::vector<clearance_msg_ZoneState>> changes_;  // by zone
+};
+
+}  // namespace clearance

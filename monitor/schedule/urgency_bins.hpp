@@ -1,0 +1,44 @@
+// How soon can a pair's distance fall below what somebody watches for? (§4.6)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "monitor/broad_phase/broad_phase.hpp"
+#include "monitor/pairs/pair_table.hpp"
+
+namespace clearance {
+
+// In ticks, by stated and measured speeds. A pair is watched for its zones' thresholds and both
+// margins, and at least for contact.
+class Urgency {
+ public:
+  // Bin b < kBins: fewer than 2^b ticks. At 1 kHz the last of them ends 8 ms ahead.
+  static constexpr std::size_t kBins = 4;
+
+  Urgency(const Scene& scene, const std::vector<PlacedPart>& parts);
+
+  // Where a pair has to be awake, well before it gets into a bin.
+  [[nodiscard]] BroadPhase::Levels levels() const;
+
+  // Of a pair that was brought up to date; kBins: none. What its bound does not prove outside its
+  // zones is in the first.
+  [[nodiscard]] std::size_t bin_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
+                                   const PairTable& table) const noexcept;
+
+ private:
+  static constexpr double kTicks = 8.0;  // 2^(kBins - 1)
+
+  [[nodiscard]] double speed_of(std::uint32_t object, const ObjectState& state) const noexcept;
+
+  const std::vector<ObjectPair>& pairs_;
+  const double period_s_;
+  // By object.
+  std::vector<double> reach_;         // no point of it is farther from its origin, m
+  std::vector<double> stated_speed_;  // of any point of it, m/s; 0: fixed, or nobody said
+  // By object pair, m; -infinity: no zone.
+  std::vector<double> zone_levels_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,127 @@
+#include "monitor/swept/swept_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// A direction, and a middle rotated into another frame: relative to the lengths that take part.
+constexpr double kDirectionError = 0x1p-44;
+// Nearer instants tell nothing apart.
+constexpr double kLeastGap = 0x1p-20;
+
+struct Meeting {
+  double value, at;
+};
+
+// max(left + t * fall_right, right + (1 - t) * fall_left) at its least over 0 <= t <= 1.
+Meeting least_between(double left, double fall_right, double right, double fall_left) noexcept {
+  const Meeting start{std::max(left, right + fall_left), 0.0};
+  const Meeting end{std::max(left + fall_right, right), 1.0};
+  Meeting least = start.value <= end.value ? start : end;
+  const double t = (right + fall_left - left) / (fall_right + fall_left);
+  if (t > 0.0 && t < 1.0) {
+    const Meeting crossing{left + t * fall_right, t};
+    if (crossing.value < least.value) least = crossing;
+  }
+  return least;
+}
+
+}  // namespace
+
+Passage::Passage(std::uint32_t row, const Evaluation& evaluation) noexcept
+    : a_(evaluation.parts[evaluation.table.part_a[row]]),
+      b_(evaluation.parts[evaluation.table.part_b[row]]),
+      way_a_(way_of(evaluation.objects[a_.object])),
+      way_b_(way_of(evaluation.objects[b_.object])),
+      directed_(a_.keeps_direction && b_.keeps_direction),
+      tracking_(evaluation.table.tracking[row]) {
+  place_on_way(way_a_, 0.0, a_);
+  place_on_way(way_b_, 0.0, b_);
+  const RelativeMotion of_a = seen_from(way_b_, way_a_, a_);
+  const RelativeMotion of_b = seen_from(way_a_, way_b_, b_);
+  from_b_ = of_a.speed < of_b.speed;
+  motion_ = from_b_ ? of_a : of_b;
+  for (const Vec3& place : {way_a_.from.position, way_a_.to.position, way_b_.from.position,
+                            way_b_.to.position, a_.ball_in_world.centre, b_.ball_in_world.centre}) {
+    direction_error_ += kDirectionError * place.norm();
+  }
+}
+
+PassageBounds Passage::decide(double level, Evaluation& evaluation) noexcept {
+  PassageBounds bounds;
+  if (!(motion_.speed < kInfinity) || evaluation.queries_left < kLeastQueries) return bounds;
+  insert(look(0.0, evaluation));
+  insert(look(1.0, evaluation));
+  while (true) {
+    const Gap lowest = lowest_gap();
+    bounds.lower = lowest.lower;
+    for (std::size_t i = 0; i < size_; ++i)
+      bounds.upper = std::min(bounds.upper, instants_[i].upper);
+    if (bounds.lower >= level || bounds.upper < level) return bounds;
+    const Instant& left = instants_[lowest.before];
+    const double width = instants_[lowest.before + 1].s - left.s;
+    if (size_ == kMostInstants || evaluation.queries_left == 0 || width < kLeastGap) return bounds;
+    insert(look(left.s + width * std::clamp(lowest.deepest, 0.25, 0.75), evaluation));
+  }
+}
+
+Passage::Instant Passage::look(double s, Evaluation& evaluation) noexcept {
+  place_on_way(way_a_, s, a_);
+  place_on_way(way_b_, s, b_);
+  const DistanceResult found = distance(
+      *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
+  --evaluation.queries_left;
+  const RowBounds bounds = for_exact_poses(found, a_, b_);
+  Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
+  const PlacedPart& other = from_b_ ? a_ : b_;
+  const Pose frame = pose_on_way(from_b_ ? way_b_ : way_a_, s);
+  const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
+  instant.middle = into * (other.ball_in_world.centre - frame.position);
+  if (directed_) {
+    instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
+  }
+  return instant;
+}
+
+void Passage::insert(const Instant& instant) noexcept {
+  std::size_t at = size_++;
+  for (; at > 0 && instants_[at - 1].s > instant.s; --at) instants_[at] = instants_[at - 1];
+  instants_[at] = instant;
+}
+
+Passage::Gap Passage::lowest_gap() const noexcept {
+  Gap lowest = gap_after(0);
+  for (std::size_t i = 1; i + 1 < size_; ++i) {
+    const Gap gap = gap_after(i);
+    if (gap.lower < lowest.lower) lowest = gap;
+  }
+  return lowest;
+}
+
+// From either end the distance falls no faster than the parts approach, nor than they approach
+// along the direction that separates them there.
+Passage::Gap Passage::gap_after(std::size_t before) const noexcept {
+  const Instant& left = instants_[before];
+  const Instant& right = instants_[before + 1];
+  const double onward = fall(left, right), back = fall(right, left);
+  const Meeting least = least_between(left.lower, onward, right.lower, back);
+  const double error = 0x1p-48 * (std::abs(left.lower) + std::abs(right.lower) - onward - back);
+  return {.before = before, .lower = least.value - std::abs(error), .deepest = least.at};
+}
+
+// How much less than at `from` the distance may be at `to`, and in proportion on the way there, at
+// most; m, negative where it falls.
+double Passage::fall(const Instant& from, const Instant& to) const noexcept {
+  const double width = std::abs(to.s - from.s);
+  const double by_speed = -rounded_up(motion_.speed * width);
+  if (from.normal.isZero(0.0)) return by_speed;
+  const double bent = motion_.turning * width + 0.5 * motion_.bending * width * width;
+  const double along = from.normal.dot(to.middle - from.middle);
+  return std::max(by_speed, along - rounded_up(bent + direction_error_));
+}
+
+}  // namespace clearance

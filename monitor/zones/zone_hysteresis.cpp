@@ -1,0 +1,64 @@
+#include "monitor/zones/zone_hysteresis.hpp"
+
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+
+ZoneUpdate::ZoneUpdate(const Zone& zone, const ZoneReport& before) noexcept
+    : zone_(&zone),
+      was_active_(before.active),
+      outside_from_(was_active_ ? well_outside() : zone.enter_below),
+      pair_(before.pair),
+      pair_since_(before.pair) {}
+
+void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary, double margins) noexcept {
+  Clearance clearance{.now = summary.lower, .since = summary.lower_since};
+  if (margins > 0.0) {
+    clearance.now = rounded_down(clearance.now - margins);
+    clearance.since = rounded_down(clearance.since - margins);
+  }
+  if (!proves(clearance, margins, summary)) proved_ = false;
+  take(clearance, pair);
+}
+
+void ZoneUpdate::add_rest(const Clearance& clearance, std::uint32_t pair) noexcept {
+  if (!outside(clearance.since)) proved_ = false;
+  take(clearance, pair);
+}
+
+// Outside all the time; inside now, as far as can be told; or inside at some instant in between.
+bool ZoneUpdate::proves(const Clearance& clearance, double margins,
+                        const PairSummary& summary) const noexcept {
+  if (outside(clearance.since)) return true;
+  if (!outside(clearance.now)) return is_evaluated(summary.status);
+  return !outside(rounded_up(summary.upper_since - margins));
+}
+
+void ZoneUpdate::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
+  report.clearance = least_.now;
+  report.clearance_since = least_.since;
+  report.proved = proved_;
+  report.active = !outside(least_.since);
+  report.pair = report.active && outside(least_.now) ? pair_since_ : pair_;
+  report.changed = report.active != was_active_;
+  if (report.changed) report.since_cycle = cycle;
+}
+
+double ZoneUpdate::well_outside() const noexcept {
+  return std::nextafter(zone_->leave_above, kInfinity);
+}
+
+void ZoneUpdate::take(const Clearance& clearance, std::uint32_t pair) noexcept {
+  if (clearance.now < least_.now) {
+    least_.now = clearance.now;
+    pair_ = pair;
+  }
+  if (clearance.since < least_.since) {
+    least_.since = clearance.since;
+    pair_since_ = pair;
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,53 @@
+// Is some pair of the zone too near? With hysteresis, on what is certain: lower bounds less
+// margins.
+#pragma once
+
+#include "config/scene.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
+
+namespace clearance {
+
+// What is certain of a pair or of several, both margins subtracted, m.
+struct Clearance {
+  double now = kInfinity;
+  double since = kInfinity;  // at every instant since the last tick
+};
+
+// Takes a zone's report from the last tick to this one, pair by pair. Active when some pair's
+// clearance since the last tick is below enter_below; no longer when every pair's is above
+// leave_above.
+class ZoneUpdate {
+ public:
+  ZoneUpdate(const Zone& zone, const ZoneReport& before) noexcept;
+
+  // One of the zone's pairs, and what both its margins are at most, m.
+  void add(std::uint32_t pair, const PairSummary& summary, double margins) noexcept;
+
+  // Pairs of the zone that need not be named one by one: each has at least this clearance. `pair`
+  // is one of them.
+  void add_rest(const Clearance& clearance, std::uint32_t pair) noexcept;
+
+  void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
+
+  // The least clearance that is outside, m.
+  [[nodiscard]] double outside_from() const noexcept { return outside_from_; }
+
+  // The least that a pair has which is outside whatever the hysteresis says, m.
+  [[nodiscard]] double well_outside() const noexcept;
+
+ private:
+  // The pair could neither enter the zone nor keep it active.
+  [[nodiscard]] bool outside(double clearance) const noexcept { return clearance >= outside_from_; }
+  [[nodiscard]] bool proves(const Clearance& clearance, double margins,
+                            const PairSummary& summary) const noexcept;
+  void take(const Clearance& clearance, std::uint32_t pair) noexcept;
+
+  const Zone* zone_;
+  bool was_active_;
+  double outside_from_;
+  bool proved_ = true;
+  Clearance least_;
+  std::uint32_t pair_, pair_since_;  // whose clearances those are
+};
+
+}  // namespace clearance

@@ -1,0 +1,45 @@
+// Where a body's point goes when rounding, or another pair's state, would have it leave the body.
+#include "core/active_set/active_feature.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/active_set/alpha_step_length.hpp"
+#include "tests/shared/made.hpp"
+
+namespace clearance {
+namespace {
+
+using test::cube;
+using test::half_space;
+
+std::int32_t facet_towards(const ConvexPolyhedron& body, const Vec3& normal) {
+  for (std::size_t i = 0; i < body.facets.size(); ++i) {
+    if (body.facets[i].normal == normal) return static_cast<std::int32_t>(i);
+  }
+  return kNone;
+}
+
+TEST(ActiveSide, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
+  const ConvexPolyhedron body = cube();
+  ActiveSide side(body, nullptr);
+  side.place_inside(Vec3::Zero());
+  // On the plane of the facet that is said to block, a metre beside it.
+  advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
+  ASSERT_EQ(side.feature(), Feature::kFacet);
+  EXPECT_EQ(side.facet().normal, Vec3::UnitY());
+  EXPECT_EQ(side.own(), Vec3(0.5, 0.5, 0.0));
+}
+
+TEST(ActiveSide, OfABodyWithoutEndStartsNoFartherOutThanAnyClosestPoint) {
+  const ConvexPolyhedron floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
+  const ActiveSide other(box, nullptr);
+  const TrackingState::Side near{2, false, 0, {1.0, 2.0, 0.0}}, far{2, false, 0, {1e17, 2.0, 0.0}};
+  ActiveSide side(floor, nullptr);
+  side.place_near(near, other, 2.0);
+  EXPECT_EQ(side.own(), near.point);
+  side.place_near(far, other, 2.0);
+  EXPECT_LT(side.own().norm(), 10.0);
+}
+
+}  // namespace
+}  // namespace clearance

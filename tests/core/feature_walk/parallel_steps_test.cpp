@@ -1,0 +1,168 @@
+// Level features: whole faces or edges are closest. Oracle: the exact distance, and closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/feature_walk/feature_walk.hpp"
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/poses.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
+
+namespace clearance {
+namespace {
+
+using Quat = Eigen::Quaterniond;
+using test::turned;
+
+constexpr std::uint64_t kLevelSeeds = 40;
+
+// B above A, which is a box, and moving along it.
+struct LevelPair {
+  const char* name;
+  std::uint8_t dimension_a, dimension_b;  // of what is closest
+  Vec3 half_b{0.5, 0.4, 0.3};
+  Quat turn = Quat::Identity();  // of B as seen from A
+  Vec3 offset{0.0, 0.0, 2.0};    // of B's centre, in A
+  Vec3 half_a{0.7, 0.6, 0.5};
+
+  [[nodiscard]] DistanceJudge judge() const { return {hard::box(half_a), hard::box(half_b)}; }
+};
+
+const LevelPair kPairs[] = {
+    {"facets", 2, 2},
+    {"facets that cross", 2, 2, {2.0, 0.1, 0.3}, turned(Vec3::UnitZ(), 0.7)},
+    {"edge on facet", 2, 1, {0.5, 0.4, 0.3}, turned(Vec3::UnitX(), 0.7)},
+    {"facet on edge",
+     1,
+     2,
+     {0.5, 0.4, 0.3},
+     turned(Vec3::UnitX(), 0.7),
+     {0.0, -2.0 * std::sin(0.7), 2.0 * std::cos(0.7)}},
+    {"parallel edges", 1, 1, {0.5, 0.4, 0.3}, Quat::Identity(), {0.1, 1.5, 2.0}},
+    {"parallel edges, turned round",
+     1,
+     1,
+     {0.5, 0.4, 0.3},
+     turned(Vec3::UnitZ(), std::acos(-1.0)),
+     {0.1, 1.5, 2.0}},
+    {"flush boxes of one size", 2, 2, {0.7, 0.6, 0.5}},
+};
+
+// Both turned anywhere, B after what rounding leaves of a tilt.
+std::pair<Pose, Pose> anywhere(const LevelPair& pair, Random& random, double tilt) {
+  const Quat world = random.rotation();
+  const Vec3 origin = random.in_box(3.0);
+  const Quat b = world * (turned(random.direction(), tilt) * pair.turn);
+  return {{origin, world}, {origin + world * pair.offset, b}};
+}
+
+TEST(LevelWalk, SettlesWhatItWasLastTimeInOneStep) {
+  for (const LevelPair& pair : kPairs) {
+    DistanceJudge judge = pair.judge();
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+      Random random(seed);
+      const auto [a, b] = anywhere(pair, random, seed % 2 == 0 ? 0.0 : 1e-16);
+      TrackingState state;
+      (void)judge.ask(a, b, state);
+      EXPECT_EQ(state.a.dimension, pair.dimension_a) << pair.name << " seed " << seed;
+      EXPECT_EQ(state.b.dimension, pair.dimension_b) << pair.name << " seed " << seed;
+      DistanceResult result;
+      EXPECT_EQ(walk_features(judge.a(), judge.b(), relative_pose(a, b), state, result),
+                WalkEnd::kProved)
+          << pair.name << " seed " << seed;
+      EXPECT_EQ(result.iterations, 1) << pair.name << " seed " << seed;
+    }
+  }
+}
+
+TEST(LevelWalk, BoundsHoldAtEveryTilt) {
+  for (const LevelPair& pair : kPairs) {
+    DistanceJudge judge = pair.judge();
+    TrackingState state;  // of the tilt before, which is another's
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+      Random random(seed);
+      const double tilt = seed % 4 == 0 ? 0.0 : random.log_uniform(1e-17, 1e-9);
+      const auto [a, b] = anywhere(pair, random, tilt);
+      const DistanceResult result = judge.ask(a, b, state);
+      for (const std::string& fault : judge.faults(result, judge.truth(a, b), a, b)) {
+        ADD_FAILURE() << pair.name << " seed " << seed << ": " << fault;
+      }
+    }
+  }
+}
+
+TEST(LevelWalk, HasTheSameBitsAtEveryVectorWidth) {
+  for (const LevelPair& pair : kPairs) {
+    const DistanceJudge judge = pair.judge();
+    Random random(5);
+    const auto [a, b] = anywhere(pair, random, 1e-16);
+    TrackingState expected_state;
+    const DistanceResult expected = judge.ask(a, b, expected_state);
+    for (const std::int64_t width : vector_widths()) {
+      const OnlyWith only(width);
+      TrackingState state;
+      EXPECT_TRUE(same_bits(judge.ask(a, b, state), expected)) << pair.name;
+    }
+  }
+}
+
+// From beside the other to beyond it: over its face, along its edge, past its corner.
+TEST(LevelWalk, WitnessesMoveNoFasterThanTheBodies) {
+  for (const LevelPair& pair : kPairs) {
+    const DistanceJudge judge = pair.judge();
+    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+      Random random(seed);
+      const Quat world = random.rotation();
+      const double angle = random.uniform(0.0, 6.3), step = 0.01;
+      const Vec3 way = step * Vec3(std::cos(angle), std::sin(angle), 0.0);
+      TrackingState state;
+      Vec3 last = Vec3::Zero();
+      for (int k = -60; k < 60; ++k) {
+        const Pose b{world * (pair.offset + k * way), world * pair.turn};
+        const DistanceResult result = judge.ask({Vec3::Zero(), world}, b, state);
+        if (k > -60) {
+          EXPECT_LE((result.point_on_a - last).norm(), step + 1e-13)
+              << pair.name << " seed " << seed << " step " << k;
+        }
+        last = result.point_on_a;
+      }
+    }
+  }
+}
+
+// But for an ulp or two of coordinates of a few metres a query.
+TEST(LevelWalk, StandsStillWhileTheBodiesDo) {
+  for (const LevelPair& pair : kPairs) {
+    const DistanceJudge judge = pair.judge();
+    Random random(7);
+    const auto [a, b] = anywhere(pair, random, 0.0);
+    TrackingState state;
+    const Vec3 first = judge.ask(a, b, state).point_on_a;
+    for (int k = 0; k < 1000; ++k) (void)judge.ask(a, b, state);
+    EXPECT_LE((judge.ask(a, b, state).point_on_a - first).norm(), 1000 * 0x1p-50) << pair.name;
+  }
+}
+
+// Halfway between points of bodies of 1e84 m rounding left a point half a metre inside a box, and
+// the bounds of boxes face to face were 0.5 m too high.
+TEST(LevelWalk, HoldsWithTheStateOfAPairThatIsFarLarger) {
+  DistanceJudge judge(hard::box({1.0, 0.5, 0.25}), hard::box({1.0, 0.5, 0.25}));
+  const Pose beside{{0.0, -1.1, -0.14}, Quat::Identity()};
+  const oracle::ExactDistance truth = judge.truth(Pose{}, beside);
+  for (double far = 1.0; far < 1e300; far *= 8.0) {
+    for (std::uint8_t dimension = 0; dimension < 3; ++dimension) {
+      TrackingState state;
+      state.a = {dimension, false, 3, Vec3(-far, 0.7 * far, far)};
+      state.b = {dimension, false, 2, Vec3(far, 0.2 * far, -far)};
+      const DistanceResult result = judge.ask(Pose{}, beside, state);
+      const auto faults = judge.faults(result, truth, Pose{}, beside);
+      EXPECT_TRUE(faults.empty()) << far << ": " << faults.front();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance

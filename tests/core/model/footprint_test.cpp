@@ -1,0 +1,42 @@
+// What a body is said to take, against what a copy of it asks the allocator for.
+#include "core/model/footprint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "core/shapes.hpp"
+#include "tests/shared/allocation_count.hpp"
+#include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
+
+namespace clearance {
+namespace {
+
+using test::half_space;
+using test::made;
+
+// operator new hands out whole multiples of this.
+constexpr std::uint64_t kGrain = alignof(std::max_align_t);
+
+void expect_counted(const ConvexPolyhedron& body, const std::string& what) {
+  const std::uint64_t tables = allocations(), before = allocated_bytes();
+  const ConvexPolyhedron copy = body;
+  const std::uint64_t asked = sizeof copy + (allocated_bytes() - before);
+  EXPECT_LE(footprint(body), asked) << what;
+  EXPECT_GT(footprint(body) + kGrain * (allocations() - tables), asked) << what;
+}
+
+TEST(Footprint, IsWhatABodyAndItsTablesTake) {
+  expect_counted(made(box({0.5, 0.4, 0.3})), "box");
+  expect_counted(made(segment({0, 0, 0}, {0, 0, 1}, 0.1)), "capsule");
+  expect_counted(made(hard::facet_ball(4)), "facet-ball");
+  expect_counted(half_space({0, 0, 1}, 0.0), "floor");
+  const hard::Body leaning{{{{0, 1e-9, 1}, 1}, {{0, 0, 1}, 1}, {{1, 0, 0}, 1}}, {}};
+  expect_counted(made(leaning), "corner whose edges all but go on as one line");
+}
+
+}  // namespace
+}  // namespace clearance

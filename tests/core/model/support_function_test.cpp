@@ -1,0 +1,37 @@
+// How far a body reaches: what is found by climbing, against all its vertices.
+#include "core/model/support_function.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance {
+namespace {
+
+// Along a facet's normal all its vertices are level to rounding, and only one of them is the
+// farthest: a bound that took another one would be too low.
+TEST(Support, IsTheFarthestVertexAlsoWhereRoundingCallsManyLevel) {
+  Random random(1);
+  for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {
+    const ConvexPolyhedron body = test::made(of);
+    const auto expect_farthest = [&](const Vec3& m) {
+      EXPECT_EQ(support(body, m).reach, support_by_scan(body, m).reach);
+    };
+    for (const Facet& facet : body.facets) {
+      expect_farthest(facet.normal);
+      for (const double tilt : {1e-16, 1e-15, 1e-14}) {
+        expect_farthest((facet.normal + tilt * random.direction()).normalized());
+      }
+    }
+    for (const Edge& edge : body.edges) {
+      if (edge.facet[0] == kNone) continue;
+      const Vec3 between = body.facets[edge.facet[0]].normal + body.facets[edge.facet[1]].normal;
+      expect_farthest(between.normalized());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance

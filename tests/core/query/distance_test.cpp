@@ -1,0 +1,372 @@
+// distance() in closed form: answers that a person can check.
+#include "core/distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <variant>
+
+#include "core/numerics/error_constants.hpp"
+#include "core/shapes.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/poses.hpp"
+
+namespace clearance {
+namespace {
+
+using test::at;
+using test::cold;
+using test::cube;
+using test::half_space;
+using test::made;
+using test::turned;
+
+// Roundings of numbers of about one.
+constexpr double kRounding = 1e-14;
+
+ConvexPolyhedron ball(double radius) { return made(point(Vec3::Zero(), radius)); }
+ConvexPolyhedron capsule(double half_length, double radius) {
+  return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
+}
+// Along z; each side's normal . x = 0.5.
+ConvexPolyhedron prism_without_end(std::initializer_list<Vec3> normals) {
+  std::vector<HalfSpace> rows;
+  for (const Vec3& n : normals) rows.push_back({n, 0.5});
+  return made(polyhedron_from_halfspaces(rows));
+}
+
+// `size`: of the largest number involved, which rounding is relative to.
+void expect_distance(const DistanceResult& r, double truth, double size = 1.0) {
+  EXPECT_NEAR(r.distance, truth, kRounding * size);
+  EXPECT_LE(r.lower, truth);
+  EXPECT_GE(r.upper, truth);
+  EXPECT_LE(r.upper - r.lower, 4 * kRounding * size);
+}
+
+void expect_near(const Vec3& found, const Vec3& expected) {
+  EXPECT_LT((found - expected).norm(), kRounding) << found.transpose();
+}
+
+TEST(Distance, OfCubesFaceToFaceIsTheGap) {
+  const DistanceResult r = cold(cube(), cube(), at(1.5, 0.25, 0));
+  expect_distance(r, 0.5);
+  EXPECT_EQ(r.status, DistanceStatus::kConverged);
+  expect_near(r.normal, Vec3::UnitX());
+  expect_near(r.point_on_b - r.point_on_a, {0.5, 0, 0});
+}
+
+TEST(Distance, OfCubesEdgeToEdgeAndCornerToCornerIsTheDiagonal) {
+  expect_distance(cold(cube(), cube(), at(4, 5, 0.5)), 5.0);
+  const DistanceResult r = cold(cube(), cube(), at(2, 3, 3));
+  expect_distance(r, 3.0);
+  expect_near(r.point_on_a, {0.5, 0.5, 0.5});
+  expect_near(r.point_on_b, {1.5, 2.5, 2.5});
+  expect_near(r.normal, Vec3(1, 2, 2) / 3.0);
+}
+
+TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
+  // Both cubes turned by 45 degrees: edges along y and x face each other on the z axis.
+  const double half_diagonal = std::numbers::sqrt2 / 2;
+  TrackingState state;
+  const Pose pose_a = Pose{{0, 0, 0}, turned(Vec3::UnitY(), std::numbers::pi / 4)};
+  const Pose pose_b = Pose{{0.1, 0.2, 3}, turned(Vec3::UnitX(), std::numbers::pi / 4)};
+  const DistanceResult r = distance(cube(), cube(), relative_pose(pose_a, pose_b), state);
+  expect_distance(r, 3 - 2 * half_diagonal);
+  EXPECT_EQ(state.a.dimension, 1);
+  EXPECT_EQ(state.b.dimension, 1);
+}
+
+TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
+  for (const Pose& pose : {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0.3, 1)}) {
+    const DistanceResult r = cold(cube(), cube(), pose);
+    expect_distance(r, 0.0);
+    EXPECT_EQ(r.status, DistanceStatus::kTouching);
+    EXPECT_LE(r.lower, 0.0);
+  }
+}
+
+TEST(Distance, OfSpheresIsThatOfTheCentresLessTheRadii) {
+  const DistanceResult r = cold(ball(0.5), ball(0.25), at(3, 4, 0));
+  expect_distance(r, 4.25);
+  expect_near(r.point_on_a, {0.3, 0.4, 0});
+  expect_near(r.normal, {0.6, 0.8, 0});
+}
+
+TEST(Distance, OfOverlappingSpheresIsMinusTheDepth) {
+  const DistanceResult r = cold(ball(0.5), ball(0.5), at(0.75, 0, 0));
+  expect_distance(r, -0.25);
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfSpheresWithOneCentreIsMinusBothRadii) {
+  const DistanceResult r = cold(ball(0.5), ball(0.25), at(0, 0, 0));
+  expect_distance(r, -0.75);
+  EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfCapsulesParallelCrossedAndEndToEnd) {
+  const ConvexPolyhedron a = capsule(1.0, 0.25);
+  expect_distance(cold(a, a, at(1, 0, 0.5)), 0.5);
+  expect_distance(cold(a, a, Pose{{1, 0, 0}, turned(Vec3::UnitX(), std::numbers::pi / 2)}), 0.5);
+  expect_distance(cold(a, a, at(0, 0, 3)), 0.5);
+  expect_distance(cold(a, a, at(3, 0, 6)), 4.5);
+}
+
+TEST(Distance, OfASphereAndABoxIsMeasuredFromTheCore) {
+  expect_distance(cold(cube(), ball(0.25), at(2, 0, 0)), 1.25);
+  expect_distance(cold(cube(), ball(0.25), at(3.5, 4.5, 0)), 4.75);
+  expect_distance(cold(cube(), ball(0.25), at(0.6, 0, 0)), 0.1 - 0.25);
+  const DistanceResult inside = cold(cube(), ball(0.25), at(0.1, 0, 0));
+  expect_distance(inside, -0.4 - 0.25);
+  EXPECT_EQ(inside.status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
+  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
+  expect_distance(cold(floor, cube(), at(100, -100, 2)), 1.5, 200);
+  const DistanceResult corner =
+      cold(floor, cube(), Pose{{0, 0, 2}, turned({1, -1, 0}, std::acos(1 / std::sqrt(3.0)))});
+  expect_distance(corner, 2 - std::sqrt(3.0) / 2);
+  expect_near(corner.normal, Vec3::UnitZ());
+  EXPECT_EQ(cold(floor, cube(), at(0, 0, 0.4)).status, DistanceStatus::kOverlapping);
+  EXPECT_EQ(cold(floor, cube(), at(0, 0, -1e6)).status, DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
+  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
+  expect_distance(cold(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
+  // The last bit of tilt makes them meet, far away.
+  const DistanceResult tilted = cold(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
+  EXPECT_LE(tilted.upper, 2.0 + kRounding);
+  EXPECT_LE(tilted.lower, 0.0);
+}
+
+TEST(Distance, OfColumnsWithoutEndIsThatOfTheirSections) {
+  const ConvexPolyhedron column = prism_without_end({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}});
+  const double quarter = std::numbers::pi / 4;
+  for (const double angle : {quarter, 3 * quarter, -quarter}) {
+    Pose pose = Pose{{3, 0, 17}, turned(Vec3::UnitZ(), angle)};
+    pose.orientation.coeffs() *= 3.0;
+    expect_distance(cold(column, column, pose), 2.5 - std::sqrt(0.5), 20.0);
+  }
+  // Along a wall that stands on its side, the column still turned about itself.
+  const ConvexPolyhedron wall = half_space(Vec3(0, 0, 1), 0.5);
+  TrackingState state;
+  const Pose on_its_side{Vec3::Zero(), Eigen::Quaterniond(1, 1, 0, 0)};  // z becomes -y
+  const Pose beside = Pose{{1, -3, 5}, turned(Vec3::UnitZ(), quarter)};
+  expect_distance(distance(wall, column, relative_pose(on_its_side, beside), state),
+                  2.5 - std::sqrt(0.5), 20.0);
+}
+
+TEST(Distance, OfColumnsThatLeanIsKnownHoweverFarAwayTheyAreClosest) {
+  std::vector<HalfSpace> rows;
+  for (const Vec3& n : {Vec3(1, 1, 0), Vec3(-1, 1, 0), Vec3(1, -1, 0), Vec3(-1, -1, 0)}) {
+    rows.push_back({n, 0.5});
+  }
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  for (const double lean : {0.3, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-11}) {
+    // Edges at x = 0.5 and x = 2.5, a metre apart in y, and so 1 / lean away in z.
+    const Pose leaning{{3, 1, 0}, {std::cos(lean / 2), std::sin(lean / 2), 0, 0}};
+    const DistanceResult r = cold(column, column, leaning);
+    expect_distance(r, 2.0, 4.0);
+    EXPECT_EQ(r.status, DistanceStatus::kConverged) << lean;
+    EXPECT_LT((r.normal - Vec3::UnitX()).norm(), kRounding);
+    EXPECT_NEAR(r.point_on_b.z() * lean, 1.0, 0.2);
+  }
+}
+
+TEST(Distance, IsTheSameForQuaternionsOfAnyLength) {
+  const Pose pose_a = Pose{{1, 2, 3}, turned({1, 2, 2}, 0.3)},
+             pose_b = Pose{{4, 2, 2}, turned({0, 1, 3}, 1.2)};
+  TrackingState state;
+  const double expected = distance(cube(), cube(), pose_a, pose_b, state).distance;
+  for (const double length : {1e-307, 1e-200, 1e-100, 1e-77, 1e77, 1e100, 1e200, 1e307}) {
+    for (const double other : {length, 1.0, 1.0 / length}) {
+      Pose long_a = pose_a, long_b = pose_b;
+      long_a.orientation.coeffs() *= length;
+      long_b.orientation.coeffs() *= other;
+      TrackingState fresh;
+      const DistanceResult r = distance(cube(), cube(), long_a, long_b, fresh);
+      EXPECT_NEAR(r.distance, expected, 10 * kRounding);
+      EXPECT_LE(r.upper - r.lower, 20 * kRounding);
+      EXPECT_LT((transform(long_b, Vec3(1, 2, 3)) - transform(pose_b, Vec3(1, 2, 3))).norm(),
+                1e-14);
+    }
+  }
+}
+
+TEST(Distance, OfPointsIsEuclid) {
+  const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
+  const DistanceResult r = cold(p, q, at(2, 3, 6));
+  expect_distance(r, 7.0, 10);
+  expect_near(r.point_on_a, {1, 2, 2});
+  expect_distance(cold(cube(), p, at(0, 0, 0)), std::sqrt(0.25 + 2 * 2.25));
+}
+
+// Squares of such lengths are zero in doubles.
+TEST(Distance, HoldsWhereSquaresUnderflow) {
+  const ConvexPolyhedron p = made(point(Vec3::Zero(), 0.0));
+  for (const double apart : {1e-150, 1e-160, 1e-200, 1e-300}) {
+    for (const DistanceResult& r :
+         {cold(p, p, at(apart, 0, 0)), cold(cube(), cube(), at(0, 1, apart)),
+          cold(half_space({0, 0, 1}, 0.0), p, at(0, 0, apart))}) {
+      EXPECT_LE(r.lower, apart);
+      EXPECT_GE(r.upper, r.lower);
+    }
+    EXPECT_GE(cold(p, p, at(apart, 0, 0)).upper, apart);
+  }
+}
+
+// Of all kinds of features at once, and what they leave behind.
+void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose) {
+  static const ConvexPolyhedron sound = cube();
+  for (std::uint8_t kinds = 0; kinds < 18; ++kinds) {
+    TrackingState state{{static_cast<std::uint8_t>(kinds % 3), kinds >= 9, 0},
+                        {static_cast<std::uint8_t>(kinds / 3 % 3), false, 0}};
+    TrackingState other = state;
+    for (const DistanceResult& r :
+         {distance(a, b, Pose{}, pose, state), distance(a, b, relative_pose(pose, {}), other)}) {
+      EXPECT_EQ(r.lower, -kInfinity);
+      EXPECT_EQ(r.upper, kInfinity);
+      EXPECT_EQ(r.distance, -kInfinity);
+      EXPECT_TRUE(r.normal.isZero(0.0) && r.point_on_a.isZero(0.0) && r.point_on_b.isZero(0.0));
+      EXPECT_EQ(r.status, DistanceStatus::kIterationLimit);
+    }
+    expect_distance(distance(sound, sound, Pose{}, at(1.5, 0.25, 0), state), 0.5);
+  }
+}
+
+TEST(Distance, OfPosesThatAreNoneHasInfiniteBoundsAndIsUnknown) {
+  const ConvexPolyhedron bodies[] = {cube(), ball(0.5), capsule(1.0, 0.25),
+                                     half_space({0, 0, 1}, 0.0),
+                                     prism_without_end({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}})};
+  for (const ConvexPolyhedron& a : bodies) {
+    for (const ConvexPolyhedron& b : bodies) {
+      for (int k = 0; k < 7; ++k) {
+        for (const double x : {std::nan(""), kInfinity, -kInfinity}) {
+          Pose pose = at(3, 0.2, 0.1);
+          (k < 3 ? pose.position[k] : pose.orientation.coeffs()[k - 3]) = x;
+          expect_unknown(a, b, pose);
+        }
+      }
+      expect_unknown(a, b, {at(3, 0.2, 0.1).position, {0, 0, 0, 0}});
+    }
+  }
+}
+
+TEST(Distance, OfLengthsThatOverflowHoldsAtLeast) {
+  for (const double far : {1e140, 1e155, 1e200, 1e308}) {
+    const DistanceResult r = cold(cube(), cube(), at(0, far, far));
+    EXPECT_LE(r.lower, far * std::numbers::sqrt2);
+    EXPECT_GE(r.upper, far);
+    EXPECT_LE(r.lower, r.distance);
+    EXPECT_LE(r.distance, r.upper);
+  }
+}
+
+// A column along z in a wall that stands beside z by 2e-325: no translation parts them. The
+// component that says so was lost where quaternions are brought to unit length.
+TEST(Distance, OfAColumnInAWallThatIsTiltedByASubnormalHasNoLowerBound) {
+  const ConvexPolyhedron column = prism_without_end({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}});
+  const ConvexPolyhedron wall = half_space({1, 0, 0}, 0.5);
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double length : {1.0, 24.0, 0x1p600}) {
+    Pose tilted = at(-2.7, 1.1, -1.8);
+    tilted.orientation = Eigen::Quaterniond(length, -least, 0.0, 0.8 * length);
+    TrackingState state;
+    EXPECT_EQ(distance(column, wall, Pose{}, tilted, state).lower, -kInfinity);
+    tilted.orientation.x() = 0.0;
+    EXPECT_GT(distance(column, wall, Pose{}, tilted, state).lower, -10.0);
+  }
+}
+
+// Turned about the column, by as little, the wall stands beside it all the same.
+TEST(Distance, OfAColumnAndAWallTurnedAboutItByASubnormalIsThatOfTheirSections) {
+  const ConvexPolyhedron column = prism_without_end({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}});
+  const ConvexPolyhedron wall = half_space({-1, 0, 0}, -2.0);
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double length : {1.0, 24.0, 0x1p600}) {
+    Pose turned = at(0.5, 7.0, -3.0);
+    turned.orientation = Eigen::Quaterniond(length, 0.0, 0.0, -least);
+    expect_distance(cold(column, wall, turned), 2.0, 20.0);
+    turned.orientation = Eigen::Quaterniond(least, 0.0, 0.0, -length);
+    expect_distance(cold(wall, column, turned), 1.0, 20.0);
+  }
+}
+
+// Tilted by as little, which side of the wall a column without end is on for ever hangs on the
+// sign.
+TEST(Distance, OfAColumnDownwardsAndAWallTiltedByASubnormalHangsOnTheWay) {
+  std::vector<HalfSpace> rows = {{{0, 0, 1}, 1.0}};
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+    rows.push_back({n, 0.5});
+  }
+  const ConvexPolyhedron column = made(polyhedron_from_halfspaces(rows));
+  const double least = std::numeric_limits<double>::denorm_min();
+  for (const double tilt : {1e-30, 1e-200, 1e-310, least}) {
+    expect_distance(cold(column, half_space({-1, tilt, 0}, -2.0), at(0, 3, 1)), 1.5, 10.0);
+    expect_distance(cold(half_space({-1, 0, -tilt}, -2.0), column, at(0, 3, 1)), 1.5, 10.0);
+    EXPECT_EQ(cold(column, half_space({-1, 0, tilt}, -2.0), at(0, 3, 1)).lower, -kInfinity);
+  }
+}
+
+TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
+  TrackingState state;
+  const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));
+  for (const ConvexPolyhedron& body : {cube(), ball(0.5)}) {
+    const DistanceResult r = distance(body, body, pose, state, {.far_away = 10.0});
+    EXPECT_EQ(r.status, DistanceStatus::kFarAway);
+    EXPECT_GE(r.lower, 10.0);
+    EXPECT_LE(r.lower, 99.0);
+    EXPECT_GE(r.upper, 99.0);
+  }
+  for (const double asked : {99.0 - 1e-9, 99.0, 99.0 + 1e-9}) {
+    const DistanceResult r = distance(ball(0.5), ball(0.5), pose, state, {.far_away = asked});
+    EXPECT_EQ(r.status == DistanceStatus::kFarAway, asked < 99.0);
+    if (r.status == DistanceStatus::kFarAway) {
+      EXPECT_GE(r.lower, asked);
+    }
+  }
+  const RelativePose same = relative_pose(Pose{}, Pose{});
+  EXPECT_EQ(distance(ball(0.5), ball(0.5), same, state, {.far_away = -2.0}).status,
+            DistanceStatus::kOverlapping);
+}
+
+TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
+  TrackingState state;
+  for (double unit = 1e-163; unit < 1e-140; unit *= 1.7) {
+    const RelativePose pose = relative_pose(Pose{}, at(3.0 * unit, 0.0, 4.0 * unit));
+    const DistanceResult r = distance(ball(0.0), ball(0.0), pose, state, {.far_away = 1e-200});
+    EXPECT_LE(r.lower, 5.0 * unit * (1.0 + 1e-15)) << unit;
+    EXPECT_GE(r.upper, 5.0 * unit * (1.0 - 1e-15)) << unit;
+    EXPECT_EQ(r.path == DistancePath::kSpheres, 5.0 * unit > kUnderflow) << unit;
+  }
+}
+
+TEST(Distance, SaysWhichWayTheAnswerCame) {
+  const ConvexPolyhedron column = prism_without_end({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
+  TrackingState state;
+  const auto way = [&](const ConvexPolyhedron& body, const Pose& pose, double far_away) {
+    const RelativePose b = relative_pose(Pose{}, pose);
+    return distance(body, body, b, state, {.far_away = far_away}).path;
+  };
+  EXPECT_EQ(way(cube(), at(1.5, 0.3, 0.2), kInfinity), DistancePath::kWalk);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kLoop);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kOverlap);
+  EXPECT_EQ(way(cube(), at(9.0, 0.3, 0.2), 5.0), DistancePath::kSpheres);
+  const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
+  EXPECT_EQ(way(column, leaning, kInfinity), DistancePath::kRobust);
+}
+
+TEST(Distance, NamesEveryStatus) {
+  EXPECT_STREQ(name(DistanceStatus::kConverged), "converged");
+  EXPECT_STREQ(name(DistanceStatus::kFarAway), "far_away");
+  EXPECT_STREQ(name(DistanceStatus::kTouching), "touching");
+  EXPECT_STREQ(name(DistanceStatus::kOverlapping), "overlapping");
+  EXPECT_STREQ(name(DistanceStatus::kIterationLimit), "iteration_limit");
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,177 @@
+#include "monitor/csv/pose_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <random>
+
+#include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kHeader = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
+
+class CsvPoses : public testing::Test {
+ protected:
+  ScratchFolder folder;
+
+  std::vector<CsvPose> read(const std::string& text) {
+    write_text(folder / "log.csv", text);
+    CsvPoseLog log(folder / "log.csv");
+    std::vector<CsvPose> poses;
+    CsvPose pose;
+    while (log.next(pose)) poses.push_back(pose);
+    error = log.error();
+    return poses;
+  }
+  std::string error;
+};
+
+TEST_F(CsvPoses, FindsColumnsByNameInAnyOrderAndIgnoresOthers) {
+  const auto poses = read(
+      "\xef\xbb\xbfnote,qz, qy,qx,qw,pz,py,px,\"object\",t_ns\r\n"
+      "x,0.1,0.2,0.3,0.9,3,2,1,\"hand\",17\r\n"
+      "\r\n"
+      "y,0.1,0.2,0.3,0.9,3,2,1e-3,hand,18");
+  EXPECT_EQ("", error);
+  ASSERT_EQ(2u, poses.size());
+  EXPECT_EQ(17, poses[0].t_ns);
+  EXPECT_EQ("hand", poses[0].object);
+  EXPECT_EQ(Vec3(1, 2, 3), poses[0].world_from_object.position);
+  EXPECT_EQ(0.9, poses[0].world_from_object.orientation.w());
+  EXPECT_EQ(0.1, poses[0].world_from_object.orientation.z());
+  EXPECT_EQ(1e-3, poses[1].world_from_object.position.x());
+}
+
+TEST_F(CsvPoses, ReadsGzipAndPlainAlike) {
+  const std::string text = std::string(kHeader) + "5,hand,1,2,3,1,0,0,0\n";
+  gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");
+  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(file);
+  CsvPoseLog log(folder / "log.csv.gz");
+  CsvPose pose;
+  ASSERT_TRUE(log.next(pose));
+  EXPECT_EQ(5, pose.t_ns);
+  EXPECT_FALSE(log.next(pose));
+  EXPECT_EQ("", log.error());
+}
+
+TEST_F(CsvPoses, GzipCutOffIsAnErrorWithALine) {
+  std::string text = kHeader;
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 5000; ++i) {
+    text += std::to_string(i) + ",hand,0." + std::to_string(random()) + ",2,3,1,0,0,0\n";
+  }
+  gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");
+  gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(file);
+  const std::string whole = read_text(folder / "log.csv.gz");
+  write_text(folder / "log.csv.gz", whole.substr(0, whole.size() / 2));
+  CsvPoseLog log(folder / "log.csv.gz");
+  CsvPose pose;
+  int rows = 0;
+  while (log.next(pose)) ++rows;
+  EXPECT_LT(rows, 5000);
+  EXPECT_THAT(log.error(), HasSubstr("log.csv.gz:"));
+}
+
+TEST_F(CsvPoses, EveryErrorNamesItsLine) {
+  const struct {
+    const char* rows;
+    const char* error;
+  } cases[] = {
+      {"1,hand,1,2,3,1,0,0,0\n1,hand,1,2,3,1,0,0\n",
+       "log.csv:3: has 8 fields; expected 9, as the header names"},
+      {"1,hand,1,2,3,1,0,0,zero\n", "log.csv:2: qz is 'zero'; expected a finite number"},
+      {"1,hand,nan,2,3,1,0,0,0\n", "log.csv:2: px is 'nan'; expected a finite number"},
+      {"1,hand,1,2,3,1,0,0,0x\n", "log.csv:2: qz is '0x'"},
+      {"1.5,hand,1,2,3,1,0,0,0\n", "log.csv:2: t_ns is '1.5'"},
+      {"-1,hand,1,2,3,1,0,0,0\n", "log.csv:2: t_ns is '-1'; expected whole nanoseconds, 0 or more"},
+      {"2,hand,1,2,3,1,0,0,0\n1,hand,1,2,3,1,0,0,0\n", "log.csv:3: t_ns goes back from 2 to 1"},
+      {"1,,1,2,3,1,0,0,0\n", "log.csv:2: names no object"},
+  };
+  for (const auto& c : cases) {
+    read(std::string(kHeader) + c.rows);
+    EXPECT_THAT(error, HasSubstr(c.error));
+  }
+  read("t_ns,object,px,py,pz,qx,qy,qz\n");
+  EXPECT_THAT(error, HasSubstr("log.csv:1: no column 'qw'"));
+  read("");
+  EXPECT_THAT(error,
+              HasSubstr("log.csv:1: is empty; expected a first line that names t_ns,object,"));
+  read("t_ns,object,px,py,px,pz,qw,qx,qy,qz\n");
+  EXPECT_THAT(error, HasSubstr("log.csv:1: two columns are named 'px'; expected a first line"));
+}
+
+TEST_F(CsvPoses, RecordingHoldsOneBatchATimeWithTheIdsOfTheCell) {
+  const Scene scene = bench_cell();  // hand, tool, box (fixed)
+  write_text(folder / "log.csv",
+             std::string(kHeader) +
+                 "5,tool,1,2,3,1,0,0,0\n5,box,0,0,0,1,0,0,0\n5,hand,4,5,6,1,0,0,0\n"
+                 "6,tool,1,2,3,1,0,0,0\n");
+  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &scene);
+  EXPECT_EQ("", result.error);
+  EXPECT_EQ(4u, result.rows);
+  EXPECT_EQ(2u, result.samples);
+  EXPECT_THAT(result.fixed_objects, ElementsAre("box"));
+  const auto messages = messages_of(folder / "a.mcap");
+  ASSERT_EQ(3u, messages.size());
+  EXPECT_EQ(41u, decoded<clearance_msg_Catalogue>(messages[0])->scene_revision);
+  const auto first = decoded<clearance_msg_PoseBatch>(messages[1]);
+  EXPECT_EQ(5, messages[1].log_ns);
+  EXPECT_EQ(1u, first->sequence_number);
+  ASSERT_EQ(2u, first->poses._length);
+  EXPECT_EQ(1u, first->poses._buffer[0].object);
+  EXPECT_EQ(0u, first->poses._buffer[1].object);
+  EXPECT_EQ(6.0, first->poses._buffer[1].position.z);
+  EXPECT_EQ(5, first->poses._buffer[1].stamp_ns);
+  EXPECT_EQ(2u, decoded<clearance_msg_PoseBatch>(messages[2])->sequence_number);
+}
+
+TEST_F(CsvPoses, WithoutACellObjectsAreNamedInTheOrderOfAppearance) {
+  write_text(
+      folder / "log.csv",
+      std::string(kHeader) + "5,tool,1,2,3,1,0,0,0\n6,hand,4,5,6,1,0,0,0\n6,tool,1,2,3,1,0,0,0\n");
+  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", nullptr);
+  EXPECT_THAT(result.objects, ElementsAre("tool", "hand"));
+  const auto catalogue = decoded<clearance_msg_Catalogue>(messages_of(folder / "a.mcap")[0]);
+  ASSERT_EQ(2u, catalogue->objects._length);
+  EXPECT_STREQ("tool", catalogue->objects._buffer[0].name);
+  EXPECT_STREQ("hand", catalogue->objects._buffer[1].name);
+}
+
+TEST_F(CsvPoses, StoppedHalfWayItSaysHowFarItCame) {
+  std::string log = kHeader;
+  for (int row = 0; row < 3000; ++row) log += std::to_string(row) + ",tool,1,2,3,1,0,0,0\n";
+  write_text(folder / "log.csv", log);
+  const auto stopped_when_asked = [this](int times) {
+    return record_csv(folder / "log.csv", folder / "a.mcap", nullptr,
+                      [times]() mutable { return --times == 0; });
+  };
+  const CsvRecordingResult checking = stopped_when_asked(2);
+  EXPECT_THAT(checking.error, HasSubstr("stopped after 1024 rows of "));
+  EXPECT_FALSE(checking.begun);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
+  const CsvRecordingResult writing = stopped_when_asked(6);
+  EXPECT_THAT(writing.error, HasSubstr("stopped after 2048 of 3000 rows of "));
+  EXPECT_TRUE(writing.begun);
+}
+
+TEST_F(CsvPoses, ObjectThatTheCellLacksIsNamedWithItsLineAndNothingIsWritten) {
+  const Scene scene = bench_cell();
+  write_text(folder / "log.csv",
+             std::string(kHeader) + "5,tool,1,2,3,1,0,0,0\n6,hnad,4,5,6,1,0,0,0\n");
+  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &scene);
+  EXPECT_THAT(result.error,
+              HasSubstr("log.csv:3: the cell has no object 'hnad'; did you mean 'hand'?"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
+}
+
+}  // namespace
+}  // namespace clearance::test

@@ -1,0 +1,197 @@
+// What the daemon publishes, through real DDS on loopback.
+#include "monitor/dds/report_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance {
+namespace {
+
+Scene watched_cell() {
+  Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
+                               test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
+  scene.pairs[0].publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+  return scene;
+}
+
+template <class T>
+class Reader {
+ public:
+  Reader(Participant& participant, const std::string& topic, Delivery delivery)
+      : reader_(participant.reader(topic_descriptor<T>(), topic, delivery, 64)) {}
+  [[nodiscard]] dds_entity_t handle() const { return reader_; }
+  // The next sample, or null when none comes.
+  const T* next() {
+    void* pointer = &*sample_;
+    dds_sample_info_t info;
+    const bool came = test::eventually(
+        [&] { return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+    return came ? &*sample_ : nullptr;
+  }
+
+ private:
+  dds_entity_t reader_;
+  Sample<T> sample_;
+};
+
+// The publishing side without a tick loop: the test is the tick thread.
+struct Publisher {
+  Scene scene = watched_cell();
+  DdsOptions dds = test::own_dds();
+  Participant participant{dds};
+  DdsPoses poses{scene, participant};
+  ReportQueue queue{scene, {.reports = 16}};
+  std::unique_ptr<DdsReports> reports =
+      std::make_unique<DdsReports>(scene, participant, queue, poses);
+  Monitor monitor{scene};
+  std::int64_t now = test::kStart;
+
+  const Report& tick(double x) {
+    const PoseSample sample = test::sample(0, test::at(x, 0, 0), now += test::kTick);
+    const SourceUse use{.source = SourceName("arm"), .sequence_number = ++sequence};
+    const Report& report = monitor.tick({&sample, 1}, now);
+    queue.report(report, {&use, 1});
+    return report;
+  }
+  std::uint64_t sequence = 0;
+
+  ~Publisher() {
+    queue.close();
+    reports.reset();
+  }
+};
+
+TEST(DdsReports, PublishesEveryTickAsItWas) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_Distances> reader(client, publisher.scene.topics.distances,
+                                         Delivery::kStream);
+  ASSERT_TRUE(test::eventually([&] { return test::matched_writers(reader.handle()) == 1; }));
+  // A writer that does not know of the reader yet would send it nothing.
+  ASSERT_TRUE(test::eventually([&] { return publisher.reports->distance_readers() == 1; }));
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    const Report& report = publisher.tick(0.1 * static_cast<double>(i));
+    const clearance_msg_Distances* sample = reader.next();
+    ASSERT_NE(sample, nullptr);
+    EXPECT_EQ(sample->cycle, i);
+    EXPECT_EQ(sample->now_ns, report.now_ns);
+    EXPECT_GE(sample->publish_ns, report.now_ns);
+    EXPECT_EQ(sample->scene_revision, publisher.scene.revision);
+    EXPECT_EQ(sample->minimum.distance, report.minimum.distance);
+    ASSERT_EQ(sample->pairs._length, 1u);
+    EXPECT_EQ(sample->pairs._buffer[0].lower, report.pairs[0].lower);
+    ASSERT_EQ(sample->sources._length, 1u);
+    EXPECT_STREQ(sample->sources._buffer[0].source, "arm");
+    EXPECT_EQ(sample->sources._buffer[0].sequence_number, i);
+  }
+}
+
+TEST(DdsReports, TellsALateClientNamesAndZones) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_ZoneState> early(client, publisher.scene.topics.zones, Delivery::kLatched);
+  publisher.tick(0.0);
+  publisher.tick(0.6);  // 0.2 m away: inside the zone
+  // Both reports are only queued so far: the client is late when they have been published.
+  const clearance_msg_ZoneState* seen = early.next();
+  while (seen != nullptr && !seen->active) seen = early.next();
+  ASSERT_NE(seen, nullptr);
+  Reader<clearance_msg_Catalogue> catalogue(client, publisher.scene.topics.catalogue,
+                                            Delivery::kLatched);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
+  const clearance_msg_Catalogue* names = catalogue.next();
+  ASSERT_NE(names, nullptr);
+  ASSERT_EQ(names->objects._length, 2u);
+  EXPECT_STREQ(names->objects._buffer[1].name, "post");
+  EXPECT_EQ(names->scene_revision, publisher.scene.revision);
+  const clearance_msg_ZoneState* zone = zones.next();
+  ASSERT_NE(zone, nullptr);
+  EXPECT_STREQ(zone->name, "zone");
+  EXPECT_TRUE(zone->active);
+}
+
+TEST(DdsReports, PublishesAZoneOnlyWhenItChanges) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
+  const auto expect_next = [&](bool active, std::uint64_t cycle) {
+    const clearance_msg_ZoneState* zone = zones.next();
+    ASSERT_NE(zone, nullptr);
+    EXPECT_EQ(zone->active, active) << cycle;
+    EXPECT_EQ(zone->cycle, cycle);
+  };
+  publisher.tick(0.0);
+  expect_next(false, 1);
+  publisher.tick(0.1);
+  publisher.tick(0.6);
+  expect_next(true, 3);
+  publisher.tick(0.55);
+  publisher.tick(0.0);  // within the zone when it left 0.55, so since the last tick
+  publisher.tick(0.0);
+  expect_next(false, 6);
+}
+
+TEST(DdsReports, SaysHowTheDaemonIs) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_Health> reader(client, publisher.scene.topics.health, Delivery::kLatched);
+  Vitals vitals;
+  vitals.rejected.resize(2);
+  vitals.ages.resize(2);
+  vitals.cycle = 1000;
+  vitals.now_ns = test::kStart;
+  vitals.overruns = 3;
+  vitals.skipped_cycles = 4;
+  for (int i = 0; i < 999; ++i) vitals.tick.add(20'000);
+  vitals.tick.add(90'000);
+  vitals.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
+  vitals.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
+  vitals.rejected_total[static_cast<std::size_t>(Reject::kUnknownObject)] = 6;
+  vitals.ages[0] = {.age_ns = 7'000'000, .stale = false};
+  publisher.queue.vitals(vitals);
+
+  const clearance_msg_Health* health = reader.next();
+  ASSERT_NE(health, nullptr);
+  EXPECT_EQ(health->cycle, 1000u);
+  EXPECT_EQ(health->overruns, 3u);
+  EXPECT_EQ(health->skipped_cycles, 4u);
+  EXPECT_NEAR(health->tick_p50_us, 20.0, 20.0 / 64);
+  EXPECT_EQ(health->tick_max_us, 90.0);
+  ASSERT_EQ(health->rejected._length, 2u);
+  EXPECT_STREQ(health->rejected._buffer[0].object, "ball");
+  EXPECT_STREQ(health->rejected._buffer[0].cause, name(Reject::kNotUnit));
+  EXPECT_EQ(health->rejected._buffer[0].count, 5u);
+  EXPECT_STREQ(health->rejected._buffer[1].object, "(no such id)");
+  EXPECT_EQ(health->rejected._buffer[1].count, 6u);
+  ASSERT_EQ(health->inputs._length, 1u) << "the post is fixed: it has no age";
+  EXPECT_STREQ(health->inputs._buffer[0].name, "ball");
+  EXPECT_EQ(health->inputs._buffer[0].age_ns, 7'000'000);
+}
+
+TEST(Participant, SaysWhichDomainsThereAre) {
+  try {
+    const Participant participant({.domain = 233});
+    FAIL() << "domain 233 does not exist";
+  } catch (const DdsError& error) {
+    EXPECT_NE(std::strstr(error.what(), "0 to 232"), nullptr) << error.what();
+  }
+}
+
+TEST(Participant, SaysWhichInterfaceIsMissing) {
+  DdsOptions options = test::own_dds();
+  options.interface = "nosuch0";
+  try {
+    const Participant participant(options);
+    FAIL() << "there is no interface nosuch0";
+  } catch (const DdsError& error) {
+    EXPECT_NE(std::strstr(error.what(), "domain"), nullptr) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace clearance

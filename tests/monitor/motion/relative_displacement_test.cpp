@@ -1,0 +1,132 @@
+// Oracle: points of one object as seen from the other's frame, at many instants of the interpolated
+// motion.
+#include "monitor/motion/relative_displacement.hpp"
+
+#include <gtest/gtest.h>
+
+#include "monitor/monitor.hpp"
+#include "tests/monitor/adversary_motion.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+
+// As a tick leaves it that took it from one pose to another.
+ObjectState gone(const Pose& from, const Pose& to, double reach) {
+  const Object object = test::moving("gone", {test::ball(0.1)});
+  ObjectState state;
+  for (const std::int64_t now : {kStart, kStart + kTick}) {
+    accept(object, test::sample(0, now == kStart ? from : to, now), state);
+    advance(object, now, state);
+    travel(reach, state);
+  }
+  return state;
+}
+
+Pose after(const Pose& pose, const Vec3& shift, const Vec3& turn) {
+  Pose next = pose;
+  next.position += shift;
+  if (turn.norm() > 0.0) {
+    next.orientation = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * pose.orientation;
+  }
+  return next;
+}
+
+// How far a point of `of` goes in the frame of `seen_from`, over all small steps.
+double length_of_way(const Pose& from, const Pose& to, const Pose& frame_from, const Pose& frame_to,
+                     const Vec3& point) {
+  constexpr int kSteps = 50;
+  double length = 0.0;
+  Vec3 last = Vec3::Zero();
+  for (int k = 0; k <= kSteps; ++k) {
+    const double s = static_cast<double>(k) / kSteps;
+    const Pose frame = test::between(frame_from, frame_to, s);
+    const Vec3 seen = frame.orientation.normalized().conjugate() *
+                      (transform(test::between(from, to, s), point) - frame.position);
+    if (k > 0) length += (seen - last).norm();
+    last = seen;
+  }
+  return length;
+}
+
+TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
+  Random random(91);
+  int tighter = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double reach_a = random.uniform(0.05, 2.0), reach_b = random.uniform(0.05, 2.0);
+    const double scale = std::pow(10.0, random.uniform(-6.0, 0.0));
+    const Pose a = random.pose(3.0), b = random.pose(3.0);
+    // Often nearly the same turn and shift: what cancels must not cancel too much.
+    const Vec3 turn = scale * random.in_box(0.5), shift = scale * random.in_box(1.0);
+    const double differ = i % 3 == 0 ? 1.0 : i % 3 == 1 ? 1e-4 : 0.0;
+    const Pose a_to = after(a, shift, turn);
+    const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
+                            turn + differ * scale * random.in_box(0.5));
+    const ObjectState of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
+    const double told = relative_travel(of_a, of_b);
+    ASSERT_EQ(told, relative_travel(of_a, of_b));
+    const bool b_goes = reach_b <= reach_a;
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? reach_b : reach_a);
+      const double way =
+          b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
+      ASSERT_LE(way, told + 1e-13) << "case " << i;
+    }
+    tighter += told < 0.9 * (of_a.travel + of_b.travel);
+  }
+  EXPECT_GT(tighter, 1500);
+}
+
+// A link turns by 1 mrad about an axis 0.8 m away: both go 0.8 to 1 mm.
+TEST(RelativeTravel, WhatRidesOnTheSameLinkHardlyComesNearer) {
+  Pose link, turned;
+  turned.orientation = Eigen::AngleAxisd(1e-3, Vec3(1, 2, 2).normalized());
+  const auto riding = [&](const Pose& on_link) {
+    return gone(compose(link, on_link), compose(turned, on_link), 0.1);
+  };
+  const ObjectState a = riding(test::at(1, 0, 0)), b = riding(test::at(1.2, 0.1, 0.3));
+  EXPECT_GT(a.travel + b.travel, 1e-3);
+  EXPECT_LT(relative_travel(a, b), 1e-6);
+  EXPECT_LT(relative_travel(b, a), 1e-6);
+}
+
+TEST(RelativeTravel, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
+  Pose turned;
+  turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
+  const ObjectState floor = gone({}, turned, kInfinity);
+  const ObjectState ball = gone(test::at(0, 1, 1), test::at(0, 1, 1.001), 0.1);
+  EXPECT_LT(relative_travel(floor, ball), 3e-3);
+  EXPECT_LT(relative_travel(ball, floor), 3e-3);
+  const ObjectState other = gone({}, turned, kInfinity);
+  EXPECT_EQ(relative_travel(floor, other), kInfinity);
+}
+
+TEST(RelativeTravel, TellsNothingOfMoreThanARadian) {
+  Pose turned;
+  turned.orientation = Eigen::AngleAxisd(1.5, Vec3::UnitX());
+  EXPECT_EQ(relative_travel(gone({}, turned, 0.1), gone({}, turned, 0.1)), kInfinity);
+}
+
+// Two balls on one arm that swings at 2 m/s, 20 mm apart: neither comes nearer between two ticks.
+TEST(RelativeTravel, IsWhatAPublishedPairIsReportedBy) {
+  Scene scene = test::cell_of(
+      {test::moving("hand", {test::ball(0.05)}), test::moving("tool", {test::ball(0.05)})});
+  scene.pairs[0].publish = true;
+  Monitor monitor(scene);
+  for (int t = 0; t < 20; ++t) {
+    Pose arm;
+    arm.orientation = Eigen::AngleAxisd(2e-3 * t, Vec3::UnitZ());
+    const std::array samples{
+        test::sample(0, compose(arm, test::at(1, 0, 0)), kStart + t * kTick),
+        test::sample(1, compose(arm, test::at(1.12, 0, 0)), kStart + t * kTick)};
+    const PairReport& pair = monitor.tick(samples, kStart + t * kTick).pairs[0];
+    ASSERT_NEAR(pair.lower, 0.02, 1e-12);
+    ASSERT_NEAR(pair.lower_since, 0.02, 1e-6) << "tick " << t << "; both have gone 2 mm";
+  }
+}
+
+}  // namespace
+}  // namespace clearance

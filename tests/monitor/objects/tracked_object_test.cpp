@@ -1,0 +1,213 @@
+#include "monitor/objects/tracked_object.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kEarliest = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kFutureLimit = 5 * kTick;
+
+PoseSample good() { return test::sample(0, test::at(1, 2, 3), kStart); }
+
+std::optional<Reject> judged(const PoseSample& sample) {
+  return refusal(sample, ObjectState{}, kStart, kFutureLimit);
+}
+
+Object late_after(std::int64_t limit_ns, double max_speed) {
+  Object object = test::moving("object", {});
+  object.age_limit_ns = limit_ns;
+  object.max_speed = max_speed;
+  return object;
+}
+
+const Object kInTime = late_after(20 * kTick, kInfinity);
+
+TEST(ObjectState, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
+
+TEST(ObjectState, RefusesEveryNonFiniteFigure) {
+  for (const double bad : {kNan, kInfinity, -kInfinity, 2e9}) {
+    for (int i = 0; i < 3; ++i) {
+      PoseSample sample = good();
+      sample.world_from_object.position[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample = good();
+      sample.has_twist = true;
+      sample.twist.linear[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample.twist = {};
+      sample.twist.angular[i] = bad;
+      EXPECT_EQ(judged(sample), Reject::kNonFinite);
+      sample.has_twist = false;  // then nobody reads it
+      EXPECT_EQ(judged(sample), std::nullopt);
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs()[i] = kNan;
+    EXPECT_EQ(judged(sample), Reject::kNonFinite);
+  }
+}
+
+TEST(ObjectState, RefusesAQuaternionFarFromUnitLength) {
+  for (const double norm : {0.0, 0.5, 0.998, 1.002, 2.0, 1e300}) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs() *= norm;
+    EXPECT_EQ(judged(sample), Reject::kNotUnit) << norm;
+  }
+  for (const double norm : {0.9991, 1.0009, -1.0}) {
+    PoseSample sample = good();
+    sample.world_from_object.orientation.coeffs() *= norm;
+    EXPECT_EQ(judged(sample), std::nullopt) << norm;
+  }
+}
+
+TEST(ObjectState, RefusesAStampFartherAheadThanTheLimit) {
+  PoseSample sample = good();
+  sample.stamp_ns = kStart + kFutureLimit;
+  EXPECT_EQ(judged(sample), std::nullopt);
+  sample.stamp_ns += 1;
+  EXPECT_EQ(judged(sample), Reject::kFuture);
+  sample.stamp_ns = kLatest;
+  EXPECT_EQ(refusal(sample, ObjectState{}, kEarliest, kFutureLimit), Reject::kFuture);
+}
+
+TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
+  ObjectState state;
+  accept(kInTime, good(), state);
+  PoseSample sample = good();
+  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), std::nullopt);
+  sample.stamp_ns -= 1;
+  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), Reject::kBackwards);
+}
+
+TEST(ObjectState, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
+  ObjectState state;
+  accept(kInTime, good(), state);
+  EXPECT_FALSE(state.velocity_known());
+
+  PoseSample next = good();
+  next.stamp_ns += 4 * kTick;
+  next.world_from_object.position += Vec3(0.004, 0, 0);
+  next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
+  next.world_from_object.orientation.coeffs() *= -1.0;  // the same, the short way round
+  accept(kInTime, next, state);
+  EXPECT_TRUE(state.velocity_known());
+  EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((state.twist.angular - Vec3(0, 0.5, 0)).norm(), 0.0, 1e-9);
+
+  accept(kInTime, next, state);  // again, with the same stamp: nothing new about its speed
+  EXPECT_NEAR(state.twist.linear.x(), 1.0, 1e-9);
+
+  next.has_twist = true;
+  next.twist.linear = Vec3(7, 8, 9);
+  next.stamp_ns += kTick;
+  accept(kInTime, next, state);
+  EXPECT_EQ(state.twist.linear, Vec3(7, 8, 9));
+}
+
+TEST(ObjectState, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
+  ObjectState state;
+  PoseSample next = good();
+  const auto take = [&](std::int64_t after_ns, bool has_twist) {
+    next.stamp_ns += after_ns;
+    next.has_twist = has_twist;
+    accept(kInTime, next, state);
+    advance(kInTime, next.stamp_ns, state);
+    return state.velocity_known();
+  };
+  EXPECT_FALSE(take(0, false));
+  EXPECT_FALSE(take(0, false));  // the same stamp once more
+  EXPECT_TRUE(take(40 * kTick, false)) << "the mean velocity is that of 20 ticks ago";
+  EXPECT_FALSE(take(40 * kTick + 2, false));
+  EXPECT_TRUE(take(kTick, false));
+  EXPECT_TRUE(take(500 * kTick, true));
+  advance(kInTime, next.stamp_ns + 20 * kTick + 1, state);  // late
+  EXPECT_FALSE(state.velocity_known());
+  EXPECT_FALSE(take(50 * kTick, false));
+}
+
+// 30 ms apart, where poses of 20 ms are late: known for the time in which they are not.
+TEST(ObjectState, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
+  ObjectState state;
+  PoseSample next = good();
+  accept(kInTime, next, state);
+  for (int pose = 1; pose < 5; ++pose) {
+    next.stamp_ns += 30 * kTick;
+    next.world_from_object.position.x() += 0.06;
+    accept(kInTime, next, state);
+    for (int tick = 0; tick < 30; ++tick) {
+      advance(kInTime, next.stamp_ns + tick * kTick, state);
+      ASSERT_EQ(state.velocity_known(), tick <= 20) << "tick " << tick;
+      ASSERT_NEAR(state.twist.linear.x(), 2.0, 1e-9);
+    }
+  }
+}
+
+TEST(ObjectState, FixedObjectsAreKnownToBeAtRest) {
+  const ObjectState state = initial_state(test::fixed("wall", {}, test::at(1, 2, 3)));
+  EXPECT_TRUE(state.velocity_known());
+  EXPECT_EQ(state.twist.linear, Vec3::Zero());
+  EXPECT_EQ(state.twist.angular, Vec3::Zero());
+}
+
+TEST(ObjectState, MotionIsTheNetOneOfATick) {
+  const Object object = late_after(kTick, kInfinity);
+  ObjectState state;
+  accept(kInTime, good(), state);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+  PoseSample there = good(), back = good();
+  there.world_from_object.position += Vec3(5, 0, 0);
+  accept(kInTime, there, state);
+  accept(kInTime, back, state);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+  accept(kInTime, there, state);
+  advance(object, kStart, state);
+  EXPECT_NEAR(state.motion.shift, 5.0, 1e-12);
+  advance(object, kStart, state);
+  EXPECT_EQ(state.motion.shift, 0.0);
+}
+
+TEST(ObjectState, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
+  const Object stated = late_after(20 * kTick, 2.0);
+  ObjectState state;
+  accept(kInTime, good(), state);
+  advance(stated, kStart + 20 * kTick, state);
+  EXPECT_FALSE(state.late);
+  EXPECT_EQ(state.may_have_moved, 0.0);
+  advance(stated, kStart + 100 * kTick, state);
+  EXPECT_TRUE(state.late);
+  EXPECT_GE(state.may_have_moved, 0.2);
+  EXPECT_NEAR(state.may_have_moved, 0.2, 1e-12);
+  EXPECT_EQ(state.age_ns, 100 * kTick);
+  EXPECT_TRUE(state.known());
+
+  advance(late_after(20 * kTick, kInfinity), kStart + 100 * kTick, state);
+  EXPECT_FALSE(state.known());
+}
+
+TEST(ObjectState, AgesOfExtremeStampsDoNotOverflow) {
+  PoseSample sample = good();
+  sample.stamp_ns = kEarliest;
+  ObjectState state;
+  accept(kInTime, sample, state);
+  advance(late_after(0, 1.0), kLatest, state);
+  EXPECT_EQ(state.age_ns, kLatest);
+  sample.stamp_ns = kLatest;
+  accept(kInTime, sample, state);
+  advance(late_after(0, 1.0), kEarliest, state);
+  EXPECT_EQ(state.age_ns, 0);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,89 @@
+// What a test of its own may ask of a replay: a minimum distance, silent zones.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tests/monitor/replay/offline_replay_run.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+
+using ReplayExpectations = OfflineReplayTest;
+
+TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBroken) {
+  record_run(scene, run, {.nearest = 0.08});
+  EXPECT_TRUE(replay({.expect_min_distance = 0.0799}).ok());
+  const OfflineReplay result = replay({.expect_min_distance = 0.09});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_THAT(result.text(), HasSubstr("hand - box is 0.08"));
+  EXPECT_THAT(result.text(), HasSubstr("at least 0.09 m expected"));
+  EXPECT_GT(result.failures[0].tick.cycle, 90u);
+  EXPECT_LT(result.failures[0].tick.cycle, 101u);
+  EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
+}
+
+// The hand goes to and fro past the box, 1.2 m a tick; y: how far it keeps from the box's middle.
+void record_darts(const Scene& scene, const std::filesystem::path& file, double y) {
+  Monitor monitor(scene);
+  Recorder recorder(file, scene, kStart);
+  for (int tick = 0; tick < 6; ++tick) {
+    const std::int64_t now_ns = kStart + tick * kTick;
+    PoseBatch batch{SourceName("arm"), static_cast<std::uint64_t>(tick + 1), scene.revision, {}};
+    batch.samples.push_back(sample(0, at(tick % 2 == 0 ? -0.6 : 0.6, y, 0), now_ns));
+    batch.samples.push_back(sample(1, at(0, 3, 3), now_ns));
+    recorder.poses(batch);
+    recorder.report(monitor.tick(batch.samples, now_ns),
+                    std::array{SourceUse{batch.source, batch.sequence_number}});
+  }
+  EXPECT_TRUE(recorder.close()) << recorder.error();
+}
+
+TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMinimumDistance) {
+  record_darts(scene, run, 0.0);
+  const OfflineReplay result = replay({.expect_min_distance = 0.2});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_EQ(2u, result.failures[0].tick.cycle);
+  EXPECT_THAT(result.text(), HasSubstr("hand - box was no more than -"));
+  EXPECT_THAT(result.text(),
+              HasSubstr("apart between this tick and the last, at least 0.2 m expected"));
+}
+
+// 0.45 m at the nearest; how far the hand goes would leave everything open.
+TEST_F(ReplayExpectations, WhatPassesByBetweenTwoTicksIsLookedAtCloserBeforeItIsJudged) {
+  record_darts(scene, run, 0.6);
+  const OfflineReplay near = replay({.compare = Comparison::kBits, .expect_min_distance = 0.44});
+  EXPECT_TRUE(near.ok()) << near.text();
+  EXPECT_THAT(replay({.expect_min_distance = 0.46}).text(), HasSubstr("hand - box was no more"));
+}
+
+TEST_F(ReplayExpectations, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
+  record_run(scene, run, {.nearest = 0.11});
+  EXPECT_TRUE(replay({.expect_no_zone = {"stop"}}).ok());
+  record_run(scene, folder / "near.mcap", {.nearest = 0.05});
+  run = folder / "near.mcap";
+  const OfflineReplay result = replay({.expect_no_zone = {"stop"}});
+  ASSERT_EQ(1u, result.failures.size());
+  EXPECT_THAT(result.failures[0].what,
+              HasSubstr("zone 'stop' is active: hand - box has a clearance of 0.09"));
+}
+
+TEST_F(ReplayExpectations, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
+  record_run(scene, run);
+  EXPECT_THAT(replay({.expect_no_zone = {"halt"}}).error,
+              HasSubstr("the cell has no zone 'halt'; its zones are 'stop'"));
+}
+
+TEST_F(ReplayExpectations, ExpectationsFailWhenAnObjectIsNeverSeen) {
+  scene.objects.push_back(moving("ghost", {ball(0.1)}));
+  scene.pairs.push_back({0, 3, false});
+  record_run(scene, run);
+  const OfflineReplay result = replay({.expect_min_distance = 0.01});
+  ASSERT_EQ(1u, result.failures.size());
+  EXPECT_THAT(result.failures[0].what, HasSubstr("never gives a usable pose of 'ghost'"));
+}
+
+}  // namespace
+}  // namespace clearance::test

@@ -1,0 +1,97 @@
+#include "monitor/schedule/refresh_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::uint32_t kNobody = RefreshQueue::kNobody;
+
+// Four objects, six pairs: 01 02 03 12 13 23.
+class RefreshQueueTest : public testing::Test {
+ protected:
+  RefreshQueueTest() {
+    for (ObjectState& object : objects) object.seen = true;
+  }
+
+  static Scene four_balls() {
+    std::vector<Object> balls(4, test::moving("ball", {test::ball(0.1)}));
+    return test::cell_of(std::move(balls));
+  }
+  void lose(std::uint32_t object) { objects[object].may_have_moved = kInfinity; }
+  void regain(std::uint32_t object) {
+    objects[object].may_have_moved = 0.0;
+    queue.regain(object);
+    queue.bring_back(broad_phase, objects, table);
+  }
+  // Takes everyone off the head, in a tick of its own each.
+  std::vector<std::uint32_t> order() {
+    std::vector<std::uint32_t> pairs;
+    for (std::uint64_t cycle = 100; queue.refreshed_cycle(queue.stalest()) < 100; ++cycle) {
+      pairs.push_back(queue.stalest());
+      queue.refreshed(queue.stalest(), cycle);
+    }
+    return pairs;
+  }
+
+  Scene scene = four_balls();
+  std::vector<PlacedPart> parts = parts_of(scene);
+  PairTable table{scene, parts};
+  BroadPhase broad_phase{scene, parts, {std::vector<double>(6), std::vector<double>(4)}, {}, 100};
+  std::vector<ObjectState> objects = std::vector<ObjectState>(4);
+  RefreshQueue queue{4, 6};
+};
+
+using Pairs = std::vector<std::uint32_t>;
+
+TEST_F(RefreshQueueTest, NobodyIsStalestInAnEmptyOne) {
+  EXPECT_EQ(queue.stalest(), kNobody);
+  EXPECT_EQ(queue.refreshed_cycle(3), 0u);
+}
+
+TEST_F(RefreshQueueTest, WhoWasRefreshedForAnyReasonGoesToTheBack) {
+  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
+  EXPECT_EQ(queue.oldest(), 1u);
+  queue.refreshed(0, 7);
+  queue.refreshed(3, 8);
+  EXPECT_EQ(queue.oldest(), 2u);
+  EXPECT_EQ(order(), (Pairs{1, 2, 4, 5, 0, 3}));
+}
+
+TEST_F(RefreshQueueTest, WhoNeverWasComesFirst) {
+  queue.refreshed(0, 1);
+  queue.enter(5);
+  queue.enter(5);
+  EXPECT_EQ(queue.oldest(), 0u);
+  EXPECT_EQ(order(), (Pairs{5, 0}));
+}
+
+TEST_F(RefreshQueueTest, PairsThatComeBackIntoSightComeFirst) {
+  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
+  lose(0);
+  queue.set_aside(0, 0);
+  queue.set_aside(1, 0);
+  EXPECT_EQ(queue.oldest(), 3u);
+  queue.refreshed(2, 9);
+  regain(0);
+  EXPECT_EQ(queue.oldest(), 1u);
+  EXPECT_EQ(order(), (Pairs{0, 1, 3, 4, 5, 2}));
+}
+
+TEST_F(RefreshQueueTest, APairComesBackWhenBothOfItsObjectsHave) {
+  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
+  lose(0);
+  lose(1);
+  queue.set_aside(0, 0);
+  regain(0);
+  EXPECT_EQ(queue.stalest(), 1u) << "object 1 is still out of sight";
+  EXPECT_EQ(queue.oldest(), 2u);
+  regain(1);
+  EXPECT_EQ(queue.stalest(), 0u);
+  EXPECT_EQ(queue.oldest(), 1u);
+}
+
+}  // namespace
+}  // namespace clearance

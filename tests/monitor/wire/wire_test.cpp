@@ -1,0 +1,320 @@
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tests/monitor/wire/wire_samples.hpp"
+
+namespace clearance::test {
+namespace {
+
+std::vector<std::byte> copy(std::span<const std::byte> bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class T>
+std::vector<std::byte> encoded(const Sample<T>& sample) {
+  CdrEncoder encoder;
+  return copy(encoder.encode(*sample));
+}
+
+// A participant that hears nothing but itself.
+class OwnDomain {
+ public:
+  OwnDomain() {
+    constexpr dds_domainid_t kDomain = 171;
+    domain_ = dds_create_domain(kDomain, "<General><Transport>none</Transport></General>");
+    participant = dds_create_participant(kDomain, nullptr, nullptr);
+  }
+  ~OwnDomain() { dds_delete(domain_); }
+  dds_entity_t participant = 0;
+
+ private:
+  dds_entity_t domain_ = 0;
+};
+
+// The bytes that dds_takecdr gives for a sample written through Cyclone.
+template <class T>
+std::vector<std::byte> through_dds(dds_entity_t participant, const Sample<T>& sample) {
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+  const dds_entity_t topic =
+      dds_create_topic(participant, &topic_descriptor<T>(), "wire_test", qos, nullptr);
+  const dds_entity_t reader = dds_create_reader(participant, topic, qos, nullptr);
+  const dds_entity_t writer = dds_create_writer(participant, topic, qos, nullptr);
+  dds_delete_qos(qos);
+  EXPECT_EQ(DDS_RETCODE_OK, dds_write(writer, &*sample));
+  ddsi_serdata* serdata = nullptr;
+  dds_sample_info_t info;
+  EXPECT_EQ(1, dds_takecdr(reader, &serdata, 1, &info, DDS_ANY_STATE));
+  std::vector<std::byte> bytes(serdata == nullptr ? 0 : ddsi_serdata_size(serdata));
+  if (serdata != nullptr) {
+    ddsi_serdata_to_ser(serdata, 0, bytes.size(), bytes.data());
+    ddsi_serdata_unref(serdata);
+  }
+  dds_delete(writer);
+  dds_delete(reader);
+  dds_delete(topic);
+  return bytes;
+}
+
+template <class T>
+class EveryTopic : public testing::Test {};
+using Topics =
+    testing::Types<clearance_msg_PoseBatch, clearance_msg_Distances, clearance_msg_Catalogue,
+                   clearance_msg_ZoneState, clearance_msg_Health>;
+TYPED_TEST_SUITE(EveryTopic, Topics);
+
+TYPED_TEST(EveryTopic, EncodesToTheBytesThatDdsCarries) {
+  std::mt19937_64 random(1);
+  OwnDomain domain;
+  ASSERT_GT(domain.participant, 0);
+  for (int i = 0; i < 20; ++i) {
+    Sample<TypeParam> sample;
+    fill(random, sample);
+    EXPECT_EQ(through_dds(domain.participant, sample), encoded(sample));
+  }
+}
+
+TYPED_TEST(EveryTopic, DecodesToWhatWasEncodedAlsoIntoAUsedSample) {
+  std::mt19937_64 random(2);
+  CdrDecoder decoder;
+  Sample<TypeParam> reused;
+  for (int i = 0; i < 50; ++i) {
+    Sample<TypeParam> sample;
+    fill(random, sample);
+    const std::vector<std::byte> bytes = encoded(sample);
+    ASSERT_TRUE(decoder.decode(bytes, reused));
+    EXPECT_EQ(bytes, encoded(reused));
+  }
+}
+
+TYPED_TEST(EveryTopic, RefusesBytesCutOffAnywhere) {
+  std::mt19937_64 random(3);
+  Sample<TypeParam> sample;
+  fill(random, sample);
+  const std::vector<std::byte> bytes = encoded(sample);
+  const std::size_t padding = std::to_integer<std::size_t>(bytes[3]);
+  CdrDecoder decoder;
+  Sample<TypeParam> decoded;
+  for (std::size_t length = 0; length < bytes.size() - padding; ++length) {
+    EXPECT_FALSE(decoder.decode({bytes.data(), length}, decoded)) << length;
+  }
+}
+
+TYPED_TEST(EveryTopic, SurvivesFlippedBitsAndWhatItAcceptsCanBeEncoded) {
+  std::mt19937_64 random(4);
+  CdrDecoder decoder;
+  int accepted = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Sample<TypeParam> sample;
+    fill(random, sample);
+    std::vector<std::byte> bytes = encoded(sample);
+    for (int flip = 0; flip < 3; ++flip) {
+      bytes[random() % bytes.size()] ^= static_cast<std::byte>(1u << random() % 8);
+    }
+    Sample<TypeParam> decoded;
+    if (!decoder.decode(bytes, decoded)) continue;
+    ++accepted;
+    EXPECT_FALSE(encoded(decoded).empty());
+  }
+  EXPECT_GT(accepted, 100);
+}
+
+TYPED_TEST(EveryTopic, RefusesTrailingBytesOfAnotherLayout) {
+  std::mt19937_64 random(5);
+  Sample<TypeParam> sample;
+  fill(random, sample);
+  std::vector<std::byte> bytes = encoded(sample);
+  bytes.resize(bytes.size() + 8);
+  EXPECT_FALSE(CdrDecoder().decode(bytes, sample));
+}
+
+TEST(Cdr, ReadsBigEndianWriters) {
+  // ZoneState {zone 2, "stop", active, not proved, pair 5, clearance 0.5 and
+  // 0.25, since 7, cycle 9, now 1}
+  constexpr unsigned char kBytes[] = {
+      0,    0,    0, 0,  // encapsulation: XCDR1, big-endian
+      0,    0,    0, 2, 0, 0, 0, 5, 's', 't', 'o', 'p', 0, 1, 0, 0,  //
+      0,    0,    0, 5, 0, 0, 0, 0,                                  // pair, padding to 8
+      0x3f, 0xe0, 0, 0, 0, 0, 0, 0,                                  // 0.5
+      0x3f, 0xd0, 0, 0, 0, 0, 0, 0,                                  // 0.25
+      0,    0,    0, 0, 0, 0, 0, 7, 0,   0,   0,   0,   0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0, 1};
+  Sample<clearance_msg_ZoneState> zone;
+  CdrDecoder decoder;
+  ASSERT_TRUE(decoder.decode(std::as_bytes(std::span(kBytes)), zone));
+  EXPECT_EQ(2u, zone->zone);
+  EXPECT_STREQ("stop", zone->name);
+  EXPECT_TRUE(zone->active);
+  EXPECT_FALSE(zone->proved);
+  EXPECT_EQ(5u, zone->pair);
+  EXPECT_EQ(0.5, zone->clearance);
+  EXPECT_EQ(0.25, zone->clearance_since);
+  EXPECT_EQ(7u, zone->since_cycle);
+  EXPECT_EQ(9u, zone->cycle);
+  EXPECT_EQ(1, zone->now_ns);
+}
+
+TEST(Cdr, RefusesASequenceBeyondItsBound) {
+  Sample<clearance_msg_Distances> report;
+  reserve_sequence(report->sources, clearance_msg_kMaxSources + 1);
+  report->sources._length = clearance_msg_kMaxSources + 1;
+  EXPECT_TRUE(encoded(report).empty());
+}
+
+Scene small_scene() {
+  Scene scene;
+  scene.name = "small";
+  scene.revision = 77;
+  scene.yaml = "name: small\n";
+  scene.objects.resize(3);
+  scene.objects[0].name = "floor";
+  scene.objects[0].fixed = true;
+  scene.objects[1].name = "hand";
+  scene.objects[1].parts.resize(2);
+  scene.objects[1].parts[0].name = "palm";
+  scene.objects[1].parts[1].name = "thumb";
+  scene.objects[2].name = "box";
+  scene.pairs = {{0, 1, true}, {0, 2, false}, {1, 2, true}};
+  scene.zones.push_back({"stop", "hands", "boxes", 0.05, 0.08, {2}});
+  return scene;
+}
+
+TEST(Convert, ReportFillsAPreparedSampleWithoutMovingItsStorage) {
+  const Scene scene = small_scene();
+  Sample<clearance_msg_Distances> sample = make_distances(scene);
+  const auto* const storage = sample->pairs._buffer;
+  Report report;
+  report.cycle = 12;
+  report.now_ns = 1000;
+  report.minimum.distance = 0.25;
+  report.minimum.witness_b = Vec3(1.0, 2.0, 3.0);
+  report.pairs.resize(2);
+  report.pairs[1].pair = 2;
+  report.pairs[1].status = PairStatus::kCarried;
+  report.pairs[1].lower = -kInfinity;
+  const SourceUse use{SourceName("arm"), 99};
+
+  EXPECT_TRUE(to_wire(report, {&use, 1}, 1234, *sample));
+  EXPECT_EQ(storage, sample->pairs._buffer);
+  EXPECT_EQ(12u, sample->cycle);
+  EXPECT_EQ(1234, sample->publish_ns);
+  EXPECT_EQ(0.25, sample->minimum.distance);
+  EXPECT_EQ(3.0, sample->minimum.witness_b.z);
+  ASSERT_EQ(2u, sample->pairs._length);
+  EXPECT_EQ(static_cast<std::uint8_t>(PairStatus::kCarried), sample->pairs._buffer[1].status);
+  EXPECT_EQ(-kInfinity, sample->pairs._buffer[1].lower);
+  ASSERT_EQ(1u, sample->sources._length);
+  EXPECT_STREQ("arm", sample->sources._buffer[0].source);
+  EXPECT_EQ(99u, sample->sources._buffer[0].sequence_number);
+}
+
+TEST(Convert, ReportThatDoesNotFitSaysSo) {
+  Sample<clearance_msg_Distances> sample = make_distances(small_scene());
+  Report report;
+  report.pairs.resize(3);
+  EXPECT_FALSE(to_wire(report, {}, 0, *sample));
+  EXPECT_EQ(2u, sample->pairs._length);
+}
+
+TEST(Convert, CatalogueNamesEveryObjectPartPairAndZone) {
+  const Sample<clearance_msg_Catalogue> catalogue = make_catalogue(small_scene());
+  EXPECT_STREQ("small", catalogue->scene);
+  EXPECT_EQ(77u, catalogue->scene_revision);
+  ASSERT_EQ(3u, catalogue->objects._length);
+  EXPECT_TRUE(catalogue->objects._buffer[0].is_fixed);
+  EXPECT_EQ(1u, catalogue->objects._buffer[1].id);
+  ASSERT_EQ(2u, catalogue->objects._buffer[1].parts._length);
+  EXPECT_STREQ("thumb", catalogue->objects._buffer[1].parts._buffer[1]);
+  ASSERT_EQ(3u, catalogue->pairs._length);
+  EXPECT_EQ(2u, catalogue->pairs._buffer[2].object_b);
+  EXPECT_FALSE(catalogue->pairs._buffer[1].published);
+  ASSERT_EQ(1u, catalogue->zones._length);
+  EXPECT_STREQ("stop", catalogue->zones._buffer[0].name);
+  EXPECT_EQ(0.08, catalogue->zones._buffer[0].leave_above);
+  EXPECT_STREQ("name: small\n", catalogue->cell_yaml);
+}
+
+TEST(Convert, ZoneStateCarriesNameAndTickAndCutsAnOverlongName) {
+  Scene scene = small_scene();
+  scene.zones[0].name = std::string(100, 'z');
+  Report report;
+  report.cycle = 5;
+  report.now_ns = 6;
+  report.zones.resize(1);
+  report.zones[0] = {true, true, true, 2, 0.04, 0.03, 3};
+  Sample<clearance_msg_ZoneState> zone;
+  to_wire(scene, report, 0, *zone);
+  EXPECT_EQ(std::string(64, 'z'), zone->name);
+  EXPECT_TRUE(zone->active);
+  EXPECT_EQ(0.04, zone->clearance);
+  EXPECT_EQ(0.03, zone->clearance_since);
+  EXPECT_EQ(3u, zone->since_cycle);
+  EXPECT_EQ(5u, zone->cycle);
+  EXPECT_EQ(6, zone->now_ns);
+}
+
+TEST(Convert, PosesComeBackBitForBit) {
+  std::mt19937_64 random(6);
+  PoseBatch sent{SourceName("arm"), 41, 42, std::vector<PoseSample>(50)};
+  for (PoseSample& sample : sent.samples) {
+    sample.object = static_cast<std::uint32_t>(random());
+    sample.stamp_ns = static_cast<std::int64_t>(random());
+    for (int i = 0; i < 3; ++i) sample.world_from_object.position[i] = any_double(random);
+    for (int i = 0; i < 4; ++i)
+      sample.world_from_object.orientation.coeffs()[i] = any_double(random);
+    sample.has_twist = random() % 2 != 0;
+    for (int i = 0; i < 3; ++i) sample.twist.linear[i] = any_double(random);
+    for (int i = 0; i < 3; ++i) sample.twist.angular[i] = any_double(random);
+  }
+  Sample<clearance_msg_PoseBatch> wire = make_batch(sent.samples.size());
+  EXPECT_TRUE(to_wire(sent, *wire));
+  PoseBatch received;
+  from_wire(*wire, received);
+  EXPECT_EQ("arm", received.source.view());
+  EXPECT_EQ(41u, received.sequence_number);
+  EXPECT_EQ(42u, received.scene_revision);
+  ASSERT_EQ(sent.samples.size(), received.samples.size());
+  const auto same = [](const auto& a, const auto& b) {  // NaN is itself here
+    return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) ==
+           0;
+  };
+  for (std::size_t i = 0; i < sent.samples.size(); ++i) {
+    const PoseSample& a = sent.samples[i];
+    const PoseSample& b = received.samples[i];
+    EXPECT_EQ(a.object, b.object);
+    EXPECT_EQ(a.stamp_ns, b.stamp_ns);
+    EXPECT_EQ(a.has_twist, b.has_twist);
+    EXPECT_TRUE(same(a.world_from_object.position, b.world_from_object.position));
+    EXPECT_TRUE(
+        same(a.world_from_object.orientation.coeffs(), b.world_from_object.orientation.coeffs()));
+    EXPECT_TRUE(same(a.twist.linear, b.twist.linear));
+    EXPECT_TRUE(same(a.twist.angular, b.twist.angular));
+  }
+}
+
+TEST(Convert, BatchIsForTheSceneOfItsRevisionAndForAnyWithoutOne) {
+  PoseBatch batch;
+  batch.scene_revision = 78;
+  EXPECT_FALSE(made_for(batch, 77));
+  EXPECT_TRUE(made_for(batch, 78));
+  batch.scene_revision = 0;
+  EXPECT_TRUE(made_for(batch, 77));
+}
+
+TEST(Convert, BatchLargerThanTheRoomIsCutAndSaysSo) {
+  const PoseBatch sent{SourceName("arm"), 1, 0, std::vector<PoseSample>(4)};
+  Sample<clearance_msg_PoseBatch> wire = make_batch(3);
+  EXPECT_FALSE(to_wire(sent, *wire));
+  EXPECT_EQ(3u, wire->poses._length);
+}
+
+}  // namespace
+}  // namespace clearance::test

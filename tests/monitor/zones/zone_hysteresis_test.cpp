@@ -1,0 +1,109 @@
+#include "monitor/zones/zone_hysteresis.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kMargins = 0.03;
+
+// Two pairs, margins 0.01 + 0.02 each; enter below 0.1, leave above 0.15.
+class ZoneState : public testing::Test {
+ protected:
+  ZoneState() {
+    for (const char* name : {"a", "b"}) scene_.objects.push_back(test::moving(name, {}));
+    scene_.objects[0].margin = 0.01;
+    scene_.objects[1].margin = 0.02;
+    scene_.pairs = {{0, 1, false}, {0, 1, false}};
+    zone_ = test::zone_over(scene_, 0.1, 0.15);
+  }
+
+  // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
+  const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
+    ZoneUpdate update(zone_, report_);
+    return tick({.status = status, .lower = first + 0.03, .lower_since = first + 0.03},
+                {.status = status, .lower = second + 0.03, .lower_since = second + 0.03});
+  }
+  const ZoneReport& tick(const PairSummary& first, const PairSummary& second) {
+    ZoneUpdate update(zone_, report_);
+    update.add(0, first, kMargins);
+    update.add(1, second, kMargins);
+    update.finish(++cycle_, report_);
+    return report_;
+  }
+
+  Scene scene_;
+  Zone zone_;
+  ZoneReport report_;
+  std::uint64_t cycle_ = 0;
+};
+
+TEST_F(ZoneState, EntersBelowAndLeavesAboveWithHysteresisBetween) {
+  EXPECT_FALSE(tick(0.2, 0.12).active);
+  EXPECT_TRUE(tick(0.2, 0.09).active);
+  EXPECT_TRUE(report_.changed);
+  EXPECT_EQ(report_.since_cycle, 2u);
+  EXPECT_EQ(report_.pair, 1u);
+  EXPECT_TRUE(tick(0.2, 0.12).active);
+  EXPECT_FALSE(report_.changed);
+  EXPECT_TRUE(tick(0.14, 0.16).active) << "every pair has to leave";
+  EXPECT_FALSE(tick(0.16, 0.16).active);
+  EXPECT_EQ(report_.since_cycle, 5u);
+  EXPECT_FALSE(tick(0.14, 0.16).active);
+}
+
+TEST_F(ZoneState, ClearanceIsTheLowerBoundLessBothMargins) {
+  EXPECT_NEAR(tick(0.3, 0.4).clearance, 0.3, 1e-12);
+  EXPECT_LE(report_.clearance, 0.3);
+}
+
+TEST_F(ZoneState, IsProvedByEvaluationsAndByBoundsThatLieOutside) {
+  EXPECT_TRUE(tick(0.05, 0.3).proved);
+  EXPECT_TRUE(tick(0.2, 0.3, PairStatus::kCarried).proved);
+  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kCarried).proved);
+  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kStale).proved);
+}
+
+TEST_F(ZoneState, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEntered) {
+  EXPECT_TRUE(tick(0.12, 0.3, PairStatus::kCarried).proved);
+  EXPECT_FALSE(report_.active);
+  tick(0.05, 0.3);
+  EXPECT_FALSE(tick(0.12, 0.3, PairStatus::kCarried).proved);
+  EXPECT_TRUE(report_.active);
+}
+
+TEST_F(ZoneState, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
+  const auto status = PairStatus::kConverged;
+  const PairSummary nearest{.status = status, .lower = 0.23, .lower_since = 0.23};
+  PairSummary passing{.status = status, .lower = 0.53, .lower_since = 0.08, .upper_since = 0.09};
+  EXPECT_TRUE(tick(nearest, passing).active);
+  EXPECT_EQ(report_.pair, 1u);
+  EXPECT_NEAR(report_.clearance, 0.2, 1e-12) << "of the other pair, and of now";
+  EXPECT_NEAR(report_.clearance_since, 0.05, 1e-12);
+  EXPECT_TRUE(report_.proved) << "it was there";
+  EXPECT_FALSE(tick(nearest, nearest).active);
+  EXPECT_EQ(report_.pair, 0u);
+  passing.upper_since = 0.5;
+  EXPECT_TRUE(tick(nearest, passing).active);
+  EXPECT_FALSE(report_.proved) << "it may have been there";
+}
+
+TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
+  tick(-kInfinity, 0.3, PairStatus::kUnknown);
+  EXPECT_TRUE(report_.active);
+  EXPECT_FALSE(report_.proved);
+  EXPECT_EQ(report_.pair, 0u);
+  EXPECT_EQ(report_.clearance, -kInfinity);
+}
+
+TEST_F(ZoneState, AZoneOfNoPairsIsNeverActive) {
+  const ZoneUpdate update(zone_, report_);
+  update.finish(1, report_);
+  EXPECT_FALSE(report_.active);
+  EXPECT_TRUE(report_.proved);
+}
+
+}  // namespace
+}  // namespace clearance
