@@ -31,7 +31,7 @@ constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 // The sections of a cell, one function each.
 class CellReader {
  public:
-  CellReader(const std::filesystem::path& file, Complaints& complaints, Revision& revision)
+  CellReader(const std::filesystem::path& file, Diagnostics& complaints, Revision& revision)
       : file_(file), complaints_(complaints), revision_(revision) {}
 
   void read(const YamlNode& root, Scene& scene);
@@ -45,7 +45,7 @@ class CellReader {
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // where the cell gives it
 };
@@ -154,7 +154,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     ShapeReader shapes(quantities, file_.parent_path(), revision_);
     list = read_objects(*objects_node, defaults, quantities, shapes);
   }
-  Members members(list, complaints_);
+  GroupIndex members(list, complaints_);
   PairList pairs;
   pairs.complete = false;
   if (pairs_node != nullptr)
@@ -198,7 +198,7 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 }  // namespace
 
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file) {
-  Complaints complaints(file.string());
+  Diagnostics complaints(file.string());
   const auto document = parse_yaml(yaml);
   if (const auto* fault = std::get_if<YamlFault>(&document)) {
     complaints.add(fault->line, fault->column, fault->reason);
@@ -217,7 +217,7 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
 CellResult read_cell(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file.string());
   if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-    Complaints complaints(file.string());
+    Diagnostics complaints(file.string());
     complaints.add(1, 1, "found no cell file: " + fault->reason + "; expected a YAML file");
     return complaints.sorted();
   }

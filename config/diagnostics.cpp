@@ -40,7 +40,7 @@ std::string describe(const YamlNode& node) {
   return node.text.empty() ? "an empty text" : "the text '" + shortened(node.text) + "'";
 }
 
-void Complaints::add(int line, int column, const std::string& text) {
+void Diagnostics::add(int line, int column, const std::string& text) {
   // What was found may hold line breaks; a message is one line.
   std::string one_line = text;
   std::replace_if(
@@ -49,19 +49,19 @@ void Complaints::add(int line, int column, const std::string& text) {
   complaints_.push_back({line, column, std::move(one_line)});
 }
 
-std::vector<CellError> Complaints::sorted() const {
-  std::vector<Complaint> ordered = complaints_;
-  std::sort(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+std::vector<CellError> Diagnostics::sorted() const {
+  std::vector<Diagnostic> ordered = complaints_;
+  std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
   });
   // A mistake behind an anchor (&x) is met once for every alias of it.
   const auto end =
-      std::unique(ordered.begin(), ordered.end(), [](const Complaint& a, const Complaint& b) {
+      std::unique(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
         return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);
       });
   ordered.erase(end, ordered.end());
   std::vector<CellError> errors;
-  for (const Complaint& complaint : ordered) {
+  for (const Diagnostic& complaint : ordered) {
     errors.push_back({file_ + ":" + std::to_string(complaint.line) + ":" +
                       std::to_string(complaint.column) + ": " + complaint.text});
   }

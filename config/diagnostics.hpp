@@ -13,9 +13,9 @@ namespace clearance {
 // found.
 [[nodiscard]] std::string describe(const YamlNode& node);
 
-class Complaints {
+class Diagnostics {
  public:
-  explicit Complaints(std::string file) : file_(std::move(file)) {}
+  explicit Diagnostics(std::string file) : file_(std::move(file)) {}
 
   // `text` says what was found and what was expected.
   void add(const YamlNode& at, const std::string& text) { add(at.line, at.column, text); }
@@ -28,12 +28,12 @@ class Complaints {
   [[nodiscard]] std::vector<CellError> sorted() const;
 
  private:
-  struct Complaint {
+  struct Diagnostic {
     int line, column;
     std::string text;
   };
   std::string file_;
-  std::vector<Complaint> complaints_;
+  std::vector<Diagnostic> complaints_;
 };
 
 }  // namespace clearance

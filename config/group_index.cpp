@@ -6,7 +6,7 @@
 
 namespace clearance {
 
-Members::Members(const ObjectList& list, Complaints& complaints)
+GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& complaints)
     : list_(list), complaints_(complaints) {
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
     if (!list.objects[i].name.empty()) entries_[list.objects[i].name] = {{i}, false, false};
@@ -25,7 +25,7 @@ Members::Members(const ObjectList& list, Complaints& complaints)
   }
 }
 
-const std::vector<std::uint32_t>* Members::find(const YamlNode& node, const std::string& name) {
+const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const std::string& name) {
   const auto found = entries_.find(name);
   if (found != entries_.end()) {
     found->second.used = true;
@@ -40,7 +40,7 @@ const std::vector<std::uint32_t>* Members::find(const YamlNode& node, const std:
   return nullptr;
 }
 
-std::optional<Between> Members::read_between(MapReader& map) {
+std::optional<Between> GroupIndex::read_between(MapReader& map) {
   const YamlNode* node = map.required("between");
   if (node == nullptr) return std::nullopt;
   if (node->kind != YamlNode::Kind::kSequence || node->items.size() != 2) {
@@ -59,7 +59,7 @@ std::optional<Between> Members::read_between(MapReader& map) {
   return between;
 }
 
-std::vector<PairKey> Members::pairs(const Between& between) const {
+std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   std::vector<PairKey> keys;
   for (const std::uint32_t a : *between.objects[0]) {
     for (const std::uint32_t b : *between.objects[1]) {
@@ -72,7 +72,7 @@ std::vector<PairKey> Members::pairs(const Between& between) const {
   return keys;
 }
 
-void Members::refuse_unused_groups() const {
+void GroupIndex::refuse_unused_groups() const {
   std::vector<std::string> used;
   for (const auto& [name, entry] : entries_) {
     if (entry.is_group && entry.used) used.push_back(name);

@@ -29,13 +29,13 @@ using PairKey = std::uint64_t;
 // A `between:` that could be read.
 struct Between {
   std::array<std::string, 2> names;
-  std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by Members
+  std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by GroupIndex
 };
 
-class Members {
+class GroupIndex {
  public:
   // Complains about a group that has an object's name. The list must outlive this.
-  Members(const ObjectList& list, Complaints& complaints);
+  GroupIndex(const ObjectList& list, Diagnostics& complaints);
 
   // The key `between` of a map. Nothing after a complaint.
   [[nodiscard]] std::optional<Between> read_between(MapReader& map);
@@ -57,7 +57,7 @@ class Members {
   const std::vector<std::uint32_t>* find(const YamlNode& node, const std::string& name);
 
   const ObjectList& list_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   std::map<std::string, Entry> entries_;
 };
 

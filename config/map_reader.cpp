@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-MapReader::MapReader(const YamlNode& node, std::string what, Complaints& complaints)
+MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& complaints)
     : node_(node),
       what_(std::move(what)),
       complaints_(complaints),
@@ -56,7 +56,7 @@ void MapReader::refuse_unknown_keys() {
 }
 
 const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
-                                       Complaints& complaints) {
+                                       Diagnostics& complaints) {
   static const std::vector<YamlNode> kEmpty;
   if (node.kind == YamlNode::Kind::kSequence) return node.items;
   complaints.add(node, "found " + describe(node) + "; expected a list of " + what);

@@ -13,7 +13,7 @@ class MapReader {
  public:
   // `what` names the map in messages: "a zone". Complains when the node is no map or has a key
   // twice. The node and the complaints must outlive the reader.
-  MapReader(const YamlNode& node, std::string what, Complaints& complaints);
+  MapReader(const YamlNode& node, std::string what, Diagnostics& complaints);
 
   [[nodiscard]] bool is_map() const { return is_map_; }
 
@@ -27,7 +27,7 @@ class MapReader {
  private:
   const YamlNode& node_;
   std::string what_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   bool is_map_;
   std::vector<std::string> known_;
 };
@@ -35,6 +35,6 @@ class MapReader {
 // The items of a list; complains and returns an empty list when it is none. `what` finishes
 // "expected a list of ...".
 [[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
-                                                     Complaints& complaints);
+                                                     Diagnostics& complaints);
 
 }  // namespace clearance

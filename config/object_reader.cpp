@@ -31,7 +31,7 @@ class ObjectReader {
 
   const ObjectDefaults& defaults_;
   const Quantities& quantities_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   ShapeReader& shapes_;
 };
 
@@ -186,7 +186,7 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
 
 ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                         const Quantities& quantities, ShapeReader& shapes) {
-  Complaints& complaints = quantities.complaints();
+  Diagnostics& complaints = quantities.complaints();
   ObjectList list;
   ObjectReader reader(defaults, quantities, shapes);
   const std::vector<YamlNode>& items = read_list(node, "objects", complaints);

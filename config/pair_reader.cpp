@@ -11,7 +11,7 @@ constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
 
 class PairReader {
  public:
-  PairReader(const ObjectList& objects, Members& members, Complaints& complaints)
+  PairReader(const ObjectList& objects, GroupIndex& members, Diagnostics& complaints)
       : objects_(objects), members_(members), complaints_(complaints) {}
 
   void read_rules(const YamlNode& node);
@@ -33,8 +33,8 @@ class PairReader {
   void refuse_unwatched_objects() const;
 
   const ObjectList& objects_;
-  Members& members_;
-  Complaints& complaints_;
+  GroupIndex& members_;
+  Diagnostics& complaints_;
   std::vector<Candidate> candidates_;
   bool complete_ = true;
 };
@@ -173,7 +173,7 @@ PairList PairReader::finish(const YamlNode& rules) {
 }  // namespace
 
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
-                    Members& members, Complaints& complaints) {
+                    GroupIndex& members, Diagnostics& complaints) {
   PairReader reader(objects, members, complaints);
   reader.read_rules(pairs);
   if (allowed != nullptr) reader.read_exceptions(*allowed);

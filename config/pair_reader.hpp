@@ -18,7 +18,7 @@ struct PairList {
 // `allowed` may be nullptr. Complains about rules and exceptions that change nothing, about objects
 // that nothing watches, and about more published pairs than a report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
-                                  const ObjectList& objects, Members& members,
-                                  Complaints& complaints);
+                                  const ObjectList& objects, GroupIndex& members,
+                                  Diagnostics& complaints);
 
 }  // namespace clearance

@@ -19,7 +19,7 @@ constexpr double kUnitTolerance = 1e-3;
 template <std::size_t N>
 std::optional<std::array<double, N>> numbers(const YamlNode& node, const std::string& what,
                                              const std::string& each, const Range& range,
-                                             Complaints& complaints) {
+                                             Diagnostics& complaints) {
   if (node.kind != YamlNode::Kind::kSequence || node.items.size() != N) {
     complaints.add(node, "found " + describe(node) + "; expected " + what + ", a list of " +
                              std::to_string(N) + " numbers");
@@ -70,14 +70,14 @@ Range within_cell(const Range& range, LengthUnit unit) {
 
 }  // namespace
 
-std::optional<LengthUnit> read_length_unit(const YamlNode& node, Complaints& complaints) {
+std::optional<LengthUnit> read_length_unit(const YamlNode& node, Diagnostics& complaints) {
   if (node.kind == YamlNode::Kind::kScalar && node.text == "m") return LengthUnit::kMetre;
   if (node.kind == YamlNode::Kind::kScalar && node.text == "mm") return LengthUnit::kMillimetre;
   complaints.add(node, "found " + describe(node) + "; expected the unit of length, m or mm");
   return std::nullopt;
 }
 
-std::optional<AngleUnit> read_angle_unit(const YamlNode& node, Complaints& complaints) {
+std::optional<AngleUnit> read_angle_unit(const YamlNode& node, Diagnostics& complaints) {
   if (node.kind == YamlNode::Kind::kScalar && node.text == "rad") return AngleUnit::kRadian;
   if (node.kind == YamlNode::Kind::kScalar && node.text == "deg") return AngleUnit::kDegree;
   complaints.add(node, "found " + describe(node) + "; expected the unit of angle, rad or deg");

@@ -26,9 +26,9 @@ struct Units {
 
 // "m" or "mm"; "rad" or "deg". Nothing after a complaint.
 [[nodiscard]] std::optional<LengthUnit> read_length_unit(const YamlNode& node,
-                                                         Complaints& complaints);
+                                                         Diagnostics& complaints);
 [[nodiscard]] std::optional<AngleUnit> read_angle_unit(const YamlNode& node,
-                                                       Complaints& complaints);
+                                                       Diagnostics& complaints);
 
 [[nodiscard]] double metres(double value, LengthUnit unit);
 
@@ -36,10 +36,11 @@ struct Units {
 // radius".
 class Quantities {
  public:
-  Quantities(const Units& units, Complaints& complaints) : units_(units), complaints_(complaints) {}
+  Quantities(const Units& units, Diagnostics& complaints)
+      : units_(units), complaints_(complaints) {}
 
   [[nodiscard]] const Units& units() const { return units_; }
-  [[nodiscard]] Complaints& complaints() const { return complaints_; }
+  [[nodiscard]] Diagnostics& complaints() const { return complaints_; }
 
   // The range is in the unit of the file.
   [[nodiscard]] std::optional<double> length(const YamlNode& node, const std::string& what,
@@ -72,7 +73,7 @@ class Quantities {
   [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion(const YamlNode& node) const;
 
   Units units_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
 };
 
 }  // namespace clearance

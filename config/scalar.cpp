@@ -93,7 +93,7 @@ ScalarType scalar_type(const YamlNode& scalar) {
 }
 
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
-                                  Complaints& complaints) {
+                                  Diagnostics& complaints) {
   const std::string expected = "; expected " + expectation(what, range);
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
     complaints.add(node, "found " + describe(node) + expected + number_hint(node));
@@ -115,7 +115,7 @@ std::optional<double> read_number(const YamlNode& node, const Range& range, cons
 
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
                                          std::int64_t most, const std::string& what,
-                                         Complaints& complaints) {
+                                         Diagnostics& complaints) {
   std::int64_t value = 0;
   const char* end = node.text.data() + node.text.size();
   const bool scalar = node.kind == YamlNode::Kind::kScalar && !node.quoted;
@@ -129,7 +129,7 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t leas
   return value;
 }
 
-std::optional<bool> read_flag(const YamlNode& node, Complaints& complaints) {
+std::optional<bool> read_flag(const YamlNode& node, Diagnostics& complaints) {
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kFlag) {
     complaints.add(node, "found " + describe(node) + "; expected true or false");
     return std::nullopt;
@@ -138,7 +138,7 @@ std::optional<bool> read_flag(const YamlNode& node, Complaints& complaints) {
 }
 
 std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
-                                     Complaints& complaints) {
+                                     Diagnostics& complaints) {
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kText) {
     const bool quotable = node.kind == YamlNode::Kind::kScalar;
     complaints.add(
@@ -150,7 +150,7 @@ std::optional<std::string> read_text(const YamlNode& node, const std::string& wh
 }
 
 std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
-                                     Complaints& complaints) {
+                                     Diagnostics& complaints) {
   const auto text = read_text(node, what, complaints);
   if (!text) return std::nullopt;
   const bool bad_byte = std::any_of(text->begin(), text->end(), [](char c) {

@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-class Complaints;
+class Diagnostics;
 
 enum class ScalarType { kNumber, kFlag, kText };
 
@@ -28,17 +28,17 @@ inline constexpr Range kNotNegative{.least = 0.0};
 
 // Each returns nothing after a complaint. `what` finishes "expected ...": "a length in mm".
 [[nodiscard]] std::optional<double> read_number(const YamlNode& node, const Range& range,
-                                                const std::string& what, Complaints& complaints);
+                                                const std::string& what, Diagnostics& complaints);
 [[nodiscard]] std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
                                                        std::int64_t most, const std::string& what,
-                                                       Complaints& complaints);
-[[nodiscard]] std::optional<bool> read_flag(const YamlNode& node, Complaints& complaints);
+                                                       Diagnostics& complaints);
+[[nodiscard]] std::optional<bool> read_flag(const YamlNode& node, Diagnostics& complaints);
 [[nodiscard]] std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
-                                                   Complaints& complaints);
+                                                   Diagnostics& complaints);
 
 // A name that people and CSV files can hold: 1 to 64 bytes, no control characters, commas, quotes,
 // nor blanks at its ends.
 [[nodiscard]] std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
-                                                   Complaints& complaints);
+                                                   Diagnostics& complaints);
 
 }  // namespace clearance

@@ -139,7 +139,7 @@ std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
 }
 
 std::optional<HalfSpace> ShapeReader::read_row(const YamlNode& node) const {
-  Complaints& complaints = quantities_.complaints();
+  Diagnostics& complaints = quantities_.complaints();
   MapReader map(node, "a half-space", complaints);
   const YamlNode* normal_node = map.required("normal");
   const YamlNode* offset_node = map.optional("offset");
@@ -171,7 +171,7 @@ std::optional<ShapeResult> ShapeReader::read_half_space(const YamlNode& node) co
 }
 
 std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) const {
-  Complaints& complaints = quantities_.complaints();
+  Diagnostics& complaints = quantities_.complaints();
   MapReader map(node, "a polyhedron", complaints);
   const YamlNode* vertices_node = map.optional("vertices");
   const YamlNode* rows_node = map.optional("half_spaces");
@@ -240,7 +240,7 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
 }
 
 std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
-  Complaints& complaints = quantities_.complaints();
+  Diagnostics& complaints = quantities_.complaints();
   MapReader map(node, "a mesh", complaints);
   const YamlNode* file_node = map.required("file");
   const YamlNode* scale_node = map.optional("scale");

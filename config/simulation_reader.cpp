@@ -34,7 +34,7 @@ class SimulationReader {
 
   const ObjectList& list_;
   const Quantities& quantities_;
-  Complaints& complaints_;
+  Diagnostics& complaints_;
   std::map<std::uint32_t, int> moved_in_line_;
 };
 
@@ -164,7 +164,7 @@ SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
 
 Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
                            const Quantities& quantities) {
-  Complaints& complaints = quantities.complaints();
+  Diagnostics& complaints = quantities.complaints();
   Simulation simulation;
   SimulationReader reader(objects, quantities);
   MapReader map(node, "the simulation", complaints);

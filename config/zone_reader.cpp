@@ -20,7 +20,8 @@ std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, Pair
 }
 
 void fill_zone(const YamlNode& node, const Between& between, const ObjectList& objects,
-               const PairList& list, const Members& members, Complaints& complaints, Zone& zone) {
+               const PairList& list, const GroupIndex& members, Diagnostics& complaints,
+               Zone& zone) {
   std::vector<PairKey> unwatched;
   for (const PairKey key : members.pairs(between)) {
     if (const auto index = index_of(list.pairs, key)) {
@@ -45,12 +46,12 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
 
 class ZoneReader {
  public:
-  ZoneReader(const ObjectList& objects, const PairList& pairs, Members& members,
+  ZoneReader(const ObjectList& objects, const PairList& pairs, GroupIndex& members,
              const Quantities& quantities)
       : objects_(objects), pairs_(pairs), members_(members), quantities_(quantities) {}
 
   Zone read(const YamlNode& node) {
-    Complaints& complaints = quantities_.complaints();
+    Diagnostics& complaints = quantities_.complaints();
     Zone zone;
     MapReader map(node, "a zone", complaints);
     if (const YamlNode* name = map.required("name")) read_zone_name(*name, zone);
@@ -102,7 +103,7 @@ class ZoneReader {
 
   const ObjectList& objects_;
   const PairList& pairs_;
-  Members& members_;
+  GroupIndex& members_;
   const Quantities& quantities_;
   std::map<std::string, const YamlNode*> names_;
 };
@@ -110,7 +111,7 @@ class ZoneReader {
 }  // namespace
 
 std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects, const PairList& pairs,
-                             Members& members, const Quantities& quantities) {
+                             GroupIndex& members, const Quantities& quantities) {
   std::vector<Zone> zones;
   ZoneReader reader(objects, pairs, members, quantities);
   for (const YamlNode& item : read_list(node, "zones", quantities.complaints())) {

@@ -25,17 +25,17 @@ constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();  /
 
 struct Monitor::State {
   const Scene& scene;
-  std::vector<ObjectState> objects;
-  std::vector<PlacedPart> parts;
+  std::vector<TrackedObject> objects;
+  std::vector<PosedPart> parts;
   std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
   std::vector<std::uint32_t> moving;      // objects that are not fixed
-  std::vector<std::uint32_t> stirred;     // objects of which this tick knows something else
-  InputRound inputs;                      // of this tick
+  std::vector<std::uint32_t> changed;     // objects of which this tick knows something else
+  InputSummary inputs;                    // of this tick
   PairTable table;
   WorkerPool pool;
-  Triage triage;
-  ZoneRound zones;
-  ClosestPair closest;  // of this tick
+  Scheduler triage;
+  Zones zones;
+  GlobalMinimum closest;  // of this tick
   Report report;
 
   State(const Scene& the_scene, const MonitorOptions& options);
@@ -46,13 +46,13 @@ struct Monitor::State {
   void report_pairs() noexcept;
   void report_counts() noexcept;
   void report_whole() noexcept;
-  void count_in(std::uint32_t pair, const PairSummary& state) noexcept;
+  void count_in(std::uint32_t pair, const PairBounds& state) noexcept;
 
   void refuse(std::uint32_t object, Reject cause) noexcept;
   [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
-  void write_report(std::uint32_t pair, const PairSummary& state,
+  void write_report(std::uint32_t pair, const PairBounds& state,
                     PairReport& written) const noexcept;
-  [[nodiscard]] PairSummary summary(std::uint32_t pair, bool published) const noexcept;
+  [[nodiscard]] PairBounds summary(std::uint32_t pair, bool published) const noexcept;
   [[nodiscard]] Clearance rest() const noexcept;
   [[nodiscard]] Clearance pending() const noexcept;
 };
@@ -70,7 +70,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   // parts    -> table: every bound true for these poses, or provably not worth a look
   s.zones.begin(s.report.zones);
   s.report.queries =
-      s.triage.evaluate_due(s.objects, s.stirred, s.parts, s.report.cycle, s.zones, s.table);
+      s.triage.evaluate_due(s.objects, s.changed, s.parts, s.report.cycle, s.zones, s.table);
   s.report_pairs();  // table    -> report
   s.report_counts();
   s.report_whole();
@@ -81,20 +81,20 @@ void Monitor::refuse(std::uint32_t object, Reject cause) noexcept { state_->refu
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->report_pair(pair); }
 
-PassageBounds Monitor::passage(std::uint32_t pair, double level) const noexcept {
+SweptBounds Monitor::passage(std::uint32_t pair, double level) const noexcept {
   State& s = *state_;
-  const PairSummary known = s.summary(pair, s.scene.pairs[pair].publish);
-  PassageBounds bounds{known.lower_since, known.upper_since};
+  const PairBounds known = s.summary(pair, s.scene.pairs[pair].publish);
+  SweptBounds bounds{known.swept_lower, known.swept_upper};
   if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
   Evaluation evaluation{s.objects, s.parts, s.report.cycle, s.table, kNoLimit};
-  const PassageBounds found = passage_of(pair, level, evaluation);
+  const SweptBounds found = passage_of(pair, level, evaluation);
   bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
   bounds.upper = std::min(bounds.upper, found.upper);
   return bounds;
 }
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
-  const ObjectState& state = state_->objects[object];
+  const TrackedObject& state = state_->objects[object];
   return {.age_ns = state.age_ns, .stale = state.late};
 }
 
@@ -114,14 +114,14 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       pool(options.workers, options.on_worker_start),
       triage(the_scene, parts, table, pool),
       zones(the_scene) {
-  const std::vector<EnclosingBall> balls = enclosing_balls(scene.objects.size(), parts);
+  const std::vector<BoundingSphere> balls = bounding_spheres(scene.objects.size(), parts);
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     objects.push_back(initial_state(scene.objects[i]));
     objects[i].reach = balls[i].reach;
     if (!scene.objects[i].fixed) moving.push_back(i);
     first_part[i + 1] = first_part[i] + static_cast<std::uint32_t>(scene.objects[i].parts.size());
   }
-  stirred.reserve(objects.size());
+  changed.reserve(objects.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   report.now_ns = std::numeric_limits<std::int64_t>::min();
@@ -145,7 +145,7 @@ void Monitor::State::take_in(std::span<const PoseSample> samples) noexcept {
       refuse(sample.object, Reject::kUnknownObject);
       continue;
     }
-    ObjectState& object = objects[sample.object];
+    TrackedObject& object = objects[sample.object];
     const auto cause = refusal(sample, object, report.now_ns, scene.future_limit_ns);
     if (cause) {
       refuse(sample.object, *cause);
@@ -162,22 +162,22 @@ void Monitor::State::refuse(std::uint32_t object, Reject cause) noexcept {
 }
 
 void Monitor::State::move() noexcept {
-  stirred.clear();
+  changed.clear();
   if (report.cycle == 1) {
-    for (std::uint32_t i = 0; i < objects.size(); ++i) stirred.push_back(i);
+    for (std::uint32_t i = 0; i < objects.size(); ++i) changed.push_back(i);
   }
   // One loop for each step: no object has to wait for the roots and quotients of the one before.
   for (const std::uint32_t i : moving) {
-    ObjectState& object = objects[i];
+    TrackedObject& object = objects[i];
     const bool was_late = object.late;
     const double might_have_moved = object.may_have_moved;
     advance(scene.objects[i], report.now_ns, object);
     const bool stirs =
         object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
-    if (stirs && report.cycle > 1) stirred.push_back(i);
+    if (stirs && report.cycle > 1) changed.push_back(i);
   }
   for (const std::uint32_t i : moving) travel(objects[i].reach, objects[i]);
-  for (const std::uint32_t i : stirred) {
+  for (const std::uint32_t i : changed) {
     if (!objects[i].seen) continue;
     for (std::uint32_t part = first_part[i]; part < first_part[i + 1]; ++part) {
       place(objects[i], parts[part]);
@@ -191,7 +191,7 @@ void Monitor::State::report_pairs() noexcept {
   report.evaluated = 0;
   for (PairReport& published : report.pairs) {
     const std::uint32_t pair = published.pair;
-    const PairSummary state = summary(pair, true);
+    const PairBounds state = summary(pair, true);
     write_report(pair, state, published);
     if (table.entries[pair].carried_cycle == report.cycle) count_in(pair, state);
   }
@@ -200,7 +200,7 @@ void Monitor::State::report_pairs() noexcept {
   }
 }
 
-void Monitor::State::count_in(std::uint32_t pair, const PairSummary& state) noexcept {
+void Monitor::State::count_in(std::uint32_t pair, const PairBounds& state) noexcept {
   closest.add(pair, state);
   zones.add(pair, state);
   report.evaluated += is_evaluated(state.status);
@@ -221,11 +221,11 @@ void Monitor::State::report_whole() noexcept {
     closest.add_rest(others.now, others.since);
   }
   zones.finish(
-      inputs.any_lost ? std::span<const ObjectState>(objects) : std::span<const ObjectState>(),
+      inputs.any_lost ? std::span<const TrackedObject>(objects) : std::span<const TrackedObject>(),
       pending(), report.cycle, report.zones);
 
   report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
-  report.lower_all_since = report.unknown > 0 ? -kInfinity : closest.lower_since();
+  report.swept_lower_all = report.unknown > 0 ? -kInfinity : closest.swept_lower();
   report.minimum_known = closest.known();
   report.minimum_proved = closest.proved() && report.stale == 0 && report.unknown == 0;
   report.minimum = closest.known() ? report_pair(closest.pair()) : unknown_report();
@@ -247,19 +247,19 @@ Clearance Monitor::State::pending() const noexcept {
           .since = rounded_down(lower - inputs.most_strayed)};
 }
 
-PairSummary Monitor::State::summary(std::uint32_t pair, bool published) const noexcept {
+PairBounds Monitor::State::summary(std::uint32_t pair, bool published) const noexcept {
   // Of other pairs nobody asks how near they came, but for the least of all.
   const bool closely = published || zones.has(pair);
-  PairSummary summary = summary_of(pair, objects, parts, report.cycle, table,
-                                   closely ? Since::kByRelative : Since::kByTravel);
+  PairBounds summary = summary_of(pair, objects, parts, report.cycle, table,
+                                  closely ? Since::kByRelative : Since::kByTravel);
   if (!triage.any_passage()) return summary;
-  const PassageBounds passage = triage.passage(pair);
-  summary.lower_since = std::min(summary.lower, std::max(summary.lower_since, passage.lower));
-  summary.upper_since = std::min(summary.upper_since, passage.upper);
+  const SweptBounds passage = triage.passage(pair);
+  summary.swept_lower = std::min(summary.lower, std::max(summary.swept_lower, passage.lower));
+  summary.swept_upper = std::min(summary.swept_upper, passage.upper);
   return summary;
 }
 
-void Monitor::State::write_report(std::uint32_t pair, const PairSummary& state,
+void Monitor::State::write_report(std::uint32_t pair, const PairBounds& state,
                                   PairReport& written) const noexcept {
   report_on(pair, state, objects, parts, table, written);
   written.refresh_age_cycles = report.cycle - triage.refreshed_cycle(pair, table);

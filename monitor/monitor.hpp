@@ -46,9 +46,9 @@ class Monitor {
   // Any pair as of the last tick, whether it is published or not; all unknown before the first.
   [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
 
-  // How near a pair came between the last two ticks: PairReport::lower_since, and where that is
+  // How near a pair came between the last two ticks: PairReport::swept_lower, and where that is
   // below `level`, m, looked at closer until it is decided, whatever that takes. Changes nothing.
-  [[nodiscard]] PassageBounds passage(std::uint32_t pair, double level) const noexcept;
+  [[nodiscard]] SweptBounds passage(std::uint32_t pair, double level) const noexcept;
 
   // How old an object's pose was at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;

@@ -41,7 +41,7 @@ struct PairReport {
   // "Between two ticks"); less e for objects that strayed from that way by e, both together. A late
   // object also strays by what it may have moved unseen. Of a pair that was not known at the last
   // tick: as `lower`. -infinity when unknown, or when an object leapt 10 km.
-  double lower_since = 0.0;
+  double swept_lower = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; zero where no translation parts them
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
@@ -61,7 +61,7 @@ struct PairReport {
 };
 
 struct ZoneReport {
-  // Some pair's lower_since less both margins is, or has been within the hysteresis, too small: so
+  // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
   // what came too near and was gone again between two ticks has entered, for this tick. An unknown
   // pair's lower bound is -infinity: nobody can say that it is outside.
   bool active = false;
@@ -69,10 +69,10 @@ struct ZoneReport {
   bool proved = false;
   bool changed = false;  // this tick
   // The pair with the smallest (lower - margins); where all of those are outside and the zone is
-  // active for what was between the ticks, the one with the smallest (lower_since - margins).
+  // active for what was between the ticks, the one with the smallest (swept_lower - margins).
   std::uint32_t pair = 0;
   double clearance = 0.0;         // the smallest (lower - margins), m
-  double clearance_since = 0.0;   // the smallest (lower_since - margins), m
+  double swept_clearance = 0.0;   // the smallest (swept_lower - margins), m
   std::uint64_t since_cycle = 0;  // when `active` last changed; 0: never
 };
 
@@ -90,7 +90,7 @@ struct Report {
   // no pair is unknown or stale.
   bool minimum_proved = false;
   double lower_all = 0.0;        // every pair's true distance is at least this
-  double lower_all_since = 0.0;  // and this at every instant since the last tick: see lower_since
+  double swept_lower_all = 0.0;  // and this at every instant since the last tick: see swept_lower
   // Object pairs; each is one of the last four.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick

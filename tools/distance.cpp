@@ -117,7 +117,7 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
 }
 
 int run(const Options& options) {
-  if (!spares_inputs("clearance-distance", options.out, {options.cases})) return kUsage;
+  if (!output_is_not_an_input("clearance-distance", options.out, {options.cases})) return kUsage;
   std::ifstream file_in;
   std::ofstream file_out;
   if (options.cases != "-") {

@@ -41,9 +41,10 @@ int run(int argc, char** argv, StopSignal& stop) {
   arguments.dds.add_to(app);
   app.footer(kFooter);
   if (const auto done = parse(app, argc, argv)) return *done;
-  if (!spares_inputs("clearance-record", arguments.out, {arguments.from_csv, arguments.cell}))
+  if (!output_is_not_an_input("clearance-record", arguments.out,
+                              {arguments.from_csv, arguments.cell}))
     return kUsage;
-  if (!may_write("clearance-record", arguments.out, arguments.force)) return kFailed;
+  if (!can_create("clearance-record", arguments.out, arguments.force)) return kFailed;
   const bool from_csv = !arguments.from_csv.empty();
   std::optional<Scene> scene;
   if (!arguments.cell.empty()) {

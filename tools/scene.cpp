@@ -137,11 +137,11 @@ int run(int argc, char** argv) {
     std::fputs("--output is missing: which file is to be written?\n", stderr);
     return kUsage;
   }
-  if (!spares_inputs("clearance-scene", arguments.output,
-                     {arguments.robot.urdf, arguments.robot.srdf})) {
+  if (!output_is_not_an_input("clearance-scene", arguments.output,
+                              {arguments.robot.urdf, arguments.robot.srdf})) {
     return kUsage;
   }
-  if (!may_write("clearance-scene", arguments.output, arguments.force)) return kFailed;
+  if (!can_create("clearance-scene", arguments.output, arguments.force)) return kFailed;
   if (arguments.robot.urdf.empty()) {
     return write(warehouse_cell(arguments.warehouse), arguments.output);
   }

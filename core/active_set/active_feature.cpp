@@ -40,13 +40,13 @@ std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index, const
   return index;
 }
 
-void ActiveSide::place_cold(const Vec3& other) noexcept {
+void ActiveFeature::place_cold(const Vec3& other) noexcept {
   if (body_.vertices.empty()) return place_inside(body_.interior);
   const Vec3 towards = direction_to_own(other - point_to_common(body_.interior));
   place_at_vertex(body_.start.at(towards));
 }
 
-bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
+bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
   if (hint.dimension == 0 && within(hint.feature, body_.vertices.size())) {
     place_at_vertex(hint.feature);
     return true;
@@ -70,8 +70,8 @@ bool ActiveSide::place_tracked(const TrackingState::Side& hint) noexcept {
 // On an unbounded body another pair's point may be so far out that rounding takes it off its
 // feature. The closest points are no farther away than this, where one of the bodies is bounded:
 // the distance is at most that of any two points.
-void ActiveSide::place_near(const TrackingState::Side& hint, const ActiveSide& other,
-                            double apart) noexcept {
+void ActiveFeature::place_near(const TrackingState::Side& hint, const ActiveFeature& other,
+                               double apart) noexcept {
   const double farthest = body_.bounding_radius + 2.0 * (other.body_.bounding_radius + apart);
   if (place_tracked(hint) && (body_.bounded() || own_.norm() <= farthest)) return;
   place_cold(other.point_to_common(other.body_.interior));

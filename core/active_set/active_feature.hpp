@@ -29,10 +29,10 @@ namespace clearance {
 
 enum class Feature : std::uint8_t { kVertex = 0, kEdge = 1, kFacet = 2, kInside = 3 };
 
-class ActiveSide {
+class ActiveFeature {
  public:
   // pose: null for the body whose frame is the common one.
-  ActiveSide(const ConvexPolyhedron& body, const RelativePose* pose) noexcept
+  ActiveFeature(const ConvexPolyhedron& body, const RelativePose* pose) noexcept
       : body_(body), pose_(pose) {}
 
   [[nodiscard]] const ConvexPolyhedron& body() const noexcept { return body_; }
@@ -84,7 +84,8 @@ class ActiveSide {
   // Where the last query ended, re-anchored on the feature. False if the hint is unusable.
   [[nodiscard]] bool place_tracked(const TrackingState::Side& hint) noexcept;
   // One or the other. apart: m, between the bodies' origins.
-  void place_near(const TrackingState::Side& hint, const ActiveSide& other, double apart) noexcept;
+  void place_near(const TrackingState::Side& hint, const ActiveFeature& other,
+                  double apart) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
     return {static_cast<std::uint8_t>(feature_), false, index_, own_};
   }

@@ -21,7 +21,7 @@ namespace alpha_case {
 // blocks at once.
 inline double fraction(double gap, double speed) noexcept { return gap > 0.0 ? gap / speed : 0.0; }
 
-inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {
+inline Alpha from_inside(const ActiveFeature& side, const Vec3& move) noexcept {
   Alpha best;
   const auto& facets = side.body().facets;
   for (std::size_t i = 0; i < facets.size(); ++i) {
@@ -33,7 +33,7 @@ inline Alpha from_inside(const ActiveSide& side, const Vec3& move) noexcept {
   return best;
 }
 
-inline Alpha within_facet(const ActiveSide& side, const Vec3& move) noexcept {
+inline Alpha within_facet(const ActiveFeature& side, const Vec3& move) noexcept {
   Alpha best;
   const Facet& facet = side.facet();
   for (std::int32_t i = 0; i < facet.limits; ++i) {
@@ -47,7 +47,7 @@ inline Alpha within_facet(const ActiveSide& side, const Vec3& move) noexcept {
   return best;
 }
 
-inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
+inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
   const Edge& edge = side.edge();
   const double speed = edge.direction.dot(move);
   const double at = (side.own() - edge.point).dot(edge.direction);
@@ -60,7 +60,7 @@ inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
 
 }  // namespace alpha_case
 
-[[nodiscard]] inline Alpha alpha(const ActiveSide& side, const Vec3& move_in_common) noexcept {
+[[nodiscard]] inline Alpha alpha(const ActiveFeature& side, const Vec3& move_in_common) noexcept {
   if (side.feature() == Feature::kVertex) return {};
   const Vec3 move = side.direction_to_own(move_in_common);
   if (side.feature() == Feature::kEdge) return alpha_case::along_edge(side, move);
@@ -69,7 +69,7 @@ inline Alpha along_edge(const ActiveSide& side, const Vec3& move) noexcept {
 }
 
 // Makes the move and, where it was blocked, the blocking feature the active one.
-inline void advance(ActiveSide& side, const Vec3& move_in_common, const Alpha& step) noexcept {
+inline void advance(ActiveFeature& side, const Vec3& move_in_common, const Alpha& step) noexcept {
   if (side.feature() == Feature::kVertex) return;
   const Vec3 to = side.own() + step.fraction * side.direction_to_own(move_in_common);
   if (side.feature() == Feature::kEdge) {

@@ -18,20 +18,21 @@ void add_direction(Separators& list, const Vec3& v) noexcept {
   if (length > 0.0 && std::isfinite(length)) list.add({v / length});
 }
 
-void add_facets(Separators& list, const ActiveSide& a, const ActiveSide& b) noexcept {
+void add_facets(Separators& list, const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (a.feature() == Feature::kFacet) list.add({a.facet().normal, a.index(), kNone});
   if (b.feature() == Feature::kFacet) {
     list.add({-towards_case::normal_of(b), kNone, b.index()});
   }
 }
 
-void add_crossing_edges(Separators& list, const ActiveSide& a, const ActiveSide& b,
+void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFeature& b,
                         const Vec3& between) noexcept {
   const Vec3 n = towards_case::across_both(along(a), along(b));
   add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
-double reach(const ActiveSide& s, const Vec3& normal, std::int32_t facet, double within) noexcept {
+double reach(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
+             double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
   return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
@@ -44,8 +45,8 @@ double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
   return out;
 }
 
-double separation_of_unbounded(const Separator& s, const ActiveSide& a,
-                               const ActiveSide& b) noexcept {
+double separation_of_unbounded(const Separator& s, const ActiveFeature& a,
+                               const ActiveFeature& b) noexcept {
   const auto [n, off] = PolarCone(a, b).nearest(s);
   if (!(off < kInfinity)) return -kInfinity;
   const Vec3& on_a = a.body().anchors[support(a.body(), n).anchor];
@@ -59,7 +60,7 @@ double separation_of_unbounded(const Separator& s, const ActiveSide& a,
 
 }  // namespace
 
-Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
+Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Separators list;
   const Vec3 between = b.common() - a.common();
   add_facets(list, a, b);
@@ -75,7 +76,7 @@ Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept {
   return list;
 }
 
-double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
+double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                   const Precision& p) noexcept {
   if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s, a, b);
   const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a);

@@ -32,11 +32,11 @@ class Separators {
 };
 
 // The directions that the two active features suggest, the most accurate first.
-[[nodiscard]] Separators separators(const ActiveSide& a, const ActiveSide& b) noexcept;
+[[nodiscard]] Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept;
 
 // min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at
 // least this less p.slack. -infinity where an unbounded body leaves no bound.
-[[nodiscard]] double separation(const Separator& s, const ActiveSide& a, const ActiveSide& b,
+[[nodiscard]] double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                                 const Precision& p) noexcept;
 
 }  // namespace clearance

@@ -21,8 +21,10 @@ namespace delta_case {
 // unit vectors, once turned, carry an error of 2^-52 each.
 constexpr double kParallel = 0x1p-50;
 
-inline Vec3 normal(const ActiveSide& s) noexcept { return s.direction_to_common(s.facet().normal); }
-inline Vec3 along(const ActiveSide& s) noexcept {
+inline Vec3 normal(const ActiveFeature& s) noexcept {
+  return s.direction_to_common(s.facet().normal);
+}
+inline Vec3 along(const ActiveFeature& s) noexcept {
   return s.direction_to_common(s.edge().direction);
 }
 
@@ -35,28 +37,31 @@ inline Vec3 onto_line(const Vec3& p, const Vec3& on, const Vec3& e) noexcept {
 
 // In each case p has at most as many dimensions as q.
 
-inline void vertex_vertex(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+inline void vertex_vertex(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
   to_p = p.common();
   to_q = q.common();
 }
 
-inline void vertex_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void vertex_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                        Vec3& to_q) noexcept {
   to_p = p.common();
   to_q = onto_line(p.common(), q.common(), along(q));
 }
 
-inline void vertex_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+inline void vertex_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
   to_p = p.common();
   to_q = onto_plane(p.common(), q.common(), normal(q));
 }
 
-inline void vertex_inside(const ActiveSide& p, const ActiveSide&, Vec3& to_p, Vec3& to_q) noexcept {
+inline void vertex_inside(const ActiveFeature& p, const ActiveFeature&, Vec3& to_p,
+                          Vec3& to_q) noexcept {
   to_p = to_q = p.common();
 }
 
-inline void edge_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void edge_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                      Vec3& to_q) noexcept {
   const Vec3 e = along(p), f = along(q);
   const Vec3 between = q.common() - p.common();
   // The part of f across e: its length is the sine of the angle between them, without cancellation
@@ -74,7 +79,8 @@ inline void edge_edge(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3
   to_p = onto_line(to_q, p.common(), e);
 }
 
-inline void edge_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void edge_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                       Vec3& to_q) noexcept {
   const Vec3 e = along(p), n = normal(q);
   const double sine = e.dot(n);
   if (std::abs(sine) < kParallel) {
@@ -85,11 +91,13 @@ inline void edge_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec
   to_p = to_q = p.common() + ((q.common() - p.common()).dot(n) / sine) * e;
 }
 
-inline void edge_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void edge_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                        Vec3& to_q) noexcept {
   to_p = to_q = onto_line(q.common(), p.common(), along(p));
 }
 
-inline void facet_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Vec3& to_q) noexcept {
+inline void facet_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                        Vec3& to_q) noexcept {
   const Vec3 n = normal(p), m = normal(q);
   const Vec3 n_across = n - n.dot(m) * m;  // in q's plane
   const Vec3 m_across = m - m.dot(n) * n;  // in p's plane
@@ -105,12 +113,12 @@ inline void facet_facet(const ActiveSide& p, const ActiveSide& q, Vec3& to_p, Ve
   to_p = to_q = 0.5 * (on_line_p + on_line_q);
 }
 
-inline void facet_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+inline void facet_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
   to_p = to_q = onto_plane(q.common(), p.common(), normal(p));
 }
 
-inline void inside_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+inline void inside_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
   to_p = to_q = 0.5 * (p.common() + q.common());
 }
@@ -118,7 +126,7 @@ inline void inside_inside(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
 }  // namespace delta_case
 
 // p has at most as many dimensions as q: the half of Table 3.1 that is not its mirror image.
-inline void closest_points(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
+inline void closest_points(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                            Vec3& to_q) noexcept {
   using namespace delta_case;
   switch (static_cast<int>(p.feature()) * 4 + static_cast<int>(q.feature())) {
@@ -145,7 +153,7 @@ inline void closest_points(const ActiveSide& p, const ActiveSide& q, Vec3& to_p,
   }
 }
 
-[[nodiscard]] inline Delta delta(const ActiveSide& a, const ActiveSide& b) noexcept {
+[[nodiscard]] inline Delta delta(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Delta result;
   if (a.feature() <= b.feature()) {
     closest_points(a, b, result.a, result.b);

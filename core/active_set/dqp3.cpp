@@ -20,7 +20,7 @@ constexpr int kLevelSteps = 12;
 // One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
 // that would take them apart, both go the same fraction of the way, which cannot. True if nothing
 // blocked.
-bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
+bool step(ActiveFeature& a, ActiveFeature& b, const Delta& to) noexcept {
   const Vec3 move_a = to.a - a.common(), move_b = to.b - b.common();
   Alpha alpha_a = alpha(a, move_a), alpha_b = alpha(b, move_b);
   const bool free = alpha_a.blocking == kNone && alpha_b.blocking == kNone;
@@ -41,11 +41,13 @@ bool step(ActiveSide& a, ActiveSide& b, const Delta& to) noexcept {
 }
 
 // Follows an edge or a facet, or leaves for the inside, from where x is.
-void release(ActiveSide& side, const Lambda& l) noexcept { side.place(l.to, l.index, side.own()); }
+void release(ActiveFeature& side, const Lambda& l) noexcept {
+  side.place(l.to, l.index, side.own());
+}
 
 // Two edges that all but point away from each other generate the facet between them by digits that
 // rounding takes: then neither leads closer, and yet the facet does.
-bool leave_for_facet(ActiveSide& side, const Vec3& towards_in_common) noexcept {
+bool leave_for_facet(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
   if (side.feature() != Feature::kVertex) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
   const Lambda facet = lambda_case::of_facets_at_vertex(side, towards);
@@ -59,7 +61,7 @@ bool leave_for_facet(ActiveSide& side, const Vec3& towards_in_common) noexcept {
 // inside itself may be that thin (of the body's size), and beyond that rounding decides.
 constexpr double kThin = 0x1p-44;
 
-bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept {
+bool leave_for_inside(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
   if (side.feature() == Feature::kInside) return false;
   const ConvexPolyhedron& body = side.body();
   const Vec3 towards = side.direction_to_own(towards_in_common);
@@ -70,7 +72,7 @@ bool leave_for_inside(ActiveSide& side, const Vec3& towards_in_common) noexcept 
   return closer;
 }
 
-Dqp3Outcome iterate(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept {
   Dqp3Outcome outcome;
   const auto ended = [&](Dqp3End end) {
     outcome.end = end;
@@ -113,7 +115,7 @@ Dqp3Outcome iterate(ActiveSide& a, ActiveSide& b, double contact) noexcept {
 constexpr double kCertainlyInside = 16 * kUlp;
 
 // From the inside, unless certainly there, to the facet that is nearest.
-void leave_inside(ActiveSide& side) noexcept {
+void leave_inside(ActiveFeature& side) noexcept {
   const ConvexPolyhedron& body = side.body();
   double least = kCertainlyInside * (body.bounding_radius + side.own().norm());
   std::int32_t nearest = kNone;
@@ -129,7 +131,7 @@ void leave_inside(ActiveSide& side) noexcept {
 
 // An upper bound is worth no more than that its points are on the bodies: one that the iteration
 // has left outside its facet's polygon goes to the polygon's nearest side.
-void keep_on_body(ActiveSide& side) noexcept {
+void keep_on_body(ActiveFeature& side) noexcept {
   if (side.feature() == Feature::kInside) leave_inside(side);
   if (side.feature() != Feature::kFacet) return;
   const Facet& facet = side.facet();
@@ -142,7 +144,7 @@ void keep_on_body(ActiveSide& side) noexcept {
 
 }  // namespace
 
-Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept {
+Dqp3Outcome dqp3(ActiveFeature& a, ActiveFeature& b, double contact) noexcept {
   const Dqp3Outcome outcome = iterate(a, b, contact);
   keep_on_body(a);
   keep_on_body(b);

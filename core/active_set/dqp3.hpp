@@ -24,6 +24,6 @@ struct Dqp3Outcome {
 
 // Moves both sides from where they are to the closest points. Ends: between two releases the
 // distance falls strictly, so no active set comes twice. `contact`: m, what counts as coincidence.
-[[nodiscard]] Dqp3Outcome dqp3(ActiveSide& a, ActiveSide& b, double contact) noexcept;
+[[nodiscard]] Dqp3Outcome dqp3(ActiveFeature& a, ActiveFeature& b, double contact) noexcept;
 
 }  // namespace clearance

@@ -10,12 +10,12 @@ namespace clearance {
 namespace {
 
 // Is where a point lies along its edge, m, certainly between the ends, off by this or not?
-bool is_between_ends(const ActiveSide& side, double off) noexcept {
+bool is_between_ends(const ActiveFeature& side, double off) noexcept {
   const double at = (side.own() - side.edge().point).dot(side.edge().direction);
   return at - off > side.edge().begin && at + off < side.edge().end;
 }
 
-FarApart across_edges(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+FarApart across_edges(const ActiveFeature& a, const ActiveFeature& b, const Precision& p) noexcept {
   const double sine = towards_case::along(a).cross(towards_case::along(b)).norm();
   // Beyond this a wrong rotation moves the closest points by more than a part of the way to them.
   if (!(sine > 0x1p-42)) return {};
@@ -49,7 +49,7 @@ struct Stretch {
 constexpr double kOverFacet = 0x1p-46;
 
 // Where an edge is over a facet for certain.
-Stretch over_facet(const ActiveSide& edge, const ActiveSide& facet, double size) noexcept {
+Stretch over_facet(const ActiveFeature& edge, const ActiveFeature& facet, double size) noexcept {
   const auto point = [&](const Vec3& own) {
     const Vec3 common = edge.point_to_common(own);
     return facet.pose() ? Vec3(facet.direction_to_own(common - facet.pose()->translation)) : common;
@@ -68,7 +68,7 @@ Stretch over_facet(const ActiveSide& edge, const ActiveSide& facet, double size)
 }
 
 // Over the facet the edge is the nearest at one of the stretch's ends, wherever that may be.
-FarApart from_facet(const PolarCone& cone, const ActiveSide& edge, const ActiveSide& facet,
+FarApart from_facet(const PolarCone& cone, const ActiveFeature& edge, const ActiveFeature& facet,
                     const Precision& p) noexcept {
   const Stretch over = over_facet(edge, facet, p.size);
   const bool of_b = facet.pose() != nullptr;
@@ -91,7 +91,7 @@ FarApart from_facet(const PolarCone& cone, const ActiveSide& edge, const ActiveS
 
 }  // namespace
 
-FarApart far_apart(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
+FarApart far_apart(const ActiveFeature& a, const ActiveFeature& b, const Precision& p) noexcept {
   const auto are = [&](Feature of_a, Feature of_b) {
     return a.feature() == of_a && b.feature() == of_b;
   };

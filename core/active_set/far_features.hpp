@@ -16,7 +16,7 @@ struct FarApart {
 // far they are along the direction across two edges, or along a facet's exact one from an edge,
 // measured near the bodies' origins. Infinity where they are other ones, or not for certain within
 // their ends.
-[[nodiscard]] FarApart far_apart(const ActiveSide& a, const ActiveSide& b,
+[[nodiscard]] FarApart far_apart(const ActiveFeature& a, const ActiveFeature& b,
                                  const Precision& p) noexcept;
 
 }  // namespace clearance

@@ -19,11 +19,11 @@ struct Lambda {
 
 namespace lambda_case {
 
-inline Lambda of_facet(const ActiveSide& side, const Vec3& towards) noexcept {
+inline Lambda of_facet(const ActiveFeature& side, const Vec3& towards) noexcept {
   return {-side.facet().normal.dot(towards), Feature::kInside, kNone};
 }
 
-inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
+inline Lambda of_edge(const ActiveFeature& side, const Vec3& towards) noexcept {
   const Edge& edge = side.edge();
   if (edge.facet[0] == kNone) return {};
   const double left = edge.inward.row(0).dot(towards), right = edge.inward.row(1).dot(towards);
@@ -31,14 +31,14 @@ inline Lambda of_edge(const ActiveSide& side, const Vec3& towards) noexcept {
                        : Lambda{right, Feature::kFacet, edge.facet[1]};
 }
 
-inline Lambda of_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
+inline Lambda of_vertex(const ActiveFeature& side, const Vec3& towards) noexcept {
   const SteepestEdge steepest = steepest_edge(side.body(), side.vertex(), towards);
   if (steepest.at == kNone) return {};
   return {steepest.rate, Feature::kEdge, side.body().vertex_edges[steepest.at].edge};
 }
 
 // The facets between the vertex's edges, one by one: along what is across each of two neighbours.
-inline Lambda of_facets_at_vertex(const ActiveSide& side, const Vec3& towards) noexcept {
+inline Lambda of_facets_at_vertex(const ActiveFeature& side, const Vec3& towards) noexcept {
   const ConvexPolyhedron& body = side.body();
   const Vertex& vertex = side.vertex();
   const auto across = [&](const EdgeUse& use, int k) {
@@ -63,7 +63,8 @@ inline Lambda of_facets_at_vertex(const ActiveSide& side, const Vec3& towards) n
 // one over all edges that leave the vertex rather than the three of one choice of facets. All rates
 // are in the unit of `towards`, so that they can be compared between the bodies, as the scaling of
 // (3.4.25) is there for.
-[[nodiscard]] inline Lambda lambda(const ActiveSide& side, const Vec3& towards_in_common) noexcept {
+[[nodiscard]] inline Lambda lambda(const ActiveFeature& side,
+                                   const Vec3& towards_in_common) noexcept {
   if (side.feature() == Feature::kInside) return {};
   const Vec3 towards = side.direction_to_own(towards_in_common);
   if (side.feature() == Feature::kFacet) return lambda_case::of_facet(side, towards);

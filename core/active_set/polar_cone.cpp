@@ -57,7 +57,7 @@ double value(const DoubleDouble& x) noexcept { return static_cast<double>(x); }
 
 }  // namespace
 
-PolarCone::PolarCone(const ActiveSide& a, const ActiveSide& b) noexcept
+PolarCone::PolarCone(const ActiveFeature& a, const ActiveFeature& b) noexcept
     : a_(a),
       b_(b),
       rotation_(wide_rotation(*b.pose())),

@@ -23,7 +23,7 @@ namespace clearance {
 
 class PolarCone {
  public:
-  PolarCone(const ActiveSide& a, const ActiveSide& b) noexcept;
+  PolarCone(const ActiveFeature& a, const ActiveFeature& b) noexcept;
 
   // A unit vector, common frame, and how far from it (an angle) there certainly is a direction of
   // the cone; infinity: none is known nearby.
@@ -136,8 +136,8 @@ class PolarCone {
                 const DoubleDouble& y, double error, Move& best) const noexcept;
   [[nodiscard]] Move shortest_move(const Level& level) const noexcept;
 
-  const ActiveSide& a_;
-  const ActiveSide& b_;
+  const ActiveFeature& a_;
+  const ActiveFeature& b_;
   WideRotation rotation_;
   mutable std::optional<Lean> lean_;  // made where it is needed
   double error_;                      // of a constraint's numbers

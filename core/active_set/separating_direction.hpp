@@ -19,10 +19,10 @@ inline constexpr double kShortest = 1e-5;
 
 inline Vec3 across(const Vec3& v, const Vec3& e) noexcept { return v - v.dot(e) * e; }
 // Unit vectors that the rotation's doubles have turned are not quite of unit length.
-inline Vec3 along(const ActiveSide& s) noexcept {
+inline Vec3 along(const ActiveFeature& s) noexcept {
   return s.direction_to_common(s.edge().direction).normalized();
 }
-inline Vec3 normal_of(const ActiveSide& s) noexcept {
+inline Vec3 normal_of(const ActiveFeature& s) noexcept {
   return s.direction_to_common(s.facet().normal).normalized();
 }
 
@@ -36,7 +36,8 @@ inline Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
   return (across - across.dot(e) * e).normalized();
 }
 
-inline Towards edge_edge(const ActiveSide& a, const ActiveSide& b, const Vec3& between) noexcept {
+inline Towards edge_edge(const ActiveFeature& a, const ActiveFeature& b,
+                         const Vec3& between) noexcept {
   const Vec3 e = along(a), f = along(b);
   const Vec3 n = e.cross(f);
   const double sine2 = n.squaredNorm();
@@ -50,7 +51,7 @@ inline Towards from_facet(const Vec3& normal, const Vec3& between, bool other_is
 
 }  // namespace towards_case
 
-[[nodiscard]] inline Towards towards(const ActiveSide& a, const ActiveSide& b) noexcept {
+[[nodiscard]] inline Towards towards(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   using namespace towards_case;
   const Vec3 between = b.common() - a.common();
   const bool a_vertex = a.feature() == Feature::kVertex, b_vertex = b.feature() == Feature::kVertex;

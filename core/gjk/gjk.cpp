@@ -23,7 +23,7 @@ struct DifferenceCorner {
 
 class WideDifference {
  public:
-  WideDifference(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+  WideDifference(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
                  const Precision& p) noexcept
       : a_(a), b_(b), pose_(a_from_b), p_(p) {}
 
@@ -61,8 +61,8 @@ class WideDifference {
            wide(pose_.translation);
   }
 
-  const ActiveSide& a_;
-  const ActiveSide& b_;
+  const ActiveFeature& a_;
+  const ActiveFeature& b_;
   const RelativePose& pose_;
   const Precision& p_;
 };
@@ -116,7 +116,7 @@ class Simplex {
 // The sides keep their features and take the points: as near to them as the features allow, a
 // tracked query begins there. Of points that are as close to rounding, those are taken that belong
 // to the direction found last, and that one of those that prove as much.
-void improve_upper(ActiveSide& a, ActiveSide& b, DistanceResult& r, const Simplex& simplex,
+void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r, const Simplex& simplex,
                    double length, const Precision& p) noexcept {
   if (length > r.distance + p.tight) return;
   a.place(a.feature(), a.index(), simplex.point_on_a());
@@ -129,7 +129,7 @@ void improve_upper(ActiveSide& a, ActiveSide& b, DistanceResult& r, const Simple
 
 }  // namespace
 
-void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
+void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& r) noexcept {
   const WideDifference body(a, b, a_from_b, p);
   Simplex simplex;

@@ -13,7 +13,7 @@ namespace clearance {
 // no disagreement between rounded facets, edges and vertices; the closest point of the difference
 // body's simplex (Gilbert, Johnson, Keerthi) is computed in twice the precision. Bounds only ever
 // improve. The sides end at the witness points, by the features they had.
-void refine(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b, const Precision& p,
+void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -20,8 +20,8 @@ constexpr double kTight = 8 * kUlp;
 using Source = DepthSearch::Source;
 
 // Where the best direction is exactly a facet's, the certificate may use the facet.
-Separator separator(const DifferenceBody& body, const DepthSearch::Best& best, const ActiveSide& a,
-                    const ActiveSide& b) noexcept {
+Separator separator(const DifferenceBody& body, const DepthSearch::Best& best,
+                    const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
     return {body.to_common(best.n).normalized()};
   }
@@ -55,8 +55,8 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
 // edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
 // that comes out too far from `lower`, Depth's, every ulp counts, and both ways are gone.
 double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
-                 const ActiveSide& a, const ActiveSide& b, const Precision& p, double rounding,
-                 double lower) noexcept {
+                 const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
+                 double rounding, double lower) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
   const double by_feature = feature_of_x && body.y().bounded() ? best.height + rounding : kInfinity;
   if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
@@ -65,7 +65,7 @@ double certified(const DifferenceBody& body, const DepthSearch::Best& best, cons
 
 // Bodies with one line each, which cross: the direction across both, or its opposite, parts them or
 // none does.
-void bound_across_lines(const PolarCone& cone, const ActiveSide& a, const ActiveSide& b,
+void bound_across_lines(const PolarCone& cone, const ActiveFeature& a, const ActiveFeature& b,
                         const Precision& p, Depth& out) noexcept {
   const auto [n, off] = cone.only_direction();
   if (!(off < kInfinity)) return;
@@ -89,7 +89,7 @@ void bound_across_lines(const PolarCone& cone, const ActiveSide& a, const Active
 // Directions between two unbounded bodies that the search does not say: across lines that all but
 // run along each other; and a facet's, where it took another one for the best that doubles cannot
 // tell from it, but along which one of the bodies goes on for ever.
-void try_further_directions(const ActiveSide& a, const ActiveSide& b, const Precision& p,
+void try_further_directions(const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
                             Depth& out) noexcept {
   const auto attempt = [&](const Separator& s) {
     const double value = -separation(s, a, b, p);
@@ -103,7 +103,7 @@ void try_further_directions(const ActiveSide& a, const ActiveSide& b, const Prec
   if (p.converged(out.upper - out.lower)) return;
   bound_across_lines(cone, a, b, p, out);
   if (p.converged(out.upper - out.lower)) return;
-  const auto count = [](const ActiveSide& s) {
+  const auto count = [](const ActiveFeature& s) {
     return static_cast<std::int32_t>(s.body().facets.size());
   };
   for (std::int32_t i = 0; i < count(a); ++i) attempt({a.body().facets[i].normal, i, kNone});
@@ -118,8 +118,8 @@ double off_rotation(const Mat3& r) noexcept {
 }
 
 // Depth::lower from the least h that the search has found anywhere.
-double depth_from_below(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
-                        const Precision& p, double least) noexcept {
+double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
+                        const RelativePose& a_from_b, const Precision& p, double least) noexcept {
   const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
   // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
@@ -134,8 +134,8 @@ double depth_from_below(const ActiveSide& a, const ActiveSide& b, const Relative
 }
 
 // Two points or segments have no inside: they meet in a point and are parted by next to nothing.
-Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& p) noexcept {
-  const auto along = [](const ActiveSide& s) {
+Depth depth_of_lines(const ActiveFeature& a, const ActiveFeature& b, const Precision& p) noexcept {
+  const auto along = [](const ActiveFeature& s) {
     return s.body().edges.empty() ? Vec3::Zero().eval()
                                   : s.direction_to_common(s.body().edges[0].direction);
   };
@@ -150,7 +150,7 @@ Depth depth_of_lines(const ActiveSide& a, const ActiveSide& b, const Precision& 
 
 }  // namespace
 
-Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
             const Separator* guess) noexcept {
   const Precision start = precision_of_corners(a.body(), b.body(), a_from_b);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);

@@ -33,7 +33,7 @@ struct Depth {
 };
 
 // `guess`: a direction to begin with, or null; it costs or saves time and changes nothing else.
-[[nodiscard]] Depth depth(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
-                          const Separator* guess) noexcept;
+[[nodiscard]] Depth depth(const ActiveFeature& a, const ActiveFeature& b,
+                          const RelativePose& a_from_b, const Separator* guess) noexcept;
 
 }  // namespace clearance

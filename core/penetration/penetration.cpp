@@ -26,7 +26,7 @@ constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 
 // The direction along which the features of a tracking state part the bodies. False: they do not
 // say.
-bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState& state,
+bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const TrackingState& state,
                   Separator& out) noexcept {
   const auto has = [](const TrackingState::Side& side, int dimension, std::size_t count) {
     return side.dimension == dimension && side.feature >= 0 &&
@@ -55,14 +55,14 @@ bool direction_of(const ActiveSide& a, const ActiveSide& b, const TrackingState&
 }
 
 // Where nothing is remembered: from one middle to the other.
-Separator between_middles(const ActiveSide& a, const ActiveSide& b) noexcept {
+Separator between_middles(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
   return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
 }
 
 Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                     const RelativePose& a_from_b, const TrackingState& state) noexcept {
-  const ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  const ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   Separator guess;
   if (!direction_of(side_a, side_b, state, guess)) guess = between_middles(side_a, side_b);
   return depth(side_a, side_b, a_from_b, &guess);
@@ -71,7 +71,7 @@ Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 // The closest points of A and of B as `moved`, from the features of the state on.
 std::uint16_t settle_apart(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                            const RelativePose& moved, TrackingState& state) noexcept {
-  ActiveSide side_a(a, nullptr), side_b(b, &moved);
+  ActiveFeature side_a(a, nullptr), side_b(b, &moved);
   const double apart = moved.translation.norm();
   side_a.place_near(state.a, side_b, apart);
   side_b.place_near(state.b, side_a, apart);

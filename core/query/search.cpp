@@ -35,7 +35,7 @@ struct Bounds {
   }
 };
 
-void prove_from_below(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
+void prove_from_below(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
                       const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
@@ -64,7 +64,7 @@ DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceRes
   return r.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
 }
 
-DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& bounds,
+DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bounds& bounds,
                         const Precision& p) noexcept {
   DistanceResult r;
   r.lower = bounds.lower - p.slack;
@@ -80,9 +80,9 @@ DistanceResult conclude(const ActiveSide& a, const ActiveSide& b, const Bounds& 
 // The distance that the optimal active set proves by itself: what lies behind both features along
 // `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
 // n.
-double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const ActiveSide& b,
+double proved_distance(const Vec3& n, double apart, const ActiveFeature& a, const ActiveFeature& b,
                        const Precision& p) noexcept {
-  const auto along_edge = [&](const ActiveSide& s) {
+  const auto along_edge = [&](const ActiveFeature& s) {
     return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
                                          : 0.0;
   };
@@ -91,7 +91,7 @@ double proved_distance(const Vec3& n, double apart, const ActiveSide& a, const A
 
 // Lines that all but run along each other are closest far beyond where Precision looks for the
 // closest points of unbounded bodies: what rounding costs the points there.
-double beyond_reach(const ActiveSide& a, const ActiveSide& b, const RelativePose& a_from_b,
+double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
                     const Precision& p) noexcept {
   if (a.body().bounded() || b.body().bounded()) return 0.0;
   const double out_a = std::max(0.0, a.own().norm() - p.reach_a);
@@ -99,7 +99,7 @@ double beyond_reach(const ActiveSide& a, const ActiveSide& b, const RelativePose
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
 }
 
-void bound_far_away(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
+void bound_far_away(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
                     const Precision& p) noexcept {
   if (!(bounds.beyond > 0.0)) return;
   const FarApart far = far_apart(a, b, p);
@@ -108,7 +108,8 @@ void bound_far_away(Bounds& bounds, const ActiveSide& a, const ActiveSide& b,
   bounds.beyond = far.beyond;
 }
 
-DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a_from_b) noexcept {
+DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
+                             const RelativePose& a_from_b) noexcept {
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.tight);
@@ -142,7 +143,7 @@ DistanceResult core_distance(ActiveSide& a, ActiveSide& b, const RelativePose& a
 // From the features of the state on, which it moves on; of the cores, without radii.
 DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
-  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   const double apart = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, apart);
   side_b.place_near(state.b, side_a, apart);

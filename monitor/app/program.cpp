@@ -94,8 +94,8 @@ CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
   return {fault, ""};
 }
 
-bool spares_inputs(const char* program, const std::filesystem::path& output,
-                   std::initializer_list<std::filesystem::path> inputs) {
+bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
+                            std::initializer_list<std::filesystem::path> inputs) {
   std::error_code not_there;
   for (const std::filesystem::path& input : inputs) {
     if (!std::filesystem::equivalent(output, input, not_there)) continue;
@@ -110,7 +110,7 @@ void add_force(CLI::App& app, bool& force) {
   app.add_flag("--force", force, "Write over files that are there already");
 }
 
-bool may_write(const char* program, const std::filesystem::path& file, bool force) {
+bool can_create(const char* program, const std::filesystem::path& file, bool force) {
   std::error_code unknown;
   if (file.has_parent_path() && !std::filesystem::exists(file.parent_path(), unknown)) {
     std::fprintf(stderr, "%s: cannot create %s: there is no folder %s\n", program, file.c_str(),

@@ -43,15 +43,15 @@ enum ExitCode : int {
 
 // False, after saying so on stderr, when `output` is one of the files that are read: it would be
 // destroyed.
-[[nodiscard]] bool spares_inputs(const char* program, const std::filesystem::path& output,
-                                 std::initializer_list<std::filesystem::path> inputs);
+[[nodiscard]] bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
+                                          std::initializer_list<std::filesystem::path> inputs);
 
 // "--force", without which no program writes over a file.
 void add_force(CLI::App& app, bool& force);
 
 // False, after saying so on stderr, when the file is there and `force` is not given, or its folder
 // is not there. An empty name is no file.
-[[nodiscard]] bool may_write(const char* program, const std::filesystem::path& file, bool force);
+[[nodiscard]] bool can_create(const char* program, const std::filesystem::path& file, bool force);
 
 // What the program did not write to its end must not be taken for whole: removes the file, if it
 // is a regular one, and says on stderr what became of it.

@@ -9,8 +9,8 @@ namespace clearance {
 namespace {
 
 // A pair with less slack than this is cheaper awake: it would be back within a few ticks.
-constexpr double kLeastSlack = 16.0 * WakeWheels::kUnit;  // 4 mm
-constexpr double kLeastTicks = 4.0;                       // of both objects' usual travel
+constexpr double kLeastSlack = 16.0 * MotionWheels::kUnit;  // 4 mm
+constexpr double kLeastTicks = 4.0;                         // of both objects' usual travel
 // Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
 // balls' own rounding takes over.
 constexpr double kSumError = 1e-9;
@@ -26,13 +26,13 @@ double share_of_a(double usual_a, double usual_b) noexcept {
 
 // How far from where it is now the object may have been since the last tick, m. After a leap every
 // zone of it says so itself.
-double strayed_since(const ObjectState& object) noexcept {
+double strayed_since(const TrackedObject& object) noexcept {
   return object.unseen_since + (object.leapt ? 0.0 : object.travel_since());
 }
 
 }  // namespace
 
-BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
+BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, Levels levels,
                        std::span<const std::uint32_t> left_out, std::size_t most_woken)
     : most_woken_(most_woken),
       most_met_(most_woken / 2),
@@ -44,7 +44,7 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
       pairs_(2 * scene.pairs.size()),
       others_(2 * scene.pairs.size()),
       wheels_(scene.objects.size(), scene.pairs.size()) {
-  const std::vector<EnclosingBall> balls = enclosing_balls(scene.objects.size(), parts);
+  const std::vector<BoundingSphere> balls = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].ball = balls[i];
     bodies_[i].fixed = scene.objects[i].fixed;
@@ -75,14 +75,14 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts,
   arrived_.reserve(bodies_.size());
 }
 
-void BroadPhase::begin(const std::vector<ObjectState>& objects,
-                       std::span<const std::uint32_t> stirred, PairTable& table) noexcept {
+void BroadPhase::begin(const std::vector<TrackedObject>& objects,
+                       std::span<const std::uint32_t> changed, PairTable& table) noexcept {
   farthest_travel_ = 0.0;
   advanced_.clear();
   const std::size_t arrived_before = arrived_.size();
   for (double& usual : usual_travel_) usual = usual > kRest ? (1.0 - kSmoothing) * usual : 0.0;
-  for (const std::uint32_t i : stirred) {
-    const ObjectState& object = objects[i];
+  for (const std::uint32_t i : changed) {
+    const TrackedObject& object = objects[i];
     if (!object.seen) continue;
     Body& body = bodies_[i];
     if (!(object.travel < kInfinity)) jump(i, table);
@@ -106,7 +106,7 @@ void BroadPhase::begin(const std::vector<ObjectState>& objects,
   meet_arrivals(most_met_ - arrived);
 }
 
-void BroadPhase::arrive(std::uint32_t object, const ObjectState& state) noexcept {
+void BroadPhase::arrive(std::uint32_t object, const TrackedObject& state) noexcept {
   bodies_[object].state = &state;
   bodies_[object].arrival.rank = static_cast<std::uint32_t>(arrived_.size());
   arrived_.push_back(object);

@@ -27,14 +27,14 @@ class BroadPhase {
   // `left_out`: pairs that somebody looks at anyway, in ascending order. `most_woken`: pairs that
   // may be woken a tick, half as many by meeting for the first time; the others wait, and pending()
   // says so.
-  BroadPhase(const Scene& scene, const std::vector<PlacedPart>& parts, Levels levels,
+  BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, Levels levels,
              std::span<const std::uint32_t> left_out, std::size_t most_woken);
 
   // Takes in how the objects have moved. Pairs whose slack may be used up, whose objects were seen
   // for the first time or have jumped, are in woken() afterwards. `objects` stay where they are
   // until the next tick. Bounds of pairs whose objects have jumped are forgotten.
-  // `stirred`: at least the objects that have moved, or may have moved farther unseen, or less.
-  void begin(const std::vector<ObjectState>& objects, std::span<const std::uint32_t> stirred,
+  // `changed`: at least the objects that have moved, or may have moved farther unseen, or less.
+  void begin(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
              PairTable& table) noexcept;
 
   // Woken and not decided about; in this tick's order.
@@ -73,9 +73,9 @@ class BroadPhase {
     bool here() const noexcept { return rank != ~0u; }
   };
   struct Body {
-    EnclosingBall ball;
-    Ball ball_in_world;                  // while `placed`
-    const ObjectState* state = nullptr;  // once it has arrived
+    BoundingSphere ball;
+    Ball ball_in_world;                    // while `placed`
+    const TrackedObject* state = nullptr;  // once it has arrived
     bool placed = false;
     bool fixed = false;
     bool idle = true;             // all its pairs are left out
@@ -83,7 +83,7 @@ class BroadPhase {
     Arrival arrival;
   };
 
-  void arrive(std::uint32_t object, const ObjectState& state) noexcept;
+  void arrive(std::uint32_t object, const TrackedObject& state) noexcept;
   void jump(std::uint32_t object, PairTable& table) noexcept;
   void meet_arrivals(std::size_t most) noexcept;
   void take_due(std::span<const std::uint32_t> objects) noexcept;
@@ -99,7 +99,7 @@ class BroadPhase {
   std::vector<std::uint8_t> left_out_;              // by pair
   Levels levels_;
   std::vector<std::uint32_t> first_pair_, pairs_, others_;  // by object: pairs, and with whom
-  WakeWheels wheels_;
+  MotionWheels wheels_;
   double horizon_ = -kInfinity;
   std::vector<std::uint32_t> woken_;
   std::vector<std::uint32_t> busy_;      // objects with pairs that are not left out

@@ -13,15 +13,15 @@ namespace {
 constexpr double kFarthest = 512.0;  // m
 
 std::int64_t units(double travelled) noexcept {
-  return static_cast<std::int64_t>(std::floor(travelled / WakeWheels::kUnit));
+  return static_cast<std::int64_t>(std::floor(travelled / MotionWheels::kUnit));
 }
 
 }  // namespace
 
-WakeWheels::WakeWheels(std::size_t objects, std::size_t pairs)
+MotionWheels::MotionWheels(std::size_t objects, std::size_t pairs)
     : wheels_(objects), first_(objects * kLevels * kRing, kNobody), hooks_(2 * pairs) {}
 
-bool WakeWheels::set(std::uint32_t hook, std::uint32_t object, double travel) noexcept {
+bool MotionWheels::set(std::uint32_t hook, std::uint32_t object, double travel) noexcept {
   const double travelled = wheels_[object].travelled;
   const std::int64_t now = units(travelled);
   const std::int64_t due = units(rounded_down(travelled + std::min(travel, kFarthest)));
@@ -39,7 +39,7 @@ bool WakeWheels::set(std::uint32_t hook, std::uint32_t object, double travel) no
   return true;
 }
 
-void WakeWheels::cancel(std::uint32_t hook) noexcept {
+void MotionWheels::cancel(std::uint32_t hook) noexcept {
   const Hook at = hooks_[hook];
   if (at.before == kLoose) return;
   if (at.before & kHead) {
@@ -51,12 +51,12 @@ void WakeWheels::cancel(std::uint32_t hook) noexcept {
   hooks_[hook] = {};
 }
 
-void WakeWheels::advance(std::uint32_t object, double by) noexcept {
+void MotionWheels::advance(std::uint32_t object, double by) noexcept {
   if (by > 0.0) wheels_[object].travelled = rounded_up(wheels_[object].travelled + by);
 }
 
-bool WakeWheels::take_due(std::uint32_t object, std::size_t most,
-                          std::vector<std::uint32_t>& pairs) noexcept {
+bool MotionWheels::take_due(std::uint32_t object, std::size_t most,
+                            std::vector<std::uint32_t>& pairs) noexcept {
   Wheel& wheel = wheels_[object];
   const std::int64_t now = units(wheel.travelled);
   for (std::uint32_t level = 0; level < kLevels; ++level) {
@@ -73,8 +73,8 @@ bool WakeWheels::take_due(std::uint32_t object, std::size_t most,
   return true;
 }
 
-bool WakeWheels::empty_bucket(std::uint32_t bucket, std::size_t most,
-                              std::vector<std::uint32_t>& pairs) noexcept {
+bool MotionWheels::empty_bucket(std::uint32_t bucket, std::size_t most,
+                                std::vector<std::uint32_t>& pairs) noexcept {
   while (first_[bucket] != kNobody) {
     if (pairs.size() >= most) return false;
     const std::uint32_t hook = first_[bucket];

@@ -15,11 +15,11 @@
 
 namespace clearance {
 
-class WakeWheels {
+class MotionWheels {
  public:
   static constexpr double kUnit = 0x1p-12;  // m: what a set travel is at least, and rounded to
 
-  WakeWheels(std::size_t objects, std::size_t pairs);
+  MotionWheels(std::size_t objects, std::size_t pairs);
 
   // Hook `hook` (2 * pair + side, not set) is due by the time `object` has advanced by `travel`
   // more. False, and nothing is set, when that is less than can be told apart.

@@ -38,7 +38,7 @@ MonitorOptions monitor_options(const DaemonOptions& options) {
 }
 
 std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
-                                          const DdsPoses& poses) {
+                                          const PoseReader& poses) {
   if (options.record_file.empty()) return nullptr;
   return std::make_unique<Recording>(options.record_file, options.record_over, scene, poses);
 }
@@ -54,7 +54,7 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       reports_(scene, participant_, publish_queue_, poses_),
       recording_(open_recording(scene, options, poses_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
-                             .max_samples = kBatchesATick * DdsPoses::samples_a_batch(scene),
+                             .max_samples = kBatchesATick * PoseReader::samples_a_batch(scene),
                              .monitor = monitor_options(options)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
@@ -79,7 +79,7 @@ void Daemon::run(StopSignal& signal) {
 
   reports_.finish();
   if (recording_) recording_->finish();
-  spdlog::info("stopped after {} ticks", loop_->vitals().cycle);
+  spdlog::info("stopped after {} ticks", loop_->statistics().cycle);
 }
 
 void Daemon::tick_thread(std::atomic<bool>& done) {
@@ -92,7 +92,7 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
 
 std::string Daemon::summary() const {
   const std::uint64_t dropped = publish_queue_.dropped_reports() + reports_.failed_writes();
-  return run_summary(scene_, loop_->vitals(), seconds_, dropped) +
+  return run_summary(scene_, loop_->statistics(), seconds_, dropped) +
          (recording_ ? recording_->summary() : "");
 }
 

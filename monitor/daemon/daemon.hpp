@@ -52,9 +52,9 @@ class Daemon {
   const Scene& scene_;
   DaemonOptions options_;
   Participant participant_;
-  DdsPoses poses_;
+  PoseReader poses_;
   ReportQueue publish_queue_;
-  DdsReports reports_;
+  ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;

@@ -10,19 +10,19 @@ namespace {
 constexpr double kUsPerNs = 1e-3;
 constexpr int kLinesAtOnce = 5;
 
-void fill_loop(const Vitals& vitals, clearance_msg_Health& out) {
-  out.cycle = vitals.cycle;
-  out.now_ns = vitals.now_ns;
-  out.tick_p50_us = kUsPerNs * static_cast<double>(vitals.tick.percentile_ns(0.5));
-  out.tick_p999_us = kUsPerNs * static_cast<double>(vitals.tick.percentile_ns(0.999));
-  out.tick_max_us = kUsPerNs * static_cast<double>(vitals.tick.max_ns());
-  out.wakeup_p50_us = kUsPerNs * static_cast<double>(vitals.wakeup.percentile_ns(0.5));
-  out.wakeup_p999_us = kUsPerNs * static_cast<double>(vitals.wakeup.percentile_ns(0.999));
-  out.wakeup_max_us = kUsPerNs * static_cast<double>(vitals.wakeup.max_ns());
-  out.tick_second_max_us = kUsPerNs * static_cast<double>(vitals.tick_second_max_ns);
-  out.wakeup_second_max_us = kUsPerNs * static_cast<double>(vitals.wakeup_second_max_ns);
-  out.overruns = vitals.overruns;
-  out.skipped_cycles = vitals.skipped_cycles;
+void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
+  out.cycle = statistics.cycle;
+  out.now_ns = statistics.now_ns;
+  out.tick_p50_us = kUsPerNs * static_cast<double>(statistics.tick.percentile_ns(0.5));
+  out.tick_p999_us = kUsPerNs * static_cast<double>(statistics.tick.percentile_ns(0.999));
+  out.tick_max_us = kUsPerNs * static_cast<double>(statistics.tick.max_ns());
+  out.wakeup_p50_us = kUsPerNs * static_cast<double>(statistics.wakeup.percentile_ns(0.5));
+  out.wakeup_p999_us = kUsPerNs * static_cast<double>(statistics.wakeup.percentile_ns(0.999));
+  out.wakeup_max_us = kUsPerNs * static_cast<double>(statistics.wakeup.max_ns());
+  out.tick_second_max_us = kUsPerNs * static_cast<double>(statistics.tick_second_max_ns);
+  out.wakeup_second_max_us = kUsPerNs * static_cast<double>(statistics.wakeup_second_max_ns);
+  out.overruns = statistics.overruns;
+  out.skipped_cycles = statistics.skipped_cycles;
 }
 
 void add_rejection(clearance_msg_Health& out, const std::string& object, const char* cause,
@@ -36,7 +36,7 @@ void add_rejection(clearance_msg_Health& out, const std::string& object, const c
 
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
 
-void fill_rejections(const Scene& scene, const Vitals& vitals,
+void fill_rejections(const Scene& scene, const LoopStatistics& statistics,
                      const std::vector<RefusedSource>& refused, clearance_msg_Health& out) {
   const std::size_t most = refused.size() + (scene.objects.size() + 1) * kRejects;
   reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
@@ -45,10 +45,10 @@ void fill_rejections(const Scene& scene, const Vitals& vitals,
     add_rejection(out, name.empty() ? "other sources" : "source '" + name + "'",
                   "one source too many", source.poses);
   }
-  std::array<std::uint64_t, kRejects> nameless = vitals.rejected_total;
+  std::array<std::uint64_t, kRejects> nameless = statistics.rejected_total;
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
     for (std::size_t cause = 0; cause < kRejects; ++cause) {
-      const std::uint64_t count = vitals.rejected[object][cause];
+      const std::uint64_t count = statistics.rejected[object][cause];
       nameless[cause] -= std::min(count, nameless[cause]);
       add_rejection(out, scene.objects[object].name, cause_name(cause), count);
     }
@@ -58,7 +58,7 @@ void fill_rejections(const Scene& scene, const Vitals& vitals,
   }
 }
 
-void fill_inputs(const Scene& scene, const Vitals& vitals, clearance_msg_Health& out) {
+void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
   reserve_sequence(out.inputs,
                    std::min<std::size_t>(scene.objects.size(), clearance_msg_kMaxObjects));
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
@@ -66,8 +66,8 @@ void fill_inputs(const Scene& scene, const Vitals& vitals, clearance_msg_Health&
     clearance_msg_InputAge& entry = out.inputs._buffer[out.inputs._length++];
     entry.object = object;
     entry.name = dds_string_dup(scene.objects[object].name.c_str());
-    entry.age_ns = vitals.ages[object].age_ns;
-    entry.stale = vitals.ages[object].stale || entry.age_ns < 0;
+    entry.age_ns = statistics.ages[object].age_ns;
+    entry.stale = statistics.ages[object].stale || entry.age_ns < 0;
   }
 }
 
@@ -94,14 +94,14 @@ void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
 
 }  // namespace
 
-Sample<clearance_msg_Health> make_health(const Scene& scene, const Vitals& vitals,
-                                         const DdsPoses& poses, std::uint64_t dropped_reports) {
+Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
+                                         const PoseReader& poses, std::uint64_t dropped_reports) {
   Sample<clearance_msg_Health> sample;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
-  fill_loop(vitals, *sample);
-  fill_rejections(scene, vitals, poses.refused_sources(), *sample);
-  fill_inputs(scene, vitals, *sample);
+  fill_loop(statistics, *sample);
+  fill_rejections(scene, statistics, poses.refused_sources(), *sample);
+  fill_inputs(scene, statistics, *sample);
   fill_sources(poses.tallies(), *sample);
   return sample;
 }

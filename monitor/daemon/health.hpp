@@ -1,4 +1,4 @@
-// What the health topic says, put together from the loop's vitals and the ports' counts.
+// What the health topic says, put together from the loop's statistics and the ports' counts.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,9 @@
 
 namespace clearance {
 
-[[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene, const Vitals& vitals,
-                                                       const DdsPoses& poses,
+[[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene,
+                                                       const LoopStatistics& statistics,
+                                                       const PoseReader& poses,
                                                        std::uint64_t dropped_reports);
 
 // Tells the log which rejections, losses and late inputs are new since the health before: a few

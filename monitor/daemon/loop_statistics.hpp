@@ -21,12 +21,12 @@ struct MinimumSeen {
 };
 
 // All figures are since the start unless they say otherwise.
-struct Vitals {
+struct LoopStatistics {
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
   Histogram tick;                       // from waking up to the report handed over
   Histogram wakeup;                     // how late the tick thread woke
-  std::int64_t tick_second_max_ns = 0;  // since the vitals before
+  std::int64_t tick_second_max_ns = 0;  // since the statistics before
   std::int64_t wakeup_second_max_ns = 0;
   std::uint64_t overruns = 0;        // ticks that ended after the next deadline
   std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick

@@ -82,8 +82,9 @@ int run(int argc, char** argv, StopSignal& signal) {
   }
   const auto scene = scene_or_errors(read_cell(arguments.cell));
   if (!scene) return kBadCell;
-  if (!spares_inputs("clearanced", arguments.daemon.record_file, {arguments.cell})) return kUsage;
-  if (!may_write("clearanced", arguments.daemon.record_file, arguments.daemon.record_over)) {
+  if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {arguments.cell}))
+    return kUsage;
+  if (!can_create("clearanced", arguments.daemon.record_file, arguments.daemon.record_over)) {
     return kIncomplete;
   }
   return run_daemon(*scene, arguments, signal);

@@ -30,7 +30,7 @@ class ReportSink {
   // `sources`: the last batch of each source that this tick took in; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.
-  virtual void vitals(const Vitals& vitals) noexcept = 0;
+  virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 
 class Clock {

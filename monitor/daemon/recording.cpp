@@ -20,7 +20,7 @@ std::size_t slots(std::size_t bytes_a_slot) {
 }
 
 ReportQueueOptions queue_options(const Scene& scene) {
-  const std::size_t samples = DdsPoses::samples_a_batch(scene);
+  const std::size_t samples = PoseReader::samples_a_batch(scene);
   return {.reports = slots(sizeof(PairReport) * scene.pairs.size()),
           .inputs = slots(sizeof(PoseSample) * samples),
           .samples_a_batch = samples};
@@ -29,7 +29,7 @@ ReportQueueOptions queue_options(const Scene& scene) {
 }  // namespace
 
 Recording::Recording(const std::filesystem::path& file, bool over, const Scene& scene,
-                     const DdsPoses& poses)
+                     const PoseReader& poses)
     : scene_(scene),
       file_(file.string()),
       poses_(poses),
@@ -63,9 +63,9 @@ void Recording::run() {
       recorder_.report(queued->report, queued->sources());
       queue_.reports().pop();
     }
-    while (const Vitals* vitals = queue_.vitals().front()) {
-      recorder_.health(*make_health(scene_, *vitals, poses_, queue_.dropped_reports()));
-      queue_.vitals().pop();
+    while (const LoopStatistics* statistics = queue_.statistics().front()) {
+      recorder_.health(*make_health(scene_, *statistics, poses_, queue_.dropped_reports()));
+      queue_.statistics().pop();
       log_trouble();
     }
   }

@@ -26,7 +26,7 @@ class Recording {
   // Throws RecordError when the file cannot be made, or is there already and not to be written
   // over.
   Recording(const std::filesystem::path& file, bool over, const Scene& scene,
-            const DdsPoses& poses);
+            const PoseReader& poses);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
@@ -45,7 +45,7 @@ class Recording {
 
   const Scene& scene_;
   std::string file_;
-  const DdsPoses& poses_;
+  const PoseReader& poses_;
   ReportQueue queue_;
   Recorder recorder_;
   bool error_logged_ = false;

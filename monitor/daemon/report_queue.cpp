@@ -24,7 +24,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.report.pairs.resize(static_cast<std::size_t>(published));
     slot.report.zones.resize(scene.zones.size());
   });
-  vitals_.prepare([&](Vitals& slot) {
+  vitals_.prepare([&](LoopStatistics& slot) {
     slot.rejected.resize(scene.objects.size());
     slot.ages.resize(scene.objects.size());
   });
@@ -57,10 +57,10 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   ready_.post();
 }
 
-void ReportQueue::vitals(const Vitals& vitals) noexcept {
-  Vitals* slot = vitals_.back();
+void ReportQueue::statistics(const LoopStatistics& statistics) noexcept {
+  LoopStatistics* slot = vitals_.back();
   if (slot == nullptr) return;  // the next ones say it all again
-  *slot = vitals;
+  *slot = statistics;
   vitals_.push();
   ready_.post();
 }

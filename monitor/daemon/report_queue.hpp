@@ -38,7 +38,7 @@ class ReportQueue final : public ReportSink {
   // Tick thread.
   void input(const PoseBatch& batch) noexcept override;
   void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
-  void vitals(const Vitals& vitals) noexcept override;
+  void statistics(const LoopStatistics& statistics) noexcept override;
 
   // After the last tick, from any one thread: the consumer's wait ends, and closed() is true.
   void close() noexcept;
@@ -48,7 +48,7 @@ class ReportQueue final : public ReportSink {
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
   SpscRing<QueuedReport>& reports() noexcept { return reports_; }
   SpscRing<PoseBatch>& inputs() noexcept { return inputs_; }
-  SpscRing<Vitals>& vitals() noexcept { return vitals_; }
+  SpscRing<LoopStatistics>& statistics() noexcept { return vitals_; }
 
   // Any thread.
   [[nodiscard]] std::uint64_t dropped_reports() const noexcept { return dropped_reports_.load(); }
@@ -57,7 +57,7 @@ class ReportQueue final : public ReportSink {
  private:
   SpscRing<QueuedReport> reports_;
   SpscRing<PoseBatch> inputs_;
-  SpscRing<Vitals> vitals_;
+  SpscRing<LoopStatistics> vitals_;
   bool keeps_inputs_;
   Semaphore ready_;
   std::atomic<bool> closed_{false};

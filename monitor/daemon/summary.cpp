@@ -13,15 +13,15 @@ std::string percentiles(const Histogram& histogram) {
                      kUsPerNs * static_cast<double>(histogram.max_ns()));
 }
 
-std::string run_summary(const Scene& scene, const Vitals& vitals, double seconds,
+std::string run_summary(const Scene& scene, const LoopStatistics& statistics, double seconds,
                         std::uint64_t dropped_reports) {
   std::string text = fmt::format(
       "{} ticks in {:.2f} s, {} overruns, {} skipped cycles, {} reports dropped\n"
       "tick     {}\n"
       "wake-up  {}\n",
-      vitals.cycle, seconds, vitals.overruns, vitals.skipped_cycles, dropped_reports,
-      percentiles(vitals.tick), percentiles(vitals.wakeup));
-  const MinimumSeen& minimum = vitals.minimum;
+      statistics.cycle, seconds, statistics.overruns, statistics.skipped_cycles, dropped_reports,
+      percentiles(statistics.tick), percentiles(statistics.wakeup));
+  const MinimumSeen& minimum = statistics.minimum;
   if (!minimum.known) return text + "minimum  none: no pair was ever evaluated\n";
   return text + fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n",
                             minimum.pair.distance, minimum.pair.lower, minimum.pair.upper,

@@ -12,7 +12,7 @@ namespace clearance {
 [[nodiscard]] std::string percentiles(const Histogram& histogram);
 
 // Ticks, overruns, tick and wake-up times, the smallest distance seen. Ends with a newline.
-[[nodiscard]] std::string run_summary(const Scene& scene, const Vitals& vitals, double seconds,
-                                      std::uint64_t dropped_reports);
+[[nodiscard]] std::string run_summary(const Scene& scene, const LoopStatistics& statistics,
+                                      double seconds, std::uint64_t dropped_reports);
 
 }  // namespace clearance

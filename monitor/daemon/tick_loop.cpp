@@ -105,7 +105,7 @@ void TickLoop::hand_over_vitals() noexcept {
     vitals_.rejected[object] = monitor_.rejected(object);
     vitals_.ages[object] = monitor_.input_age(object);
   }
-  for (ReportSink* sink : sinks_) sink->vitals(vitals_);
+  for (ReportSink* sink : sinks_) sink->statistics(vitals_);
   vitals_.tick_second_max_ns = 0;
   vitals_.wakeup_second_max_ns = 0;
 }

@@ -34,7 +34,7 @@ class TickLoop {
   void run(const std::atomic<bool>& stop) noexcept;
 
   // The figures of the last time that they were handed to the sinks; after run(): final.
-  [[nodiscard]] const Vitals& vitals() const noexcept { return vitals_; }
+  [[nodiscard]] const LoopStatistics& statistics() const noexcept { return vitals_; }
 
  private:
   void take_in() noexcept;
@@ -58,7 +58,7 @@ class TickLoop {
   std::vector<PoseSample> samples_;
   std::array<SourceUse, kMaxSources> used_;
   std::size_t used_count_ = 0;
-  Vitals vitals_;
+  LoopStatistics vitals_;
 };
 
 }  // namespace clearance

@@ -31,19 +31,19 @@ dds_entity_t make_reader(const Scene& scene, Participant& participant) {
   dds_lset_subscription_matched(listener, log_matched);
   const dds_entity_t reader =
       participant.reader(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
-                         Delivery::kStream, DdsPoses::kDepth, listener);
+                         Delivery::kStream, PoseReader::kDepth, listener);
   dds_delete_listener(listener);
   return reader;
 }
 
 }  // namespace
 
-std::size_t DdsPoses::samples_a_batch(const Scene& scene) noexcept {
+std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
   // Several poses of one object in a batch are fine: a sensor may be faster than its sender.
   return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
 }
 
-DdsPoses::DdsPoses(const Scene& scene, Participant& participant)
+PoseReader::PoseReader(const Scene& scene, Participant& participant)
     : scene_(scene),
       samples_a_batch_(samples_a_batch(scene)),
       reader_(make_reader(scene, participant)),
@@ -56,37 +56,37 @@ DdsPoses::DdsPoses(const Scene& scene, Participant& participant)
   thread_ = std::thread([this] { run(); });
 }
 
-DdsPoses::~DdsPoses() {
+PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
   thread_.join();
 }
 
-const PoseBatch* DdsPoses::next() noexcept {
+const PoseBatch* PoseReader::next() noexcept {
   if (lent_) ring_.pop();
   const PoseBatch* batch = ring_.front();
   lent_ = batch != nullptr;
   return batch;
 }
 
-std::vector<SourceTally> DdsPoses::tallies() const {
+std::vector<SourceTally> PoseReader::tallies() const {
   const std::lock_guard lock(tallies_mutex_);
   return tallies_;
 }
 
-std::vector<RefusedSource> DdsPoses::refused_sources() const {
+std::vector<RefusedSource> PoseReader::refused_sources() const {
   const std::lock_guard lock(tallies_mutex_);
   return refused_;
 }
 
-void DdsPoses::run() {
+void PoseReader::run() {
   name_thread("poses");
   while (!stop_) {
     if (wait_.wait(DDS_INFINITY)) take_all();
   }
 }
 
-void DdsPoses::take_all() {
+void PoseReader::take_all() {
   std::array<void*, kDepth> pointers;
   std::array<dds_sample_info_t, kDepth> infos;
   for (std::size_t i = 0; i < kDepth; ++i) pointers[i] = &*taken_[i];
@@ -100,7 +100,7 @@ void DdsPoses::take_all() {
   }
 }
 
-SourceTally* DdsPoses::tally_of(const SourceName& source) {
+SourceTally* PoseReader::tally_of(const SourceName& source) {
   const auto found = std::find_if(tallies_.begin(), tallies_.end(),
                                   [&](const SourceTally& tally) { return tally.source == source; });
   if (found != tallies_.end()) return &*found;
@@ -109,7 +109,7 @@ SourceTally* DdsPoses::tally_of(const SourceName& source) {
   return &tallies_.emplace_back(SourceTally{.source = source});
 }
 
-void DdsPoses::refuse(const SourceName& source, std::uint64_t poses) {
+void PoseReader::refuse(const SourceName& source, std::uint64_t poses) {
   auto entry = std::ranges::find(refused_, source, &RefusedSource::source);
   if (entry == refused_.end()) {
     const bool named = refused_.size() < kMaxSources;
@@ -123,7 +123,7 @@ void DdsPoses::refuse(const SourceName& source, std::uint64_t poses) {
   entry->poses += poses;
 }
 
-void DdsPoses::hand_over(clearance_msg_PoseBatch& batch) {
+void PoseReader::hand_over(clearance_msg_PoseBatch& batch) {
   const std::lock_guard lock(tallies_mutex_);
   SourceTally* tally = tally_of(SourceName(batch.source));
   if (tally == nullptr) {

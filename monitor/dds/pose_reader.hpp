@@ -35,7 +35,7 @@ struct RefusedSource {
   std::uint64_t poses = 0;
 };
 
-class DdsPoses final : public PoseSource {
+class PoseReader final : public PoseSource {
  public:
   // Poses that one batch may hold; what a source sends beyond it is counted and not used.
   [[nodiscard]] static std::size_t samples_a_batch(const Scene& scene) noexcept;
@@ -44,8 +44,8 @@ class DdsPoses final : public PoseSource {
   // Samples kept an unread source: what may arrive while the taking thread is held up.
   static constexpr std::int32_t kDepth = 16;
 
-  DdsPoses(const Scene& scene, Participant& participant);
-  ~DdsPoses() override;
+  PoseReader(const Scene& scene, Participant& participant);
+  ~PoseReader() override;
 
   const PoseBatch* next() noexcept override;
 

@@ -32,9 +32,9 @@ std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint
   if (!zone.active) return "left " + at_cycle;
   const std::string pair = "entered " + at_cycle + ": " + pair_name(scene, zone.pair);
   if (zone.clearance == -kInfinity) return pair + " unknown: no pose of one of them, or too old";
-  if (zone.clearance_since == -kInfinity) return pair + ", which may have been anywhere: one leapt";
+  if (zone.swept_clearance == -kInfinity) return pair + ", which may have been anywhere: one leapt";
   return fmt::format("{}, {:.3f} m clear, {:.3f} m since the tick before", pair, zone.clearance,
-                     zone.clearance_since);
+                     zone.swept_clearance);
 }
 
 template <class T>
@@ -50,8 +50,8 @@ dds_entity_t make_writer(Participant& participant, const std::string& topic, Del
 
 }  // namespace
 
-DdsReports::DdsReports(const Scene& scene, Participant& participant, ReportQueue& queue,
-                       const DdsPoses& poses)
+ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
+                           const PoseReader& poses)
     : scene_(scene),
       queue_(queue),
       poses_(poses),
@@ -72,22 +72,22 @@ DdsReports::DdsReports(const Scene& scene, Participant& participant, ReportQueue
   thread_ = std::thread([this] { run(); });
 }
 
-DdsReports::~DdsReports() { finish(); }
+ReportWriter::~ReportWriter() { finish(); }
 
-void DdsReports::finish() {
+void ReportWriter::finish() {
   if (!thread_.joinable()) return;
   queue_.close();
   thread_.join();
 }
 
-std::uint32_t DdsReports::distance_readers() const {
+std::uint32_t ReportWriter::distance_readers() const {
   dds_publication_matched_status_t status{};
   return dds_get_publication_matched_status(distances_, &status) == DDS_RETCODE_OK
              ? status.current_count
              : 0;
 }
 
-void DdsReports::run() {
+void ReportWriter::run() {
   name_thread("reports");
   for (bool closed = false; !closed;) {
     queue_.wait();
@@ -96,14 +96,14 @@ void DdsReports::run() {
       write_report(*queued);
       queue_.reports().pop();
     }
-    while (const Vitals* vitals = queue_.vitals().front()) {
-      write_health(*vitals);
-      queue_.vitals().pop();
+    while (const LoopStatistics* statistics = queue_.statistics().front()) {
+      write_health(*statistics);
+      queue_.statistics().pop();
     }
   }
 }
 
-void DdsReports::write_report(const QueuedReport& queued) {
+void ReportWriter::write_report(const QueuedReport& queued) {
   to_wire(queued.report, queued.sources(), dds_time(), *distances_sample_);
   write(distances_, &*distances_sample_, "distances");
   write_zones(queued.report);
@@ -111,7 +111,7 @@ void DdsReports::write_report(const QueuedReport& queued) {
 
 // Compared with what was written last, not with Report's own `changed`: a change must come through
 // even when the report in which it happened was dropped.
-void DdsReports::write_zones(const Report& report) {
+void ReportWriter::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
     if (zone_written_[zone] && zone_active_[zone] == active) continue;
@@ -127,14 +127,14 @@ void DdsReports::write_zones(const Report& report) {
   }
 }
 
-void DdsReports::write_health(const Vitals& vitals) {
+void ReportWriter::write_health(const LoopStatistics& statistics) {
   const auto sample =
-      make_health(scene_, vitals, poses_, queue_.dropped_reports() + failed_writes_.load());
+      make_health(scene_, statistics, poses_, queue_.dropped_reports() + failed_writes_.load());
   write(health_, &*sample, "health");
   health_log_.update(*sample);
 }
 
-void DdsReports::write(dds_entity_t writer, const void* sample, const char* what) {
+void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return;
   // At a tick rate the log would be flooded: powers of two say it often enough.

@@ -15,12 +15,12 @@
 
 namespace clearance {
 
-class DdsReports {
+class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.
-  DdsReports(const Scene& scene, Participant& participant, ReportQueue& queue,
-             const DdsPoses& poses);
-  ~DdsReports();  // finishes
+  ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
+               const PoseReader& poses);
+  ~ReportWriter();  // finishes
 
   // After the last tick: writes what is queued.
   void finish();
@@ -33,12 +33,12 @@ class DdsReports {
   void run();
   void write_report(const QueuedReport& queued);
   void write_zones(const Report& report);
-  void write_health(const Vitals& vitals);
+  void write_health(const LoopStatistics& statistics);
   void write(dds_entity_t writer, const void* sample, const char* what);
 
   const Scene& scene_;
   ReportQueue& queue_;
-  const DdsPoses& poses_;
+  const PoseReader& poses_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   Sample<clearance_msg_Distances> distances_sample_;
   std::vector<bool> zone_written_, zone_active_;  // as last written

@@ -22,7 +22,7 @@ bool would_be_simpler_as_hull(const Object& object) {
          (object.parts.size() == 1 && object.parts[0].shape.facets.size() > kFineFacets);
 }
 
-EnclosingHull hull_of(const Object& object) {
+BoundingHull hull_of(const Object& object) {
   auto made = enclosing_polyhedron(shapes_of(object));
   return made ? std::make_shared<const ConvexPolyhedron>(std::move(*made)) : nullptr;
 }
@@ -35,11 +35,11 @@ std::vector<PlacedShape> shapes_of(const Object& object) {
   return shapes;
 }
 
-std::vector<EnclosingHull> enclosing_hulls(const Scene& scene) {
-  std::vector<EnclosingHull> hulls;
+std::vector<BoundingHull> bounding_hulls(const Scene& scene) {
+  std::vector<BoundingHull> hulls;
   std::vector<std::size_t> originals;  // objects whose hull was made
   for (const Object& object : scene.objects) {
-    EnclosingHull hull;
+    BoundingHull hull;
     if (would_be_simpler_as_hull(object)) {
       const auto original = std::find_if(
           originals.begin(), originals.end(),

@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-using EnclosingHull = std::shared_ptr<const ConvexPolyhedron>;
+using BoundingHull = std::shared_ptr<const ConvexPolyhedron>;
 
 // An object of one part has a hull if that part has more facets than this: twice those of a hull.
 inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;
@@ -22,6 +22,6 @@ inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;
 
 // One an object, in its frame; null for an object of one simple part, or with an unbounded one.
 // Objects of the same parts share theirs.
-[[nodiscard]] std::vector<EnclosingHull> enclosing_hulls(const Scene& scene);
+[[nodiscard]] std::vector<BoundingHull> bounding_hulls(const Scene& scene);
 
 }  // namespace clearance

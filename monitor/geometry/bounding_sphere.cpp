@@ -8,21 +8,21 @@ namespace clearance {
 namespace {
 
 // A part's ball in its object's frame.
-Ball in_object(const PlacedPart& part) noexcept {
+Ball in_object(const PosedPart& part) noexcept {
   const Vec3& centre = part.ball_in_part.centre;
   const double error = kPlacingError * (centre.norm() + part.object_from_part.position.norm());
   return {.centre = transform(part.object_from_part, centre),
           .radius = rounded_up(part.ball_in_part.radius + error)};
 }
 
-EnclosingBall around(const std::vector<Ball>& balls, double reach) {
+BoundingSphere around(const std::vector<Ball>& balls, double reach) {
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
   for (const Ball& ball : balls) {
     const double radius = std::isfinite(ball.radius) ? ball.radius : 0.0;
     low = low.cwiseMin(ball.centre - Vec3::Constant(radius));
     high = high.cwiseMax(ball.centre + Vec3::Constant(radius));
   }
-  EnclosingBall all{.in_object = {.centre = 0.5 * (low + high), .radius = 0.0}, .reach = reach};
+  BoundingSphere all{.in_object = {.centre = 0.5 * (low + high), .radius = 0.0}, .reach = reach};
   if (balls.size() == 1) all.in_object.centre = balls.front().centre;
   for (const Ball& ball : balls) {
     const double apart = rounded_up((ball.centre - all.in_object.centre).norm());
@@ -34,15 +34,15 @@ EnclosingBall around(const std::vector<Ball>& balls, double reach) {
 
 }  // namespace
 
-std::vector<EnclosingBall> enclosing_balls(std::size_t objects,
-                                           const std::vector<PlacedPart>& parts) {
+std::vector<BoundingSphere> bounding_spheres(std::size_t objects,
+                                             const std::vector<PosedPart>& parts) {
   std::vector<std::vector<Ball>> balls(objects);
   std::vector<double> reach(objects, 0.0);
-  for (const PlacedPart& part : parts) {
+  for (const PosedPart& part : parts) {
     balls[part.object].push_back(in_object(part));
     reach[part.object] = std::max(reach[part.object], part.reach);
   }
-  std::vector<EnclosingBall> all(objects);
+  std::vector<BoundingSphere> all(objects);
   for (std::size_t i = 0; i < objects; ++i) {
     if (balls[i].empty()) {
       all[i].in_object.radius = 0.0;
@@ -53,7 +53,7 @@ std::vector<EnclosingBall> enclosing_balls(std::size_t objects,
   return all;
 }
 
-Ball placed(const EnclosingBall& ball, const Pose& world_from_object) noexcept {
+Ball placed(const BoundingSphere& ball, const Pose& world_from_object) noexcept {
   const Vec3& centre = ball.in_object.centre;
   const double error = kPlacingError * (centre.norm() + world_from_object.position.norm());
   return {.centre = transform(world_from_object, centre),

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-struct EnclosingBall {
+struct BoundingSphere {
   Ball in_object;  // holds every part; infinite where one is unbounded
   // No point of the object, nor the ball's centre, is farther from the object's origin, m: what
   // moves the object moves the ball no farther.
@@ -15,11 +15,11 @@ struct EnclosingBall {
 };
 
 // One an object. An object without parts has an empty ball.
-[[nodiscard]] std::vector<EnclosingBall> enclosing_balls(std::size_t objects,
-                                                         const std::vector<PlacedPart>& parts);
+[[nodiscard]] std::vector<BoundingSphere> bounding_spheres(std::size_t objects,
+                                                           const std::vector<PosedPart>& parts);
 
 // In the world, rounding included.
-[[nodiscard]] Ball placed(const EnclosingBall& ball, const Pose& world_from_object) noexcept;
+[[nodiscard]] Ball placed(const BoundingSphere& ball, const Pose& world_from_object) noexcept;
 
 // Whatever is in two balls is at least, and at most, this far apart, m.
 [[nodiscard]] double least_between(const Ball& a, const Ball& b) noexcept;

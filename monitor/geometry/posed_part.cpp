@@ -72,7 +72,7 @@ inline double sum_of_sizes(const Vec3& v) noexcept {
 // faces stay parallel, and a rotated floor stays where it is. The length of the product's
 // quaternion is that of its factors: a pose means its exact normalisation. Returns the product's
 // rotation.
-Mat3 compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcept {
+Mat3 compose_with_error(const Pose& world_from_object, PosedPart& part) noexcept {
   const Pose& offset = part.object_from_part;
   const bool offset_turns = !is_identity(offset.orientation);
   const bool object_turns = !is_identity(world_from_object.orientation);
@@ -95,7 +95,7 @@ Mat3 compose_with_error(const Pose& world_from_object, PlacedPart& part) noexcep
   return offset_turns ? rotation_matrix(part.world_from_part.orientation) : turn;
 }
 
-void place_ball(const Mat3& turn, PlacedPart& part) noexcept {
+void place_ball(const Mat3& turn, PosedPart& part) noexcept {
   const Vec3& position = part.world_from_part.position;
   Ball& ball = part.ball_in_world;
   put(turn, part.ball_in_part.centre, position, ball.centre);
@@ -108,7 +108,7 @@ void place_ball(const Mat3& turn, PlacedPart& part) noexcept {
 // How far a wrong orientation of `part` can take the nearest points of the two apart. Turning the
 // part about its origin is turning the other one back about the same point, so the smaller arm
 // counts.
-double turning_error(const PlacedPart& part, const PlacedPart& other) noexcept {
+double turning_error(const PosedPart& part, const PosedPart& other) noexcept {
   if (part.turn_error == 0.0) return 0.0;
   if (part.extent <= other.extent) return swept(part.turn_error, part.extent);
   const double to_other =
@@ -118,13 +118,13 @@ double turning_error(const PlacedPart& part, const PlacedPart& other) noexcept {
 
 }  // namespace
 
-std::vector<PlacedPart> parts_of(const Scene& scene) {
-  std::vector<PlacedPart> parts;
+std::vector<PosedPart> parts_of(const Scene& scene) {
+  std::vector<PosedPart> parts;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     for (std::uint32_t j = 0; j < object.parts.size(); ++j) {
       const Part& part = object.parts[j];
-      PlacedPart placed;
+      PosedPart placed;
       placed.object = i;
       placed.index_in_object = j;
       placed.shape = &part.shape;
@@ -141,19 +141,19 @@ std::vector<PlacedPart> parts_of(const Scene& scene) {
   return parts;
 }
 
-void place(const ObjectState& object, PlacedPart& part) noexcept {
+void place(const TrackedObject& object, PosedPart& part) noexcept {
   part.turning = swept(object.turned, part.ball_in_part.radius);
   if (object.moved || !part.placed) place_at(object.pose, part);
 }
 
-void place_at(const Pose& world_from_object, PlacedPart& part) noexcept {
+void place_at(const Pose& world_from_object, PosedPart& part) noexcept {
   const Mat3 turn = compose_with_error(world_from_object, part);
   place_ball(turn, part);
   part.world_from_part_rotation = turn;
   part.placed = true;
 }
 
-double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept {
+double placing_error(const PosedPart& a, const PosedPart& b) noexcept {
   return rounded_up(a.shift_error + b.shift_error + turning_error(a, b) + turning_error(b, a));
 }
 

@@ -19,7 +19,7 @@ struct Ball {
   double radius = kInfinity;  // m, rounding of the centre included
 };
 
-struct PlacedPart {
+struct PosedPart {
   std::uint32_t object = 0;           // index into Scene::objects
   std::uint32_t index_in_object = 0;  // into Object::parts
 
@@ -29,7 +29,7 @@ struct PlacedPart {
   Pose world_from_part;      // as the queries use it
   double shift_error = 0.0;  // its position is at most this far from the exact one, m
   double turn_error = 0.0;   // |R - R_exact| is at most this
-  // How far turning, in all (ObjectState::turned), can have moved a point of its ball about the
+  // How far turning, in all (TrackedObject::turned), can have moved a point of its ball about the
   // ball's middle, m.
   double turning = 0.0;
   double coordinates = 0.0;  // absolute, of its ball and its position, all together, m
@@ -50,16 +50,16 @@ struct PlacedPart {
 };
 
 // All parts of the scene, object by object; none placed yet.
-[[nodiscard]] std::vector<PlacedPart> parts_of(const Scene& scene);
+[[nodiscard]] std::vector<PosedPart> parts_of(const Scene& scene);
 
 // Puts a part where its object, which has been seen, is in this tick.
-void place(const ObjectState& object, PlacedPart& part) noexcept;
+void place(const TrackedObject& object, PosedPart& part) noexcept;
 
 // Puts a part where it is when its object has this pose.
-void place_at(const Pose& world_from_object, PlacedPart& part) noexcept;
+void place_at(const Pose& world_from_object, PosedPart& part) noexcept;
 
 // How far this tick's poses of two parts, as the queries use them, can bring the parts nearer to
 // each other or farther apart than the exact poses do, m.
-[[nodiscard]] double placing_error(const PlacedPart& a, const PlacedPart& b) noexcept;
+[[nodiscard]] double placing_error(const PosedPart& a, const PosedPart& b) noexcept;
 
 }  // namespace clearance

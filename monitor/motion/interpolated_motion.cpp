@@ -29,21 +29,22 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation, const Vec3& tur
          orientation.normalized();
 }
 
-double angle_of(const Way& way) noexcept {
+double angle_of(const InterpolatedMotion& way) noexcept {
   return way.turns ? way.turn.norm() + kTurnRounding : 0.0;
 }
 
 }  // namespace
 
-Way way_of(const ObjectState& object) noexcept {
-  Way way{.from = object.moved ? object.pose_before : object.pose, .to = object.pose};
+InterpolatedMotion way_of(const TrackedObject& object) noexcept {
+  InterpolatedMotion way{.from = object.moved ? object.pose_before : object.pose,
+                         .to = object.pose};
   way.shift = way.to.position - way.from.position;
   way.turns = way.from.orientation.coeffs() != way.to.orientation.coeffs();
   if (way.turns) way.turn = turn_between(way.from.orientation, way.to.orientation);
   return way;
 }
 
-Pose pose_on_way(const Way& way, double s) noexcept {
+Pose pose_on_way(const InterpolatedMotion& way, double s) noexcept {
   if (s <= 0.0) return way.from;
   if (s >= 1.0) return way.to;
   Pose pose = way.from;
@@ -52,7 +53,7 @@ Pose pose_on_way(const Way& way, double s) noexcept {
   return pose;
 }
 
-void place_on_way(const Way& way, double s, PlacedPart& part) noexcept {
+void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noexcept {
   place_at(pose_on_way(way, s), part);
   if (s <= 0.0 || s >= 1.0) return;
   const double reach = way.from.position.norm() + way.to.position.norm();
@@ -61,7 +62,8 @@ void place_on_way(const Way& way, double s, PlacedPart& part) noexcept {
   if (way.turns) part.turn_error += kWayError;
 }
 
-RelativeMotion seen_from(const Way& resting, const Way& moving, const PlacedPart& part) noexcept {
+RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMotion& moving,
+                         const PosedPart& part) noexcept {
   const Vec3& middle = part.ball_in_world.centre;
   const Vec3 arm = middle - moving.from.position;
   const Vec3 from_resting = middle - resting.from.position;

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-struct Way {
+struct InterpolatedMotion {
   Pose from, to;
   Vec3 shift = Vec3::Zero();  // of the origin, m
   Vec3 turn = Vec3::Zero();   // along the axis, in the world, rad; no longer than pi
@@ -15,13 +15,13 @@ struct Way {
 };
 
 // None where nothing was known of the object at the last tick.
-[[nodiscard]] Way way_of(const ObjectState& object) noexcept;
+[[nodiscard]] InterpolatedMotion way_of(const TrackedObject& object) noexcept;
 
 // `s` of the way, 0 to 1; at the ends exactly.
-[[nodiscard]] Pose pose_on_way(const Way& way, double s) noexcept;
+[[nodiscard]] Pose pose_on_way(const InterpolatedMotion& way, double s) noexcept;
 
 // Puts a part of the object where it is at `s` of the way, 0 to 1. Its errors hold for that.
-void place_on_way(const Way& way, double s, PlacedPart& part) noexcept;
+void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noexcept;
 
 // How one part goes as seen from the frame of the other's object, per whole way. All upper bounds,
 // rounding included.
@@ -32,7 +32,8 @@ struct RelativeMotion {
 };
 
 // `part` goes along `moving` and has been placed at its beginning.
-[[nodiscard]] RelativeMotion seen_from(const Way& resting, const Way& moving,
-                                       const PlacedPart& part) noexcept;
+[[nodiscard]] RelativeMotion seen_from(const InterpolatedMotion& resting,
+                                       const InterpolatedMotion& moving,
+                                       const PosedPart& part) noexcept;
 
 }  // namespace clearance

@@ -13,7 +13,7 @@ constexpr double kMostTurn = 1.0;
 
 // From the last pose to the one in use: 2 sin(angle / 2) along the shorter turn's axis, in the
 // world.
-Vec3 turning_of(const ObjectState& object) noexcept {
+Vec3 turning_of(const TrackedObject& object) noexcept {
   if (object.motion.turn == 0.0) return Vec3::Zero();
   const Eigen::Quaterniond q = object.pose.orientation.normalized() *
                                object.pose_before.orientation.normalized().conjugate();
@@ -29,10 +29,10 @@ double turn_error(const Motion& motion) noexcept {
 
 }  // namespace
 
-double relative_travel(const ObjectState& a, const ObjectState& b) noexcept {
+double relative_travel(const TrackedObject& a, const TrackedObject& b) noexcept {
   const bool from_a = b.reach <= a.reach;
-  const ObjectState& resting = from_a ? a : b;
-  const ObjectState& moving = from_a ? b : a;
+  const TrackedObject& resting = from_a ? a : b;
+  const TrackedObject& moving = from_a ? b : a;
   const Motion& frame = resting.motion;
   const Motion& body = moving.motion;
   if (!(std::max(frame.turn, body.turn) <= kMostTurn)) return kInfinity;

@@ -10,6 +10,6 @@ namespace clearance {
 // there and on the way on from there, both together; infinity: no better than what both have
 // travelled. Both were known at the last tick and neither has leapt. README.md, "Between two
 // ticks".
-[[nodiscard]] double relative_travel(const ObjectState& a, const ObjectState& b) noexcept;
+[[nodiscard]] double relative_travel(const TrackedObject& a, const TrackedObject& b) noexcept;
 
 }  // namespace clearance

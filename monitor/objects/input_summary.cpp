@@ -22,13 +22,13 @@ class LargestTwo {
 
 }  // namespace
 
-InputRound look_at_inputs(std::span<const ObjectState> objects,
-                          std::span<const std::uint32_t> moving, Report& report) noexcept {
-  InputRound round;
+InputSummary look_at_inputs(std::span<const TrackedObject> objects,
+                            std::span<const std::uint32_t> moving, Report& report) noexcept {
+  InputSummary round;
   bool any = false;
   LargestTwo unseen, strayed;
   for (const std::uint32_t i : moving) {
-    const ObjectState& object = objects[i];
+    const TrackedObject& object = objects[i];
     round.any_lost = round.any_lost || !object.known() || object.leapt;
     if (!object.seen) continue;
     report.newest_pose_ns =

@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-struct InputRound {
+struct InputSummary {
   bool any_lost = false;  // an object is not known, or has leapt
   // Of any two known objects together: how far they may have moved unseen, and may have been from
   // where they are now since the last tick, m.
@@ -18,8 +18,8 @@ struct InputRound {
 
 // `moving`: the objects that are not fixed. The report's newest and oldest stamps are those of the
 // poses in use.
-[[nodiscard]] InputRound look_at_inputs(std::span<const ObjectState> objects,
-                                        std::span<const std::uint32_t> moving,
-                                        Report& report) noexcept;
+[[nodiscard]] InputSummary look_at_inputs(std::span<const TrackedObject> objects,
+                                          std::span<const std::uint32_t> moving,
+                                          Report& report) noexcept;
 
 }  // namespace clearance

@@ -51,8 +51,8 @@ bool same(const Pose& a, const Pose& b) noexcept {
 
 }  // namespace
 
-ObjectState initial_state(const Object& object) noexcept {
-  ObjectState state;
+TrackedObject initial_state(const Object& object) noexcept {
+  TrackedObject state;
   if (!object.fixed) return state;
   state.seen = state.seen_last_tick = true;
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
@@ -62,7 +62,7 @@ ObjectState initial_state(const Object& object) noexcept {
   return state;
 }
 
-std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+std::optional<Reject> refusal(const PoseSample& sample, const TrackedObject& state,
                               std::int64_t now_ns, std::int64_t future_limit_ns) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
   const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
@@ -75,7 +75,7 @@ std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state
   return std::nullopt;
 }
 
-void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept {
+void accept(const Object& object, const PoseSample& sample, TrackedObject& state) noexcept {
   const std::int64_t apart_ns = elapsed(state.stamp_ns, sample.stamp_ns);
   if (sample.has_twist) {
     state.twist = sample.twist;
@@ -93,7 +93,7 @@ void accept(const Object& object, const PoseSample& sample, ObjectState& state) 
   state.seen = true;
 }
 
-void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept {
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
   if (object.fixed || !state.seen) return;
   const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
   state.began = !(unseen_before < kInfinity);
@@ -115,7 +115,7 @@ void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noex
       state.began ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }
 
-void travel(double reach, ObjectState& state) noexcept {
+void travel(double reach, TrackedObject& state) noexcept {
   state.reach = reach;
   state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
   state.bend = state.moved ? bend_at_most(state.motion, reach) : 0.0;

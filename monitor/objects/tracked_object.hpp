@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-struct ObjectState {
+struct TrackedObject {
   // What every pair asks of both its objects each tick comes first: one cache line, to `turned`.
   bool seen = false;   // some pose is in use; always so for a fixed object
   bool late = false;   // that pose is older than the object's limit
@@ -58,21 +58,21 @@ struct ObjectState {
 };
 
 // Before any input: a fixed object stands where the scene says.
-[[nodiscard]] ObjectState initial_state(const Object& object) noexcept;
+[[nodiscard]] TrackedObject initial_state(const Object& object) noexcept;
 
 // Why this sample must not be used, if so. `object` is a moving one and the one that the sample
 // names.
-[[nodiscard]] std::optional<Reject> refusal(const PoseSample& sample, const ObjectState& state,
+[[nodiscard]] std::optional<Reject> refusal(const PoseSample& sample, const TrackedObject& state,
                                             std::int64_t now_ns,
                                             std::int64_t future_limit_ns) noexcept;
 
 // Takes an unrefused sample into use.
-void accept(const Object& object, const PoseSample& sample, ObjectState& state) noexcept;
+void accept(const Object& object, const PoseSample& sample, TrackedObject& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.
-void advance(const Object& object, std::int64_t now_ns, ObjectState& state) noexcept;
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Counts this tick's motion in; no point of the object is farther than `reach` from its origin.
-void travel(double reach, ObjectState& state) noexcept;
+void travel(double reach, TrackedObject& state) noexcept;
 
 }  // namespace clearance

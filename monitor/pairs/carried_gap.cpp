@@ -11,14 +11,13 @@ namespace {
 // that take part.
 constexpr double kError = 0x1p-46;
 
-double rounding_of(double gap, double turning, const PlacedPart& a, const PlacedPart& b) noexcept {
+double rounding_of(double gap, double turning, const PosedPart& a, const PosedPart& b) noexcept {
   return kError * (std::abs(gap) + turning + a.coordinates + b.coordinates);
 }
 
 }  // namespace
 
-double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
-                const PlacedPart& b) noexcept {
+double kept_gap(double lower, const Vec3& normal, const PosedPart& a, const PosedPart& b) noexcept {
   if (!a.keeps_direction || !b.keeps_direction || normal.isZero(0.0)) return -kInfinity;
   const double turning = a.turning + b.turning;
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
@@ -26,8 +25,8 @@ double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
   return std::isfinite(gap) ? gap : -kInfinity;
 }
 
-double lower_along(const Vec3& normal, double kept_gap, const PlacedPart& a,
-                   const PlacedPart& b) noexcept {
+double lower_along(const Vec3& normal, double kept_gap, const PosedPart& a,
+                   const PosedPart& b) noexcept {
   const double turning = a.turning + b.turning;
   const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
   return kept_gap + middles - turning - rounding_of(kept_gap, turning, a, b);

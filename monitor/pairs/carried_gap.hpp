@@ -15,11 +15,11 @@ namespace clearance {
 // What is kept of an evaluation that told `lower` along `normal` (world, A to B), both for the
 // exact poses of now: the gap less that of the balls' middles, as if neither had ever turned, m.
 // -infinity: the direction says nothing later, or there is none.
-[[nodiscard]] double kept_gap(double lower, const Vec3& normal, const PlacedPart& a,
-                              const PlacedPart& b) noexcept;
+[[nodiscard]] double kept_gap(double lower, const Vec3& normal, const PosedPart& a,
+                              const PosedPart& b) noexcept;
 
 // The distance is at least this now, m.
-[[nodiscard]] double lower_along(const Vec3& normal, double kept_gap, const PlacedPart& a,
-                                 const PlacedPart& b) noexcept;
+[[nodiscard]] double lower_along(const Vec3& normal, double kept_gap, const PosedPart& a,
+                                 const PosedPart& b) noexcept;
 
 }  // namespace clearance

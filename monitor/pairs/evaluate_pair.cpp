@@ -12,8 +12,8 @@ namespace {
 
 DistanceResult ask(std::uint32_t row, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const PlacedPart& a = evaluation.parts[table.part_a[row]];
-  const PlacedPart& b = evaluation.parts[table.part_b[row]];
+  const PosedPart& a = evaluation.parts[table.part_a[row]];
+  const PosedPart& b = evaluation.parts[table.part_b[row]];
   return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, table.tracking[row]);
 }
 
@@ -23,8 +23,8 @@ struct Gone {
 };
 
 inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evaluation) noexcept {
-  const ObjectState& a = evaluation.objects[entry.object_a];
-  const ObjectState& b = evaluation.objects[entry.object_b];
+  const TrackedObject& a = evaluation.objects[entry.object_a];
+  const TrackedObject& b = evaluation.objects[entry.object_b];
   return {rounded_up(a.travel + b.travel), a.bend + b.bend};
 }
 
@@ -35,8 +35,8 @@ inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evalu
 inline double take_in(const DistanceResult& found, const Vec3& point_on_b, const RowBounds& known,
                       std::uint32_t row, const Gone& gone, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const PlacedPart& a = evaluation.parts[table.part_a[row]];
-  const PlacedPart& b = evaluation.parts[table.part_b[row]];
+  const PosedPart& a = evaluation.parts[table.part_a[row]];
+  const PosedPart& b = evaluation.parts[table.part_b[row]];
   // What was carried is true as well, and a query that was cut short may know less.
   const RowBounds bounds = for_exact_poses(found, a, b);
   const double lower = std::max(known.lower, bounds.lower);
@@ -147,8 +147,8 @@ void evaluate_rows(std::uint32_t pair, Evaluation& evaluation) noexcept {
 
 }  // namespace
 
-RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
-                          const PlacedPart& b) noexcept {
+RowBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
+                          const PosedPart& b) noexcept {
   const double error = placing_error(a, b);
   if (error == 0.0) return {found.lower, found.upper};
   return {rounded_down(found.lower - error), rounded_up(found.upper + error)};

@@ -10,8 +10,8 @@ namespace clearance {
 
 // What the queries of one tick work on, and how many are left of its budget.
 struct Evaluation {
-  const std::vector<ObjectState>& objects;
-  const std::vector<PlacedPart>& parts;
+  const std::vector<TrackedObject>& objects;
+  const std::vector<PosedPart>& parts;
   const std::uint64_t cycle;
   PairTable& table;
   std::uint32_t queries_left;
@@ -34,8 +34,8 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
             const Evaluation& evaluation) noexcept;
 
 // The bounds that a query tells are for the poses as it used them; these are for the exact ones.
-[[nodiscard]] RowBounds for_exact_poses(const DistanceResult& found, const PlacedPart& a,
-                                        const PlacedPart& b) noexcept;
+[[nodiscard]] RowBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
+                                        const PosedPart& b) noexcept;
 
 // Brings an object pair up to date and evaluates it as far as the budget goes: the row that may be
 // closest, then every other one that may be closer still. Rows whose carried bounds prove that they

@@ -4,9 +4,9 @@
 
 namespace clearance {
 
-void ClosestPair::add(std::uint32_t pair, const PairSummary& summary) noexcept {
+void GlobalMinimum::add(std::uint32_t pair, const PairBounds& summary) noexcept {
   lower_ = std::min(lower_, summary.lower);
-  lower_since_ = std::min(lower_since_, summary.lower_since);
+  lower_since_ = std::min(lower_since_, summary.swept_lower);
   if (summary.status == PairStatus::kUnknown) return;
 
   const bool tight = is_evaluated(summary.status) && summary.status != PairStatus::kLoose;
@@ -29,13 +29,13 @@ void ClosestPair::add(std::uint32_t pair, const PairSummary& summary) noexcept {
   summary_ = summary;
 }
 
-void ClosestPair::add_rest(double lower, double lower_since) noexcept {
+void GlobalMinimum::add_rest(double lower, double swept_lower) noexcept {
   lower_ = std::min(lower_, lower);
-  lower_since_ = std::min(lower_since_, lower_since);
+  lower_since_ = std::min(lower_since_, swept_lower);
   rest_lower_ = std::min(rest_lower_, lower);
 }
 
-bool ClosestPair::proved() const noexcept {
+bool GlobalMinimum::proved() const noexcept {
   if (!known_ || rest_lower_ < summary_.upper) return false;
   const double loose = loose_pair_ == pair_ ? next_loose_lower_ : loose_lower_;
   return loose >= summary_.upper;

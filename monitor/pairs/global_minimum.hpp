@@ -8,13 +8,13 @@
 
 namespace clearance {
 
-class ClosestPair {
+class GlobalMinimum {
  public:
   // In any number, also the same pair again.
-  void add(std::uint32_t pair, const PairSummary& summary) noexcept;
+  void add(std::uint32_t pair, const PairBounds& summary) noexcept;
 
   // Every pair that was not added is at least this far apart, m; and has been since the last tick.
-  void add_rest(double lower, double lower_since) noexcept;
+  void add_rest(double lower, double swept_lower) noexcept;
 
   // The added pair with the smallest upper bound, of those that have ever been evaluated.
   [[nodiscard]] bool known() const noexcept { return known_; }
@@ -27,12 +27,12 @@ class ClosestPair {
   // Every pair's distance is at least this, m.
   [[nodiscard]] double lower() const noexcept { return lower_; }
   // And has been since the last tick, m.
-  [[nodiscard]] double lower_since() const noexcept { return lower_since_; }
+  [[nodiscard]] double swept_lower() const noexcept { return lower_since_; }
 
  private:
   bool known_ = false;
   std::uint32_t pair_ = 0;
-  PairSummary summary_;  // of pair_
+  PairBounds summary_;  // of pair_
   double lower_ = kInfinity, lower_since_ = kInfinity, rest_lower_ = kInfinity;
   // Of the pairs whose distance is not known to rounding, the two with the smallest lower bounds.
   std::uint32_t loose_pair_ = 0;

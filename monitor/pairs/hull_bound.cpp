@@ -6,8 +6,8 @@ namespace clearance {
 namespace {
 
 // In its object's frame, so that it is where the object is, without rounding.
-PlacedPart around(const ConvexPolyhedron& hull) {
-  PlacedPart placed;
+PosedPart around(const ConvexPolyhedron& hull) {
+  PosedPart placed;
   placed.shape = &hull;
   placed.extent = rounded_up(hull.bounding_radius + hull.position_error);
   return placed;
@@ -15,8 +15,8 @@ PlacedPart around(const ConvexPolyhedron& hull) {
 
 }  // namespace
 
-HullQuery::HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts)
-    : hulls_(enclosing_hulls(scene)),
+HullBound::HullBound(const Scene& scene, const std::vector<PosedPart>& parts)
+    : hulls_(bounding_hulls(scene)),
       placed_(scene.objects.size()),
       only_part_(scene.objects.size(), kNoModel) {
   for (std::size_t i = 0; i < hulls_.size(); ++i) {
@@ -28,7 +28,7 @@ HullQuery::HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts)
   }
 }
 
-bool HullQuery::possible(const PairEntry& pair) const noexcept {
+bool HullBound::possible(const PairEntry& pair) const noexcept {
   const auto has_hull = [this](std::uint32_t object) { return hulls_[object] != nullptr; };
   const auto has_model = [&](std::uint32_t object) {
     return has_hull(object) || only_part_[object] != kNoModel;
@@ -37,9 +37,9 @@ bool HullQuery::possible(const PairEntry& pair) const noexcept {
          (has_hull(pair.object_a) || has_hull(pair.object_b));
 }
 
-double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  const PlacedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
-  const PlacedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
+double HullBound::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
+  const PosedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
+  const PosedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
   TrackingState cold;
   --evaluation.queries_left;
   const DistanceResult found =
@@ -48,7 +48,7 @@ double HullQuery::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
   return rounded_down(found.lower - placing_error(a, b));
 }
 
-const PlacedPart& HullQuery::model(std::uint32_t object, const Evaluation& evaluation) noexcept {
+const PosedPart& HullBound::model(std::uint32_t object, const Evaluation& evaluation) noexcept {
   if (hulls_[object] == nullptr) return evaluation.parts[only_part_[object]];
   placed_[object].world_from_part = evaluation.objects[object].pose;
   return placed_[object];

@@ -13,9 +13,9 @@
 
 namespace clearance {
 
-class HullQuery {
+class HullBound {
  public:
-  HullQuery(const Scene& scene, const std::vector<PlacedPart>& parts);
+  HullBound(const Scene& scene, const std::vector<PosedPart>& parts);
 
   // Whether that may save anything: one of the objects has a hull at least, and the other one a
   // hull or only one part.
@@ -28,11 +28,10 @@ class HullQuery {
 
  private:
   static constexpr std::uint32_t kNoModel = ~0u;
-  [[nodiscard]] const PlacedPart& model(std::uint32_t object,
-                                        const Evaluation& evaluation) noexcept;
+  [[nodiscard]] const PosedPart& model(std::uint32_t object, const Evaluation& evaluation) noexcept;
 
-  std::vector<EnclosingHull> hulls_;      // by object; null: the only part, if any
-  std::vector<PlacedPart> placed_;        // by object: its hull, placed when it is asked
+  std::vector<BoundingHull> hulls_;       // by object; null: the only part, if any
+  std::vector<PosedPart> placed_;         // by object: its hull, placed when it is asked
   std::vector<std::uint32_t> only_part_;  // by object without a hull; kNoModel: several parts
 };
 

@@ -4,7 +4,7 @@
 
 namespace clearance {
 
-PairCounts::PairCounts(const Scene& scene)
+KnownPairs::KnownPairs(const Scene& scene)
     : words_((scene.objects.size() + 63) / 64), neighbours_(scene.objects.size() * words_) {
   known_.members.resize(words_);
   fresh_.members.resize(words_);
@@ -18,7 +18,7 @@ PairCounts::PairCounts(const Scene& scene)
   }
 }
 
-void PairCounts::update(const std::vector<ObjectState>& objects,
+void KnownPairs::update(const std::vector<TrackedObject>& objects,
                         std::span<const std::uint32_t> changed) noexcept {
   regained_.clear();
   for (const std::uint32_t i : changed) {
@@ -30,7 +30,7 @@ void PairCounts::update(const std::vector<ObjectState>& objects,
   }
 }
 
-bool PairCounts::set(std::size_t object, bool is_member, Kind& kind) noexcept {
+bool KnownPairs::set(std::size_t object, bool is_member, Kind& kind) noexcept {
   std::uint64_t& word = kind.members[object / 64];
   const std::uint64_t bit = std::uint64_t{1} << object % 64;
   if (kind.has(object) == is_member) return false;

@@ -13,13 +13,13 @@
 
 namespace clearance {
 
-class PairCounts {
+class KnownPairs {
  public:
-  explicit PairCounts(const Scene& scene);
+  explicit KnownPairs(const Scene& scene);
 
   // Takes the counts to the objects' present states; `changed` are at least those whose states are
   // not what they were.
-  void update(const std::vector<ObjectState>& objects,
+  void update(const std::vector<TrackedObject>& objects,
               std::span<const std::uint32_t> changed) noexcept;
 
   // Objects that are known since the last update and were not before.

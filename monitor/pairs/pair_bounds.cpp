@@ -51,8 +51,8 @@ RowBounds bounds_as_carried(const PairEntry& entry, const PairTable& table) noex
   return {entry.least_lower, *std::min_element(first, end)};
 }
 
-RowBounds pair_bounds_now(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                          const std::vector<PlacedPart>& parts, const PairTable& table) noexcept {
+RowBounds pair_bounds_now(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                          const std::vector<PosedPart>& parts, const PairTable& table) noexcept {
   const double travelled = travelled_since(pair, objects, table);
   RowBounds least{kInfinity, kInfinity};
   for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
@@ -79,7 +79,7 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
 
 // Of two objects that were known at the last tick and have not leapt since. `along`: what the
 // directions of two evaluations tell, m.
-double lower_on_the_way(const ObjectState& a, const ObjectState& b, double before, double now,
+double lower_on_the_way(const TrackedObject& a, const TrackedObject& b, double before, double now,
                         double along, Since since) noexcept {
   const double travel = rounded_up(a.travel + b.travel);
   if (travel == 0.0) return now;
@@ -98,8 +98,8 @@ double lower_along(std::uint32_t pair, std::uint64_t cycle, const PairTable& tab
 
 // What summary_of() tells of the usual pair, brought up to date in this tick, in a third of the
 // time.
-PairSummary summary_of_one_row(std::uint32_t pair, const ObjectState& a, const ObjectState& b,
-                               std::uint64_t cycle, const PairTable& table, Since since) noexcept {
+PairBounds summary_of_one_row(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
+                              std::uint64_t cycle, const PairTable& table, Since since) noexcept {
   const PairEntry& entry = table.entries[pair];
   const std::uint32_t row = entry.first_row;
   const std::uint64_t evaluated = table.row_evaluated_cycle[row];
@@ -108,26 +108,27 @@ PairSummary summary_of_one_row(std::uint32_t pair, const ObjectState& a, const O
       .status = evaluated == cycle ? status_of(table.status[row]) : PairStatus::kCarried,
       .lower = entry.least_lower,
       .upper = upper,
-      .lower_since = lower_on_the_way(a, b, entry.lower_before, entry.least_lower,
+      .swept_lower = lower_on_the_way(a, b, entry.lower_before, entry.least_lower,
                                       lower_along(pair, cycle, table), since),
-      .upper_since = upper,
+      .swept_upper = upper,
       .row = row,
       .evaluated_cycle = evaluated,
   };
 }
 
 // What late objects may have moved unseen.
-void count_lateness_in(const ObjectState& a, const ObjectState& b, PairSummary& summary) noexcept {
+void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
+                       PairBounds& summary) noexcept {
   const double unseen_since = a.unseen_since + b.unseen_since;
   if (unseen_since > 0.0) {
-    summary.lower_since = rounded_down(summary.lower_since - rounded_up(unseen_since));
-    summary.upper_since = rounded_up(summary.upper_since + rounded_up(unseen_since));
+    summary.swept_lower = rounded_down(summary.swept_lower - rounded_up(unseen_since));
+    summary.swept_upper = rounded_up(summary.swept_upper + rounded_up(unseen_since));
   }
   if (!a.late && !b.late) return;
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   summary.lower = rounded_down(summary.lower - may_have_moved);
   summary.upper = rounded_up(summary.upper + may_have_moved);
-  summary.lower_since = std::min(summary.lower, summary.lower_since);
+  summary.swept_lower = std::min(summary.lower, summary.swept_lower);
   summary.status = PairStatus::kStale;
 }
 
@@ -136,7 +137,7 @@ void count_lateness_in(const ObjectState& a, const ObjectState& b, PairSummary& 
 PairReport unknown_report() noexcept {
   PairReport report;
   report.status = PairStatus::kUnknown;
-  report.lower = report.lower_since = -kInfinity;
+  report.lower = report.swept_lower = -kInfinity;
   report.upper = kInfinity;
   report.distance = report.closing_speed = report.time_to_contact = kNan;
   report.witness_a = report.witness_b = report.normal = Vec3::Constant(kNan);
@@ -144,33 +145,33 @@ PairReport unknown_report() noexcept {
 }
 
 double lower_since_last_tick(std::uint32_t pair, double lower,
-                             const std::vector<ObjectState>& objects, std::uint64_t cycle,
+                             const std::vector<TrackedObject>& objects, std::uint64_t cycle,
                              const PairTable& table, Since since) noexcept {
-  const ObjectState& a = objects[table.entries[pair].object_a];
-  const ObjectState& b = objects[table.entries[pair].object_b];
+  const TrackedObject& a = objects[table.entries[pair].object_a];
+  const TrackedObject& b = objects[table.entries[pair].object_b];
   if (a.began || b.began) return lower;
   if (a.leapt || b.leapt) return -kInfinity;
   return lower_on_the_way(a, b, lower_last_tick(pair, objects, cycle, table), lower,
                           lower_along(pair, cycle, table), since);
 }
 
-PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                       const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                       const PairTable& table, Since since) noexcept {
+PairBounds summary_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                      const std::vector<PosedPart>& parts, std::uint64_t cycle,
+                      const PairTable& table, Since since) noexcept {
   const PairEntry& entry = table.entries[pair];
-  const ObjectState& a = objects[entry.object_a];
-  const ObjectState& b = objects[entry.object_b];
+  const TrackedObject& a = objects[entry.object_a];
+  const TrackedObject& b = objects[entry.object_b];
   const bool carried = entry.carried_cycle == cycle;
   if (a.plain && b.plain && carried && entry.end_row - entry.first_row == 1) {
     return summary_of_one_row(pair, a, b, cycle, table, since);
   }
-  PairSummary summary;
+  PairBounds summary;
   if (!a.known() || !b.known()) return summary;
   const RowBounds now =
       carried ? bounds_as_carried(entry, table) : pair_bounds_now(pair, objects, parts, table);
   summary.lower = now.lower;
-  summary.upper = summary.upper_since = now.upper;
-  summary.lower_since = lower_since_last_tick(pair, now.lower, objects, cycle, table, since);
+  summary.upper = summary.swept_upper = now.upper;
+  summary.swept_lower = lower_since_last_tick(pair, now.lower, objects, cycle, table, since);
   summary.row = closest_row(entry.first_row, entry.end_row, table);
   summary.evaluated_cycle = table.row_evaluated_cycle[summary.row];
   summary.status = evaluated_status(entry.first_row, entry.end_row, summary.row, cycle, table);
@@ -178,11 +179,11 @@ PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objec
   return summary;
 }
 
-void report_on(std::uint32_t pair, const PairSummary& summary,
-               const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
+void report_on(std::uint32_t pair, const PairBounds& summary,
+               const std::vector<TrackedObject>& objects, const std::vector<PosedPart>& parts,
                const PairTable& table, PairReport& report) noexcept {
-  const ObjectState& a = objects[table.entries[pair].object_a];
-  const ObjectState& b = objects[table.entries[pair].object_b];
+  const TrackedObject& a = objects[table.entries[pair].object_a];
+  const TrackedObject& b = objects[table.entries[pair].object_b];
   if (summary.status == PairStatus::kUnknown) report = unknown_report();
   report.pair = pair;
   report.age_a_ns = a.age_ns;
@@ -191,7 +192,7 @@ void report_on(std::uint32_t pair, const PairSummary& summary,
 
   report.status = summary.status;
   report.lower = summary.lower;
-  report.lower_since = summary.lower_since;
+  report.swept_lower = summary.swept_lower;
   report.upper = summary.upper;
   const ClosestPoints& closest = table.closest[summary.row];
   report.part_a = parts[table.part_a[summary.row]].index_in_object;

@@ -9,12 +9,12 @@
 
 namespace clearance {
 
-struct PairSummary {
+struct PairBounds {
   PairStatus status = PairStatus::kUnknown;
   double lower = -kInfinity, upper = kInfinity;  // for where the objects may be now, m
-  // Since the last tick (PairReport::lower_since): never nearer than this, m.
-  double lower_since = -kInfinity;
-  double upper_since = kInfinity;  // at some instant no farther apart than this, m
+  // Since the last tick (PairReport::swept_lower): never nearer than this, m.
+  double swept_lower = -kInfinity;
+  double swept_upper = kInfinity;  // at some instant no farther apart than this, m
   std::uint32_t row = 0;  // the closest part pair, as far as is known: smallest upper bound
   std::uint64_t evaluated_cycle = 0;  // of that row; 0: no row ever was
 };
@@ -26,20 +26,20 @@ enum class Since : std::uint8_t {
 };
 
 // Of any pair, brought up to date this tick or not.
-[[nodiscard]] PairSummary summary_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                                     const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                                     const PairTable& table, Since since) noexcept;
+[[nodiscard]] PairBounds summary_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                                    const std::vector<PosedPart>& parts, std::uint64_t cycle,
+                                    const PairTable& table, Since since) noexcept;
 
 // A known pair's distance since the last tick, from its bounds at both ends of the way; for the
 // poses in use, those of this tick telling `lower`, m.
 [[nodiscard]] double lower_since_last_tick(std::uint32_t pair, double lower,
-                                           const std::vector<ObjectState>& objects,
+                                           const std::vector<TrackedObject>& objects,
                                            std::uint64_t cycle, const PairTable& table,
                                            Since since) noexcept;
 
 // What is published of it, into a report of that pair; everything but its refresh.
-void report_on(std::uint32_t pair, const PairSummary& summary,
-               const std::vector<ObjectState>& objects, const std::vector<PlacedPart>& parts,
+void report_on(std::uint32_t pair, const PairBounds& summary,
+               const std::vector<TrackedObject>& objects, const std::vector<PosedPart>& parts,
                const PairTable& table, PairReport& report) noexcept;
 
 // Nothing is known: figures NaN, bounds infinite.

@@ -22,7 +22,7 @@ ClosestPoints::ClosestPoints() noexcept
       witness_b(Vec3::Constant(kNan)),
       normal(Vec3::Constant(kNan)) {}
 
-PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
+PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts) {
   std::vector<std::vector<std::uint32_t>> parts_by_object(scene.objects.size());
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     parts_by_object[parts[part].object].push_back(part);
@@ -56,7 +56,7 @@ PairTable::PairTable(const Scene& scene, const std::vector<PlacedPart>& parts) {
   gap.assign(rows(), -kInfinity);
 }
 
-double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
+double travelled_since(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                        const PairTable& table) noexcept {
   const Travelled& then = table.entries[pair].carried_at;
   const double sum = between(then.a, objects[table.entries[pair].object_a].travelled) +
@@ -64,14 +64,14 @@ double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objec
   return rounded_up(sum);
 }
 
-bool raised_this_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+bool raised_this_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                       const PairTable& table) noexcept {
   const PairEntry& entry = table.entries[pair];
   return entry.carried_at.a > objects[entry.object_a].travelled_before ||
          entry.carried_at.b > objects[entry.object_b].travelled_before;
 }
 
-double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+double lower_last_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                        std::uint64_t cycle, const PairTable& table) noexcept {
   if (table.entries[pair].carried_cycle == cycle) return table.entries[pair].lower_before;
   const Travelled& then = table.entries[pair].carried_at;
@@ -84,15 +84,15 @@ double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objec
   return travelled > 0.0 ? rounded_down(lower - rounded_up(travelled)) : lower;
 }
 
-RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<PlacedPart>& parts,
+RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<PosedPart>& parts,
                      const PairTable& table) noexcept {
   RowBounds bounds{table.lower[row], table.upper[row]};
   if (travelled > 0.0) {
     bounds.lower = rounded_down(bounds.lower - travelled);
     bounds.upper = rounded_up(bounds.upper + travelled);
   }
-  const PlacedPart& part_a = parts[table.part_a[row]];
-  const PlacedPart& part_b = parts[table.part_b[row]];
+  const PosedPart& part_a = parts[table.part_a[row]];
+  const PosedPart& part_b = parts[table.part_b[row]];
   if (travelled > 0.0 && table.gap[row] > -kInfinity) {
     const Vec3& normal = table.closest[row].normal;
     bounds.lower = std::max(bounds.lower, lower_along(normal, table.gap[row], part_a, part_b));
@@ -106,8 +106,8 @@ RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<Plac
   return bounds;
 }
 
-void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
-           const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
+void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+           const std::vector<PosedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
   if (table.entries[pair].carried_cycle == cycle) return;
   const double travelled = travelled_since(pair, objects, table);
   note_carried(pair, objects, cycle, table);
@@ -122,15 +122,15 @@ void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
   table.entries[pair].least_lower = least;
 }
 
-void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
-                  PairTable& table) noexcept {
+void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                  std::uint64_t cycle, PairTable& table) noexcept {
   table.entries[pair].lower_before = lower_last_tick(pair, objects, cycle, table);
   table.entries[pair].carried_at = {objects[table.entries[pair].object_a].travelled,
                                     objects[table.entries[pair].object_b].travelled};
   table.entries[pair].carried_cycle = cycle;
 }
 
-void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& objects,
+void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,
            PairTable& table) noexcept {
   const double travelled = travelled_since(pair, objects, table);
   double least = kInfinity;

@@ -28,7 +28,7 @@ struct ClosestPoints {
   ClosestPoints() noexcept;
 };
 
-// ObjectState::travelled of both objects of a pair, m.
+// TrackedObject::travelled of both objects of a pair, m.
 struct Travelled {
   double a = 0.0, b = 0.0;
 };
@@ -64,7 +64,7 @@ struct PairTable {
   std::vector<ClosestPoints> closest;
   std::vector<double> gap;  // kept_gap() of the last evaluation along closest.normal, m
 
-  PairTable(const Scene& scene, const std::vector<PlacedPart>& parts);
+  PairTable(const Scene& scene, const std::vector<PosedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {
     return static_cast<std::uint32_t>(entries.size());
   }
@@ -78,37 +78,37 @@ struct PairTable {
 
 // No point of the two objects has come farther, both together, since the pair was brought up to
 // date, m.
-[[nodiscard]] double travelled_since(std::uint32_t pair, const std::vector<ObjectState>& objects,
+[[nodiscard]] double travelled_since(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                                      const PairTable& table) noexcept;
 
 // Something has moved since the last tick, and the pair's bounds are of this one (raise()).
-[[nodiscard]] bool raised_this_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+[[nodiscard]] bool raised_this_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                                     const PairTable& table) noexcept;
 
 // The pair's distance at the tick before `cycle` was at least this, m, if its objects were known
 // then.
-[[nodiscard]] double lower_last_tick(std::uint32_t pair, const std::vector<ObjectState>& objects,
+[[nodiscard]] double lower_last_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                                      std::uint64_t cycle, const PairTable& table) noexcept;
 
 // A row's bounds for the poses in use, both objects having been seen: looser by what they have
 // travelled, but never looser than the parts' balls tell.
 [[nodiscard]] RowBounds bounds_now(std::uint32_t row, double travelled,
-                                   const std::vector<PlacedPart>& parts,
+                                   const std::vector<PosedPart>& parts,
                                    const PairTable& table) noexcept;
 
 // Brings a pair's rows up to date. Both objects have been seen.
-void carry(std::uint32_t pair, const std::vector<ObjectState>& objects,
-           const std::vector<PlacedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
+void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+           const std::vector<PosedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
 
 // Takes note that a pair's rows are up to date, before least_lower is: that is still known of the
 // pair as it was.
-void note_carried(std::uint32_t pair, const std::vector<ObjectState>& objects, std::uint64_t cycle,
-                  PairTable& table) noexcept;
+void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                  std::uint64_t cycle, PairTable& table) noexcept;
 
 // Takes note of a lower bound of the pair's distance for the poses in use, m. Its rows are carried
 // by travel alone, which costs a fraction of carry(): their balls are looked at by who asks for
 // them.
-void raise(std::uint32_t pair, double to, const std::vector<ObjectState>& objects,
+void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,
            PairTable& table) noexcept;
 
 // Forgets a pair's bounds: nobody can say how far its objects have come.

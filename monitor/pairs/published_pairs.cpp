@@ -17,8 +17,8 @@ bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
 
 }  // namespace
 
-AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
-                       const PairTable& table, bool every_tick)
+PublishedPairs::PublishedPairs(const Scene& scene, const std::vector<PosedPart>& parts,
+                               const PairTable& table, bool every_tick)
     : every_tick_(every_tick) {
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     if (!is_asked(scene.pairs[p], scene)) continue;
@@ -28,7 +28,7 @@ AskedPairs::AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts,
   if (every_tick_) form_groups(parts, table);
 }
 
-void AskedPairs::form_groups(const std::vector<PlacedPart>& parts, const PairTable& table) {
+void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const PairTable& table) {
   std::vector<std::uint32_t> single;
   for (const std::uint32_t pair : pairs_) {
     (is_single(pair, table) ? single : many_parts_).push_back(pair);
@@ -61,7 +61,7 @@ void AskedPairs::form_groups(const std::vector<PlacedPart>& parts, const PairTab
   }
 }
 
-void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
+void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
     world_from_body_[i] = evaluation.parts[body_parts_[i]].world_from_part;
   }
@@ -78,7 +78,7 @@ void AskedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
 }
 
 // Also those that are not known, to no use: which they are differs from tick to tick.
-void AskedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
+void PublishedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
   group.known = 0;
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {

@@ -14,11 +14,11 @@
 
 namespace clearance {
 
-class AskedPairs {
+class PublishedPairs {
  public:
   // every_tick: as RefreshShare has it.
-  AskedPairs(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
-             bool every_tick);
+  PublishedPairs(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
+                 bool every_tick);
 
   [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
   // How many queries they can take.
@@ -36,7 +36,7 @@ class AskedPairs {
     DistanceBatch batch;
     std::uint32_t known = 0;  // of the pairs, in this tick
   };
-  void form_groups(const std::vector<PlacedPart>& parts, const PairTable& table);
+  void form_groups(const std::vector<PosedPart>& parts, const PairTable& table);
   void evaluate_group(Group& group, const Evaluation& evaluation) noexcept;
 
   std::vector<std::uint32_t> pairs_;

@@ -25,10 +25,10 @@ std::string zone_names(const Scene& scene) {
 std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& report) {
   const Zone& zone = scene.zones[id];
   const bool between =
-      report.clearance >= zone.enter_below && report.clearance_since < zone.enter_below;
+      report.clearance >= zone.enter_below && report.swept_clearance < zone.enter_below;
   const std::string what = between
                                ? " was between two ticks not proved to have more clearance than " +
-                                     metres(report.clearance_since)
+                                     metres(report.swept_clearance)
                                : " has a clearance of " + metres(report.clearance);
   return "zone '" + zone.name + "' is active: " + pair_name(scene, report.pair) + what +
          " (its lower bound less both margins)";
@@ -93,9 +93,9 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 // Nothing is too near now; was something since the last tick?
 std::optional<std::string> Expectations::check_passages(const Report& report,
                                                         const Monitor& monitor) {
-  if (report.lower_all_since >= *min_distance_) return std::nullopt;
+  if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
-    const PassageBounds found = monitor.passage(p, *min_distance_);
+    const SweptBounds found = monitor.passage(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;
     distance_broken_ = true;
     const std::string who = pair_name(scene_, p);

@@ -41,7 +41,7 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   }
   for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
   rows_ =
-      "tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax,ay,az,bx,by,bz,nx,"
+      "tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_lower,ax,ay,az,bx,by,bz,nx,"
       "ny,nz,"
       "closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles\n";
 }
@@ -65,7 +65,7 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   put(rows_, report.now_ns);
   rows_.append(",").append(names_[objects.first]).append(",").append(names_[objects.second]);
   rows_.append(",").append(name(pair.status));
-  for (const double value : {pair.distance, pair.lower, pair.upper, pair.lower_since}) {
+  for (const double value : {pair.distance, pair.lower, pair.upper, pair.swept_lower}) {
     rows_ += ',';
     put(rows_, value);
   }

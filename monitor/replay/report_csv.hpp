@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Columns: tick,now_ns,object_a,object_b,status,distance,lower,upper,lower_since,ax,ay,az,bx,by,bz,
+// Columns: tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_lower,ax,ay,az,bx,by,bz,
 // nx,ny,nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles; SI units, world
 // frame, numbers that read back exactly. Errors are kept: error() says what happened.
 class ReportCsv {

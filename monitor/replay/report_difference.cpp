@@ -66,7 +66,7 @@ class Comparer {
     field(pair + "distance", recorded.distance, replayed.distance);
     field(pair + "lower", recorded.lower, replayed.lower);
     field(pair + "upper", recorded.upper, replayed.upper);
-    field(pair + "lower_since", recorded.lower_since, replayed.lower_since);
+    field(pair + "swept_lower", recorded.swept_lower, replayed.swept_lower);
     field(pair + "witness_a", recorded.witness_a, replayed.witness_a);
     field(pair + "witness_b", recorded.witness_b, replayed.witness_b);
     field(pair + "normal", recorded.normal, replayed.normal);
@@ -121,7 +121,7 @@ void compare_bits(Comparer& compare, const clearance_msg_Distances& recorded,
   compare.field("minimum_proved", recorded.minimum_proved, replayed.minimum_proved);
   compare.bits("minimum", recorded.minimum, replayed.minimum);
   compare.field("lower_all", recorded.lower_all, replayed.lower_all);
-  compare.field("lower_all_since", recorded.lower_all_since, replayed.lower_all_since);
+  compare.field("swept_lower_all", recorded.swept_lower_all, replayed.swept_lower_all);
 }
 
 }  // namespace

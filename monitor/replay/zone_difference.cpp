@@ -30,7 +30,7 @@ bool same_bits(double a, double b) {
 
 bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
   return a.cycle == b.cycle && a.active == b.active && a.pair == b.pair &&
-         same_bits(a.clearance, b.clearance) && same_bits(a.clearance_since, b.clearance_since);
+         same_bits(a.clearance, b.clearance) && same_bits(a.swept_clearance, b.swept_clearance);
 }
 
 std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
@@ -38,7 +38,7 @@ std::string described(const Scene& scene, const clearance_msg_ZoneState& state) 
   std::snprintf(clearance.data(), clearance.size(),
                 " at tick %llu, clearance %.17g m, since the last tick %.17g m",
                 static_cast<unsigned long long>(state.cycle), state.clearance,
-                state.clearance_since);
+                state.swept_clearance);
   const std::string pair = pair_name(scene, state.pair);
   return std::string(state.active ? "active" : "inactive") + clearance.data() + " (" + pair + ")";
 }

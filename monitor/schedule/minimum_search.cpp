@@ -19,7 +19,7 @@ constexpr int kMostRaises = 8;  // a tick
 
 // The horizon stays a little above the minimum of the last tick. What no translation parts
 // (-infinity) moves it nowhere: every minimum is below it.
-void Triage::follow_minimum() noexcept {
+void Scheduler::follow_minimum() noexcept {
   if (!std::isfinite(smallest_upper_)) return;
   const double horizon = broad_phase_.horizon();
   const double best = smallest_upper_ + kHeadroom;
@@ -31,7 +31,7 @@ void Triage::follow_minimum() noexcept {
 }
 
 // The first one: the minimum of the pairs seen so far is not beyond it.
-void Triage::find_horizon() noexcept {
+void Scheduler::find_horizon() noexcept {
   if (broad_phase_.horizon() > -kInfinity) return;
   double smallest_upper = kInfinity;
   for (const std::uint32_t pair : broad_phase_.woken()) {
@@ -41,7 +41,7 @@ void Triage::find_horizon() noexcept {
 }
 
 // When the budget lasts, no pair that sleeps can be closer than the minimum afterwards.
-void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_minimum(Evaluation& evaluation) noexcept {
   evaluate_closest(evaluation);
   double step = kHeadroom;
   for (int i = 0; i < kMostRaises; ++i, step *= 2.0) {
@@ -57,7 +57,7 @@ void Triage::evaluate_minimum(Evaluation& evaluation) noexcept {
 
 // In batches that grow: one is mostly enough, and what is shared between workers must not depend on
 // how many they are.
-void Triage::evaluate_closest(Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_closest(Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   const auto upper_of = [&table](std::uint32_t pair) {
     const PairEntry& entry = table.entries[pair];

@@ -13,10 +13,10 @@
 
 namespace clearance {
 
-class RefreshPace {
+class RefreshBudget {
  public:
   // Keeps nothing back of a budget that is too small for it.
-  RefreshPace(const TakingTurns& pairs, std::uint64_t ticks, bool affordable) noexcept
+  RefreshBudget(const TakingTurns& pairs, std::uint64_t ticks, bool affordable) noexcept
       : rows_(affordable ? pairs.rows : 0), most_(pairs.most), ticks_(ticks) {}
 
   void begin_tick() noexcept { owed_ += rows_ == 0 ? 0 : rows_ + 1; }

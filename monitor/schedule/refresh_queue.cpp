@@ -72,7 +72,7 @@ void RefreshQueue::regain(std::uint32_t object) noexcept {
 }
 
 void RefreshQueue::bring_back(const BroadPhase& broad_phase,
-                              const std::vector<ObjectState>& objects,
+                              const std::vector<TrackedObject>& objects,
                               const PairTable& table) noexcept {
   for (std::size_t left = kMostBroughtBack; !returning_.empty() && left > 0;) {
     const std::uint32_t object = returning_.back();

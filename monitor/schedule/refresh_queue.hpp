@@ -38,7 +38,7 @@ class RefreshQueue {
   void regain(std::uint32_t object) noexcept;
 
   // Goes on with that, for as many pairs as one tick has time for.
-  void bring_back(const BroadPhase& broad_phase, const std::vector<ObjectState>& objects,
+  void bring_back(const BroadPhase& broad_phase, const std::vector<TrackedObject>& objects,
                   const PairTable& table) noexcept;
 
   // The tick in which a pair was last refreshed; 0: never.

@@ -15,7 +15,7 @@ constexpr std::uint32_t kCatchUp = 4;
 }  // namespace
 
 // Pairs asked for that outnumber the budget must not starve the rest, nor these those.
-void Triage::evaluate_in_turn(Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_in_turn(Evaluation& evaluation) noexcept {
   const bool covered = asked_done_ || asked_.pairs().size() <= evaluation.queries_left;
   if (covered) sparing(others_pace_.kept(), evaluation, [&] { evaluate_asked(evaluation); });
   const std::uint32_t kept = covered ? 0 : asked_pace_.kept();
@@ -24,7 +24,7 @@ void Triage::evaluate_in_turn(Evaluation& evaluation) noexcept {
 }
 
 // As far as the budget goes; where that was in the last tick, it begins in this one.
-void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_asked(Evaluation& evaluation) noexcept {
   if (asked_done_) return asked_pace_.through_with_all();
   std::uint32_t rows = 0;
   const auto pairs = asked_.pairs();
@@ -45,7 +45,7 @@ void Triage::evaluate_asked(Evaluation& evaluation) noexcept {
   asked_pace_.through_with_all();
 }
 
-void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
+void Scheduler::refresh_stalest(Evaluation& evaluation) noexcept {
   const std::uint32_t most = kCatchUp * std::max(per_tick_, others_pace_.due());
   std::uint32_t refreshed = 0, rows = 0;
   for (std::uint32_t unknown = 0; refreshed < most && unknown < kMostSetAside;) {
@@ -67,18 +67,19 @@ void Triage::refresh_stalest(Evaluation& evaluation) noexcept {
   others_pace_.end_tick(rows);
 }
 
-void Triage::set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+void Scheduler::set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   const PairEntry& entry = evaluation.table.entries[pair];
   const bool a_is_known = evaluation.objects[entry.object_a].known();
   queue_.set_aside(pair, a_is_known ? entry.object_b : entry.object_a);
 }
 
-std::uint64_t Triage::refreshed_cycle(std::uint32_t pair, const PairTable& table) const noexcept {
+std::uint64_t Scheduler::refreshed_cycle(std::uint32_t pair,
+                                         const PairTable& table) const noexcept {
   return broad_phase_.left_out(pair) ? table.entries[pair].evaluated_cycle
                                      : queue_.refreshed_cycle(pair);
 }
 
-void Triage::find_oldest(const Evaluation& evaluation) noexcept {
+void Scheduler::find_oldest(const Evaluation& evaluation) noexcept {
   oldest_refresh_ = std::min(evaluation.cycle, queue_.oldest());
   if (!broad_phase_.everyone_met()) oldest_refresh_ = 0;
   if (!asked_.every_tick() || asked_done_) return;

@@ -35,8 +35,8 @@ std::uint32_t rows_of(std::span<const std::uint32_t> pairs, const PairTable& tab
 
 }  // namespace
 
-Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
-               WorkerPool& pool)
+Scheduler::Scheduler(const Scene& scene, const std::vector<PosedPart>& parts,
+                     const PairTable& table, WorkerPool& pool)
     : budget_(scene.budget),
       share_(refresh_share(scene)),
       asked_pace_(share_.asked, share_.ticks, share_.queries() <= scene.budget),
@@ -56,12 +56,12 @@ Triage::Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const P
   for (auto* list : {&awake_, &current_, &scratch_}) list->reserve(table.pairs());
 }
 
-std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
-                                   std::span<const std::uint32_t> stirred,
-                                   const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                                   const ZoneRound& zones, PairTable& table) noexcept {
+std::uint32_t Scheduler::evaluate_due(const std::vector<TrackedObject>& objects,
+                                      std::span<const std::uint32_t> changed,
+                                      const std::vector<PosedPart>& parts, std::uint64_t cycle,
+                                      const Zones& zones, PairTable& table) noexcept {
   Evaluation evaluation{objects, parts, cycle, table, budget_};
-  begin(stirred, evaluation);
+  begin(changed, evaluation);
   asked_pace_.begin_tick();
   others_pace_.begin_tick();
   asked_done_ = asked_.every_tick() && has_room(table);
@@ -85,7 +85,7 @@ std::uint32_t Triage::evaluate_due(const std::vector<ObjectState>& objects,
 }
 
 // What must not wait.
-void Triage::evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_first(const Zones& zones, Evaluation& evaluation) noexcept {
   if (asked_.every_tick()) look_at_asked(evaluation);
   look_at_awake(evaluation);
   find_horizon();
@@ -96,26 +96,26 @@ void Triage::evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noex
   decide_passages(zones, evaluation);
 }
 
-void Triage::begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept {
+void Scheduler::begin(std::span<const std::uint32_t> changed, Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : current_) is_current_[pair] = 0;
   current_.clear();
   passages_.begin();
   passages_decided_ = 0;
-  counts_.update(evaluation.objects, stirred);
+  counts_.update(evaluation.objects, changed);
   for (const std::uint32_t object : counts_.regained()) queue_.regain(object);
   queue_.bring_back(broad_phase_, evaluation.objects, evaluation.table);
   follow_minimum();
-  broad_phase_.begin(evaluation.objects, stirred, evaluation.table);
+  broad_phase_.begin(evaluation.objects, changed, evaluation.table);
 }
 
 // Whatever is urgent can be evaluated besides, so that it need not come first.
-bool Triage::has_room(const PairTable& table) const noexcept {
+bool Scheduler::has_room(const PairTable& table) const noexcept {
   const std::uint32_t others = rows_of(awake_, table) + rows_of(broad_phase_.woken(), table);
   return asked_.rows() + others_pace_.kept() <= budget_ &&
          others <= budget_ - asked_.rows() - others_pace_.kept();
 }
 
-void Triage::look_at_asked(Evaluation& evaluation) noexcept {
+void Scheduler::look_at_asked(Evaluation& evaluation) noexcept {
   if (asked_done_) {
     asked_.evaluate(pool_, evaluation);
     // Nobody is in the list yet, and there is room for all.
@@ -134,7 +134,7 @@ void Triage::look_at_asked(Evaluation& evaluation) noexcept {
   }
 }
 
-void Triage::look_at_awake(Evaluation& evaluation) noexcept {
+void Scheduler::look_at_awake(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : awake_) {
     if (is_known(pair, evaluation)) look_at(pair, evaluation);
   }
@@ -144,8 +144,8 @@ void Triage::look_at_awake(Evaluation& evaluation) noexcept {
 // the parts. What proves pairs far may not starve those that are near: half of the budget is
 // theirs; nor what is `spared` besides.
 template <class Enough>
-bool Triage::by_models(std::uint32_t pair, std::uint32_t spared, Evaluation& evaluation,
-                       const Enough& enough) noexcept {
+bool Scheduler::by_models(std::uint32_t pair, std::uint32_t spared, Evaluation& evaluation,
+                          const Enough& enough) noexcept {
   const RowBounds balls = broad_phase_.by_balls(pair);
   if (enough(balls.lower)) return true;
   const bool hopeless = balls.upper <= broad_phase_.horizon();
@@ -157,7 +157,7 @@ bool Triage::by_models(std::uint32_t pair, std::uint32_t spared, Evaluation& eva
   return true;
 }
 
-void Triage::settle_woken(Evaluation& evaluation) noexcept {
+void Scheduler::settle_woken(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.woken()) {
     if (is_known(pair, evaluation)) {
       const auto sleeps = [&](double lower) { return broad_phase_.sleep(pair, lower); };
@@ -175,37 +175,38 @@ void Triage::settle_woken(Evaluation& evaluation) noexcept {
   broad_phase_.clear_woken();
 }
 
-void Triage::list(std::uint32_t pair) noexcept {
+void Scheduler::list(std::uint32_t pair) noexcept {
   if (is_current_[pair]) return;
   is_current_[pair] = 1;
   current_.push_back(pair);
 }
 
-void Triage::look_at(std::uint32_t pair, Evaluation& evaluation) noexcept {
+void Scheduler::look_at(std::uint32_t pair, Evaluation& evaluation) noexcept {
   carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
   list(pair);
 }
 
 // Known pairs that are not evaluated yet, as many of the first as the budget covers.
-void Triage::evaluate_these(std::span<const std::uint32_t> pairs, Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_these(std::span<const std::uint32_t> pairs,
+                               Evaluation& evaluation) noexcept {
   const std::size_t done = evaluate(pairs, pool_, evaluation);
   for (const std::uint32_t pair : pairs.first(done)) note_evaluated(pair, evaluation);
 }
 
-void Triage::note_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
+void Scheduler::note_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   list(pair);
   if (!is_evaluated(pair, evaluation) || broad_phase_.left_out(pair)) return;
   queue_.refreshed(pair, evaluation.cycle);
 }
 
-void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
-  std::array<bool, Urgency::kBins> filled{};
+void Scheduler::evaluate_urgent(Evaluation& evaluation) noexcept {
+  std::array<bool, UrgencyBins::kBins> filled{};
   for (const std::uint32_t pair : current_) {
     if (is_evaluated(pair, evaluation)) continue;
     const std::size_t bin = urgency_.bin_of(pair, evaluation.objects, evaluation.table);
-    if (bin < Urgency::kBins) filled[bin] = true;
+    if (bin < UrgencyBins::kBins) filled[bin] = true;
   }
-  for (std::size_t bin = 0; bin < Urgency::kBins; ++bin) {
+  for (std::size_t bin = 0; bin < UrgencyBins::kBins; ++bin) {
     if (!filled[bin]) continue;
     scratch_.clear();
     for (const std::uint32_t pair : current_) {
@@ -220,14 +221,14 @@ void Triage::evaluate_urgent(Evaluation& evaluation) noexcept {
 
 // Of those looked at since the last time. Of pairs that had their turn little may be known from the
 // last tick.
-void Triage::decide_passages(const ZoneRound& zones, Evaluation& evaluation) noexcept {
+void Scheduler::decide_passages(const Zones& zones, Evaluation& evaluation) noexcept {
   for (; passages_decided_ < current_.size(); ++passages_decided_) {
     passages_.decide(current_[passages_decided_], zones, evaluation);
   }
 }
 
 // False: the budget is used up.
-bool Triage::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
+bool Scheduler::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
   const auto is_far = [&](double lower) { return broad_phase_.is_far(pair, lower); };
   if (by_models(pair, others_pace_.kept(), evaluation, is_far)) {
     queue_.refreshed(pair, evaluation.cycle);
@@ -237,7 +238,7 @@ bool Triage::refresh(std::uint32_t pair, Evaluation& evaluation) noexcept {
   return is_evaluated(pair, evaluation);
 }
 
-void Triage::evaluate_restless(Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_restless(Evaluation& evaluation) noexcept {
   scratch_.clear();
   for (const std::uint32_t pair : awake_) {
     if (scratch_.size() == kMostRestless) break;
@@ -248,7 +249,7 @@ void Triage::evaluate_restless(Evaluation& evaluation) noexcept {
   evaluate_these(scratch_, evaluation);
 }
 
-void Triage::put_to_sleep(const Evaluation& evaluation) noexcept {
+void Scheduler::put_to_sleep(const Evaluation& evaluation) noexcept {
   const auto sleeps = [&](std::uint32_t pair) {
     return is_known(pair, evaluation) &&
            broad_phase_.sleep(pair, evaluation.table.entries[pair].least_lower);
@@ -257,7 +258,7 @@ void Triage::put_to_sleep(const Evaluation& evaluation) noexcept {
 }
 
 // As many as the budget allows; pairs of equal age in their own order.
-void Triage::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept {
+void Scheduler::evaluate_stalest(std::span<std::uint32_t> pairs, Evaluation& evaluation) noexcept {
   const std::vector<PairEntry>& entries = evaluation.table.entries;
   // A pair takes one query or more, so no more pairs than this have a turn.
   if (pairs.size() > evaluation.queries_left) {

@@ -12,7 +12,7 @@
 //  4. published pairs, if the budget covers them after all;
 //  5. a share of all pairs, asleep or not, the stalest first, so that each is refreshed in time: by
 //     the balls around its objects where these prove it far, else by an evaluation; then published
-//     pairs in turn, where the budget does not cover them. What that takes (RefreshPace) is kept
+//     pairs in turn, where the budget does not cover them. What that takes (RefreshBudget) is kept
 //     back from 1 to 4;
 //  6. pairs that a tighter bound may put to sleep.
 // Order and outcome depend on the inputs only: no clock, no addresses, no number of workers.
@@ -36,19 +36,19 @@
 
 namespace clearance {
 
-class Triage {
+class Scheduler {
  public:
   // `pool` must outlive the triage.
-  Triage(const Scene& scene, const std::vector<PlacedPart>& parts, const PairTable& table,
-         WorkerPool& pool);
+  Scheduler(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
+            WorkerPool& pool);
 
   // Carries what has to be carried and evaluates what is due; returns how many queries that took,
-  // at most Scene::budget. `stirred`: at least the objects that have moved, or of which something
+  // at most Scene::budget. `changed`: at least the objects that have moved, or of which something
   // else is known than in the last tick. `zones` have begun this tick.
-  std::uint32_t evaluate_due(const std::vector<ObjectState>& objects,
-                             std::span<const std::uint32_t> stirred,
-                             const std::vector<PlacedPart>& parts, std::uint64_t cycle,
-                             const ZoneRound& zones, PairTable& table) noexcept;
+  std::uint32_t evaluate_due(const std::vector<TrackedObject>& objects,
+                             std::span<const std::uint32_t> changed,
+                             const std::vector<PosedPart>& parts, std::uint64_t cycle,
+                             const Zones& zones, PairTable& table) noexcept;
 
   // As of the last evaluate_due():
   // the pairs that were looked at, each once, and brought up to date. The others that are known are
@@ -59,9 +59,9 @@ class Triage {
   [[nodiscard]] double horizon() const noexcept { return broad_phase_.horizon(); }
   [[nodiscard]] bool pending() const noexcept { return broad_phase_.pending(); }
   [[nodiscard]] double pending_lower() const noexcept { return broad_phase_.pending_lower(); }
-  [[nodiscard]] const PairCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const KnownPairs& counts() const noexcept { return counts_; }
   // what looking closer at the time since the last tick has told of a pair;
-  [[nodiscard]] PassageBounds passage(std::uint32_t pair) const noexcept {
+  [[nodiscard]] SweptBounds passage(std::uint32_t pair) const noexcept {
     return passages_.of(pair);
   }
   [[nodiscard]] bool any_passage() const noexcept { return passages_.any(); }
@@ -76,7 +76,7 @@ class Triage {
  private:
   void follow_minimum() noexcept;
   void find_horizon() noexcept;
-  void begin(std::span<const std::uint32_t> stirred, Evaluation& evaluation) noexcept;
+  void begin(std::span<const std::uint32_t> changed, Evaluation& evaluation) noexcept;
   void look_at_asked(Evaluation& evaluation) noexcept;
   void look_at_awake(Evaluation& evaluation) noexcept;
   void settle_woken(Evaluation& evaluation) noexcept;
@@ -84,8 +84,8 @@ class Triage {
   void evaluate_minimum(Evaluation& evaluation) noexcept;
   void evaluate_closest(Evaluation& evaluation) noexcept;
   void evaluate_urgent(Evaluation& evaluation) noexcept;
-  void decide_passages(const ZoneRound& zones, Evaluation& evaluation) noexcept;
-  void evaluate_first(const ZoneRound& zones, Evaluation& evaluation) noexcept;
+  void decide_passages(const Zones& zones, Evaluation& evaluation) noexcept;
+  void evaluate_first(const Zones& zones, Evaluation& evaluation) noexcept;
   void evaluate_asked(Evaluation& evaluation) noexcept;
   void evaluate_in_turn(Evaluation& evaluation) noexcept;
   void refresh_stalest(Evaluation& evaluation) noexcept;
@@ -105,17 +105,17 @@ class Triage {
 
   const std::uint32_t budget_;
   const RefreshShare share_;
-  RefreshPace asked_pace_, others_pace_;
+  RefreshBudget asked_pace_, others_pace_;
   const std::uint32_t per_tick_;  // pairs to be refreshed a tick
-  AskedPairs asked_;
+  PublishedPairs asked_;
   bool asked_done_ = false;     // those that are known were all evaluated
   std::size_t next_asked_ = 0;  // whose turn it is
-  PairCounts counts_;
-  Urgency urgency_;
+  KnownPairs counts_;
+  UrgencyBins urgency_;
   BroadPhase broad_phase_;
-  HullQuery hulls_;
+  HullBound hulls_;
   RefreshQueue queue_;  // of the pairs that the broad phase is told of
-  PassageRound passages_;
+  ZoneCrossings passages_;
   std::size_t passages_decided_ = 0;  // of current_
   WorkerPool& pool_;
   double smallest_upper_ = kInfinity;  // of the pairs looked at, but for those in turn, m

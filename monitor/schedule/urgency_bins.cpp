@@ -36,18 +36,18 @@ std::vector<double> zone_levels(const Scene& scene) {
 
 }  // namespace
 
-Urgency::Urgency(const Scene& scene, const std::vector<PlacedPart>& parts)
+UrgencyBins::UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts)
     : pairs_(scene.pairs),
       period_s_(1.0 / scene.rate_hz),
       reach_(scene.objects.size(), 0.0),
       stated_speed_(stated_speeds(scene)),
       zone_levels_(zone_levels(scene)) {
-  for (const PlacedPart& part : parts) {
+  for (const PosedPart& part : parts) {
     reach_[part.object] = std::max(reach_[part.object], part.reach);
   }
 }
 
-BroadPhase::Levels Urgency::levels() const {
+BroadPhase::Levels UrgencyBins::levels() const {
   BroadPhase::Levels levels{.zones = zone_levels_, .urgent = stated_speed_};
   for (double& level : levels.urgent) level *= kTicks * period_s_;
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -56,8 +56,8 @@ BroadPhase::Levels Urgency::levels() const {
   return levels;
 }
 
-std::size_t Urgency::bin_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
-                            const PairTable& table) const noexcept {
+std::size_t UrgencyBins::bin_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                                const PairTable& table) const noexcept {
   const std::uint32_t a = table.entries[pair].object_a;
   const std::uint32_t b = table.entries[pair].object_b;
   const double lower =
@@ -73,7 +73,7 @@ std::size_t Urgency::bin_of(std::uint32_t pair, const std::vector<ObjectState>& 
 
 // A velocity that is not known counts as zero: the stated speed is what is left then, and a pair
 // that has just been seen is evaluated anyway.
-double Urgency::speed_of(std::uint32_t object, const ObjectState& state) const noexcept {
+double UrgencyBins::speed_of(std::uint32_t object, const TrackedObject& state) const noexcept {
   const double turning = state.twist.angular.norm();
   const double measured =
       state.twist.linear.norm() + (turning > 0.0 ? turning * reach_[object] : 0.0);

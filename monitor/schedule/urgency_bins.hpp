@@ -12,25 +12,25 @@ namespace clearance {
 
 // In ticks, by stated and measured speeds. A pair is watched for its zones' thresholds and both
 // margins, and at least for contact.
-class Urgency {
+class UrgencyBins {
  public:
   // Bin b < kBins: fewer than 2^b ticks. At 1 kHz the last of them ends 8 ms ahead.
   static constexpr std::size_t kBins = 4;
 
-  Urgency(const Scene& scene, const std::vector<PlacedPart>& parts);
+  UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts);
 
   // Where a pair has to be awake, well before it gets into a bin.
   [[nodiscard]] BroadPhase::Levels levels() const;
 
   // Of a pair that was brought up to date; kBins: none. What its bound does not prove outside its
   // zones is in the first.
-  [[nodiscard]] std::size_t bin_of(std::uint32_t pair, const std::vector<ObjectState>& objects,
+  [[nodiscard]] std::size_t bin_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                                    const PairTable& table) const noexcept;
 
  private:
   static constexpr double kTicks = 8.0;  // 2^(kBins - 1)
 
-  [[nodiscard]] double speed_of(std::uint32_t object, const ObjectState& state) const noexcept;
+  [[nodiscard]] double speed_of(std::uint32_t object, const TrackedObject& state) const noexcept;
 
   const std::vector<ObjectPair>& pairs_;
   const double period_s_;

@@ -32,7 +32,7 @@ Meeting least_between(double left, double fall_right, double right, double fall_
 
 }  // namespace
 
-Passage::Passage(std::uint32_t row, const Evaluation& evaluation) noexcept
+SweptSearch::SweptSearch(std::uint32_t row, const Evaluation& evaluation) noexcept
     : a_(evaluation.parts[evaluation.table.part_a[row]]),
       b_(evaluation.parts[evaluation.table.part_b[row]]),
       way_a_(way_of(evaluation.objects[a_.object])),
@@ -51,8 +51,8 @@ Passage::Passage(std::uint32_t row, const Evaluation& evaluation) noexcept
   }
 }
 
-PassageBounds Passage::decide(double level, Evaluation& evaluation) noexcept {
-  PassageBounds bounds;
+SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
+  SweptBounds bounds;
   if (!(motion_.speed < kInfinity) || evaluation.queries_left < kLeastQueries) return bounds;
   insert(look(0.0, evaluation));
   insert(look(1.0, evaluation));
@@ -69,7 +69,7 @@ PassageBounds Passage::decide(double level, Evaluation& evaluation) noexcept {
   }
 }
 
-Passage::Instant Passage::look(double s, Evaluation& evaluation) noexcept {
+SweptSearch::Instant SweptSearch::look(double s, Evaluation& evaluation) noexcept {
   place_on_way(way_a_, s, a_);
   place_on_way(way_b_, s, b_);
   const DistanceResult found = distance(
@@ -77,7 +77,7 @@ Passage::Instant Passage::look(double s, Evaluation& evaluation) noexcept {
   --evaluation.queries_left;
   const RowBounds bounds = for_exact_poses(found, a_, b_);
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
-  const PlacedPart& other = from_b_ ? a_ : b_;
+  const PosedPart& other = from_b_ ? a_ : b_;
   const Pose frame = pose_on_way(from_b_ ? way_b_ : way_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
   instant.middle = into * (other.ball_in_world.centre - frame.position);
@@ -87,13 +87,13 @@ Passage::Instant Passage::look(double s, Evaluation& evaluation) noexcept {
   return instant;
 }
 
-void Passage::insert(const Instant& instant) noexcept {
+void SweptSearch::insert(const Instant& instant) noexcept {
   std::size_t at = size_++;
   for (; at > 0 && instants_[at - 1].s > instant.s; --at) instants_[at] = instants_[at - 1];
   instants_[at] = instant;
 }
 
-Passage::Gap Passage::lowest_gap() const noexcept {
+SweptSearch::Gap SweptSearch::lowest_gap() const noexcept {
   Gap lowest = gap_after(0);
   for (std::size_t i = 1; i + 1 < size_; ++i) {
     const Gap gap = gap_after(i);
@@ -104,7 +104,7 @@ Passage::Gap Passage::lowest_gap() const noexcept {
 
 // From either end the distance falls no faster than the parts approach, nor than they approach
 // along the direction that separates them there.
-Passage::Gap Passage::gap_after(std::size_t before) const noexcept {
+SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
   const Instant& left = instants_[before];
   const Instant& right = instants_[before + 1];
   const double onward = fall(left, right), back = fall(right, left);
@@ -115,7 +115,7 @@ Passage::Gap Passage::gap_after(std::size_t before) const noexcept {
 
 // How much less than at `from` the distance may be at `to`, and in proportion on the way there, at
 // most; m, negative where it falls.
-double Passage::fall(const Instant& from, const Instant& to) const noexcept {
+double SweptSearch::fall(const Instant& from, const Instant& to) const noexcept {
   const double width = std::abs(to.s - from.s);
   const double by_speed = -rounded_up(motion_.speed * width);
   if (from.normal.isZero(0.0)) return by_speed;

@@ -9,22 +9,22 @@
 
 namespace clearance {
 
-struct PassageBounds {
+struct SweptBounds {
   double lower = -kInfinity;  // at every instant, m
   double upper = kInfinity;   // at some instant, m
 };
 
-class Passage {
+class SweptSearch {
  public:
   static constexpr std::uint32_t kLeastQueries = 2;  // with fewer nothing can be told
 
   // The parts of `row`, whose objects were known at the last tick.
-  Passage(std::uint32_t row, const Evaluation& evaluation) noexcept;
+  SweptSearch(std::uint32_t row, const Evaluation& evaluation) noexcept;
 
   // Looks closer, always where least is known, until `level` is decided, m: the parts were at least
   // that far apart all the time, or nearer at some instant; or until the budget ends, or looking
   // closer is no use.
-  [[nodiscard]] PassageBounds decide(double level, Evaluation& evaluation) noexcept;
+  [[nodiscard]] SweptBounds decide(double level, Evaluation& evaluation) noexcept;
 
  private:
   static constexpr std::size_t kMostInstants = 24;
@@ -50,8 +50,8 @@ class Passage {
   [[nodiscard]] double fall(const Instant& from, const Instant& to) const noexcept;
   void insert(const Instant& instant) noexcept;
 
-  PlacedPart a_, b_;
-  Way way_a_, way_b_;
+  PosedPart a_, b_;
+  InterpolatedMotion way_a_, way_b_;
   bool from_b_ = false;    // A is seen from B's object, not B from A's: the slower of the two
   bool directed_ = false;  // a separating direction goes on separating bodies that only shift
   RelativeMotion motion_;

@@ -10,19 +10,19 @@ namespace clearance {
 namespace {
 
 // At the rows that the objects' travel leaves open; no more of them once one was nearer.
-PassageBounds look_closer(std::uint32_t pair, double level, double travel,
-                          Evaluation& evaluation) noexcept {
+SweptBounds look_closer(std::uint32_t pair, double level, double travel,
+                        Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
   if (table.entries[pair].carried_cycle != evaluation.cycle) {
     travel = rounded_up(travel + travelled_since(pair, evaluation.objects, table));
   }
-  PassageBounds all{.lower = kInfinity};
+  SweptBounds all{.lower = kInfinity};
   for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
        ++row) {
-    PassageBounds bounds{.lower = rounded_down(table.lower[row] - travel)};
+    SweptBounds bounds{.lower = rounded_down(table.lower[row] - travel)};
     const bool matters = bounds.lower < level && !(all.upper < level);
-    if (matters && evaluation.queries_left >= Passage::kLeastQueries) {
-      const PassageBounds found = Passage(row, evaluation).decide(level, evaluation);
+    if (matters && evaluation.queries_left >= SweptSearch::kLeastQueries) {
+      const SweptBounds found = SweptSearch(row, evaluation).decide(level, evaluation);
       bounds.lower = std::max(bounds.lower, found.lower);
       bounds.upper = found.upper;
     }
@@ -34,24 +34,24 @@ PassageBounds look_closer(std::uint32_t pair, double level, double travel,
 
 }  // namespace
 
-PassageBounds passage_of(std::uint32_t pair, double level, Evaluation& evaluation) noexcept {
-  const ObjectState& a = evaluation.objects[evaluation.table.entries[pair].object_a];
-  const ObjectState& b = evaluation.objects[evaluation.table.entries[pair].object_b];
+SweptBounds passage_of(std::uint32_t pair, double level, Evaluation& evaluation) noexcept {
+  const TrackedObject& a = evaluation.objects[evaluation.table.entries[pair].object_a];
+  const TrackedObject& b = evaluation.objects[evaluation.table.entries[pair].object_b];
   if (a.began || b.began || a.leapt || b.leapt) return {};
   const double unseen = rounded_up(a.unseen_since + b.unseen_since);
-  const PassageBounds found =
+  const SweptBounds found =
       look_closer(pair, rounded_up(level + unseen), rounded_up(a.travel + b.travel), evaluation);
   return {rounded_down(found.lower - unseen), rounded_up(found.upper + unseen)};
 }
 
-void PassageRound::look_at(std::uint32_t pair, const ZoneRound& zones,
-                           Evaluation& evaluation) noexcept {
+void ZoneCrossings::look_at(std::uint32_t pair, const Zones& zones,
+                            Evaluation& evaluation) noexcept {
   if (decided_.size() == decided_.capacity()) return;
   const PairTable& table = evaluation.table;
   const PairEntry& entry = table.entries[pair];
-  const std::vector<ObjectState>& objects = evaluation.objects;
-  const ObjectState& a = objects[entry.object_a];
-  const ObjectState& b = objects[entry.object_b];
+  const std::vector<TrackedObject>& objects = evaluation.objects;
+  const TrackedObject& a = objects[entry.object_a];
+  const TrackedObject& b = objects[entry.object_b];
   if (a.travel + b.travel == 0.0 || a.began || b.began || a.leapt || b.leapt) return;
 
   const double unseen_now = rounded_up(a.may_have_moved + b.may_have_moved);
@@ -60,11 +60,11 @@ void PassageRound::look_at(std::uint32_t pair, const ZoneRound& zones,
   if (!(zones.undecided(pair, now, -kInfinity) > -kInfinity)) return;
   const double known = lower_since_last_tick(pair, entry.least_lower, objects, evaluation.cycle,
                                              table, Since::kByRelative);
-  PassageBounds bounds{.lower = rounded_down(known - unseen)};
+  SweptBounds bounds{.lower = rounded_down(known - unseen)};
   double level = zones.undecided(pair, now, bounds.lower);
   if (!(level > -kInfinity)) return;
-  while (level > -kInfinity && evaluation.queries_left >= Passage::kLeastQueries) {
-    const PassageBounds found = passage_of(pair, level, evaluation);
+  while (level > -kInfinity && evaluation.queries_left >= SweptSearch::kLeastQueries) {
+    const SweptBounds found = passage_of(pair, level, evaluation);
     bounds.lower = std::max(bounds.lower, found.lower);
     bounds.upper = std::min(bounds.upper, found.upper);
     level = zones.undecided(pair, std::nextafter(level, -kInfinity), bounds.lower);
@@ -72,11 +72,11 @@ void PassageRound::look_at(std::uint32_t pair, const ZoneRound& zones,
   decided_.push_back({pair, bounds});
 }
 
-void PassageRound::finish() noexcept { std::ranges::sort(decided_, {}, &Decided::pair); }
+void ZoneCrossings::finish() noexcept { std::ranges::sort(decided_, {}, &Decided::pair); }
 
-PassageBounds PassageRound::of(std::uint32_t pair) const noexcept {
+SweptBounds ZoneCrossings::of(std::uint32_t pair) const noexcept {
   const auto found = std::ranges::lower_bound(decided_, pair, {}, &Decided::pair);
-  return found == decided_.end() || found->pair != pair ? PassageBounds{} : found->bounds;
+  return found == decided_.end() || found->pair != pair ? SweptBounds{} : found->bounds;
 }
 
 }  // namespace clearance

@@ -13,18 +13,18 @@ namespace clearance {
 
 // How near a known pair was at any instant since the last tick, looked at closer until `level` is
 // decided, m, or the budget ends; for where its objects may have been. Nothing: infinite.
-[[nodiscard]] PassageBounds passage_of(std::uint32_t pair, double level,
-                                       Evaluation& evaluation) noexcept;
+[[nodiscard]] SweptBounds passage_of(std::uint32_t pair, double level,
+                                     Evaluation& evaluation) noexcept;
 
-class PassageRound {
+class ZoneCrossings {
  public:
   // `most`: pairs that a tick can look at closer.
-  explicit PassageRound(std::size_t most) { decided_.reserve(most); }
+  explicit ZoneCrossings(std::size_t most) { decided_.reserve(most); }
 
   void begin() noexcept { decided_.clear(); }
 
   // A known pair whose rows are up to date; once a tick.
-  void decide(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept {
+  void decide(std::uint32_t pair, const Zones& zones, Evaluation& evaluation) noexcept {
     if (!is_far(pair, zones.outside_from(pair), evaluation)) look_at(pair, zones, evaluation);
   }
 
@@ -33,7 +33,7 @@ class PassageRound {
 
   // What looking closer has told about a pair this tick, for where its objects may have been.
   // Nothing: infinite.
-  [[nodiscard]] PassageBounds of(std::uint32_t pair) const noexcept;
+  [[nodiscard]] SweptBounds of(std::uint32_t pair) const noexcept;
   // About any pair.
   [[nodiscard]] bool any() const noexcept { return !decided_.empty(); }
 
@@ -43,15 +43,15 @@ class PassageRound {
                                    const Evaluation& evaluation) noexcept {
     if (outside_from == -kInfinity) return true;  // of what?
     const PairEntry& entry = evaluation.table.entries[pair];
-    const ObjectState& a = evaluation.objects[entry.object_a];
-    const ObjectState& b = evaluation.objects[entry.object_b];
+    const TrackedObject& a = evaluation.objects[entry.object_a];
+    const TrackedObject& b = evaluation.objects[entry.object_b];
     const double strayed = 2.0 * (a.travel + b.travel) + (a.unseen_since + b.unseen_since);
     return rounded_down(entry.least_lower - rounded_up(strayed)) >= outside_from;
   }
-  void look_at(std::uint32_t pair, const ZoneRound& zones, Evaluation& evaluation) noexcept;
+  void look_at(std::uint32_t pair, const Zones& zones, Evaluation& evaluation) noexcept;
   struct Decided {
     std::uint32_t pair;
-    PassageBounds bounds;
+    SweptBounds bounds;
   };
   std::vector<Decided> decided_;  // by pair, once finished
 };

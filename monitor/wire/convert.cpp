@@ -57,7 +57,7 @@ void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept {
   out.distance = pair.distance;
   out.lower = pair.lower;
   out.upper = pair.upper;
-  out.lower_since = pair.lower_since;
+  out.swept_lower = pair.swept_lower;
   out.witness_a = to_wire(pair.witness_a);
   out.witness_b = to_wire(pair.witness_b);
   out.normal = to_wire(pair.normal);
@@ -80,7 +80,7 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
   out.minimum_known = report.minimum_known;
   out.minimum_proved = report.minimum_proved;
   out.lower_all = report.lower_all;
-  out.lower_all_since = report.lower_all_since;
+  out.swept_lower_all = report.swept_lower_all;
   to_wire(report.minimum, out.minimum);
   out.pairs_total = report.pairs_total;
   out.evaluated = report.evaluated;
@@ -113,7 +113,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
   out.proved = state.proved;
   out.pair = state.pair;
   out.clearance = state.clearance;
-  out.clearance_since = state.clearance_since;
+  out.swept_clearance = state.swept_clearance;
   out.since_cycle = state.since_cycle;
   out.cycle = report.cycle;
   out.now_ns = report.now_ns;

@@ -6,15 +6,15 @@
 
 namespace clearance {
 
-ZoneUpdate::ZoneUpdate(const Zone& zone, const ZoneReport& before) noexcept
+ZoneHysteresis::ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept
     : zone_(&zone),
       was_active_(before.active),
       outside_from_(was_active_ ? well_outside() : zone.enter_below),
       pair_(before.pair),
       pair_since_(before.pair) {}
 
-void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary, double margins) noexcept {
-  Clearance clearance{.now = summary.lower, .since = summary.lower_since};
+void ZoneHysteresis::add(std::uint32_t pair, const PairBounds& summary, double margins) noexcept {
+  Clearance clearance{.now = summary.lower, .since = summary.swept_lower};
   if (margins > 0.0) {
     clearance.now = rounded_down(clearance.now - margins);
     clearance.since = rounded_down(clearance.since - margins);
@@ -23,22 +23,22 @@ void ZoneUpdate::add(std::uint32_t pair, const PairSummary& summary, double marg
   take(clearance, pair);
 }
 
-void ZoneUpdate::add_rest(const Clearance& clearance, std::uint32_t pair) noexcept {
+void ZoneHysteresis::add_rest(const Clearance& clearance, std::uint32_t pair) noexcept {
   if (!outside(clearance.since)) proved_ = false;
   take(clearance, pair);
 }
 
 // Outside all the time; inside now, as far as can be told; or inside at some instant in between.
-bool ZoneUpdate::proves(const Clearance& clearance, double margins,
-                        const PairSummary& summary) const noexcept {
+bool ZoneHysteresis::proves(const Clearance& clearance, double margins,
+                            const PairBounds& summary) const noexcept {
   if (outside(clearance.since)) return true;
   if (!outside(clearance.now)) return is_evaluated(summary.status);
-  return !outside(rounded_up(summary.upper_since - margins));
+  return !outside(rounded_up(summary.swept_upper - margins));
 }
 
-void ZoneUpdate::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
+void ZoneHysteresis::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
   report.clearance = least_.now;
-  report.clearance_since = least_.since;
+  report.swept_clearance = least_.since;
   report.proved = proved_;
   report.active = !outside(least_.since);
   report.pair = report.active && outside(least_.now) ? pair_since_ : pair_;
@@ -46,11 +46,11 @@ void ZoneUpdate::finish(std::uint64_t cycle, ZoneReport& report) const noexcept 
   if (report.changed) report.since_cycle = cycle;
 }
 
-double ZoneUpdate::well_outside() const noexcept {
+double ZoneHysteresis::well_outside() const noexcept {
   return std::nextafter(zone_->leave_above, kInfinity);
 }
 
-void ZoneUpdate::take(const Clearance& clearance, std::uint32_t pair) noexcept {
+void ZoneHysteresis::take(const Clearance& clearance, std::uint32_t pair) noexcept {
   if (clearance.now < least_.now) {
     least_.now = clearance.now;
     pair_ = pair;

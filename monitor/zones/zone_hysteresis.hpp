@@ -16,12 +16,12 @@ struct Clearance {
 // Takes a zone's report from the last tick to this one, pair by pair. Active when some pair's
 // clearance since the last tick is below enter_below; no longer when every pair's is above
 // leave_above.
-class ZoneUpdate {
+class ZoneHysteresis {
  public:
-  ZoneUpdate(const Zone& zone, const ZoneReport& before) noexcept;
+  ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept;
 
   // One of the zone's pairs, and what both its margins are at most, m.
-  void add(std::uint32_t pair, const PairSummary& summary, double margins) noexcept;
+  void add(std::uint32_t pair, const PairBounds& summary, double margins) noexcept;
 
   // Pairs of the zone that need not be named one by one: each has at least this clearance. `pair`
   // is one of them.
@@ -39,7 +39,7 @@ class ZoneUpdate {
   // The pair could neither enter the zone nor keep it active.
   [[nodiscard]] bool outside(double clearance) const noexcept { return clearance >= outside_from_; }
   [[nodiscard]] bool proves(const Clearance& clearance, double margins,
-                            const PairSummary& summary) const noexcept;
+                            const PairBounds& summary) const noexcept;
   void take(const Clearance& clearance, std::uint32_t pair) noexcept;
 
   const Zone* zone_;

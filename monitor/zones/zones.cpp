@@ -15,7 +15,7 @@ double margins_of(const Scene& scene, std::uint32_t pair) noexcept {
 
 }  // namespace
 
-ZoneRound::ZoneRound(const Scene& scene)
+Zones::Zones(const Scene& scene)
     : scene_(scene), members_(scene.zones.size()), most_margins_(scene.zones.size(), 0.0) {
   updates_.reserve(scene.zones.size());
   added_.resize(scene.zones.size());
@@ -29,7 +29,7 @@ ZoneRound::ZoneRound(const Scene& scene)
   zones_.resize(first_zone_.back());
   std::vector<std::uint32_t> next(first_zone_.begin(), first_zone_.end() - 1);
   for (std::uint32_t z = 0; z < scene.zones.size(); ++z) {
-    const double outside_from = ZoneUpdate(scene.zones[z], {}).well_outside();
+    const double outside_from = ZoneHysteresis(scene.zones[z], {}).well_outside();
     std::vector<std::uint8_t> is_member(scene.objects.size(), 0);
     for (const std::uint32_t pair : scene.zones[z].pairs) {
       const double margins = margins_of(scene, pair);
@@ -44,7 +44,7 @@ ZoneRound::ZoneRound(const Scene& scene)
   }
 }
 
-void ZoneRound::begin(const std::vector<ZoneReport>& reports) noexcept {
+void Zones::begin(const std::vector<ZoneReport>& reports) noexcept {
   updates_.clear();
   for (std::size_t z = 0; z < scene_.zones.size(); ++z) {
     updates_.emplace_back(scene_.zones[z], reports[z]);
@@ -52,26 +52,26 @@ void ZoneRound::begin(const std::vector<ZoneReport>& reports) noexcept {
   }
 }
 
-double ZoneRound::undecided(std::uint32_t pair, double lower, double lower_since) const noexcept {
+double Zones::undecided(std::uint32_t pair, double lower, double swept_lower) const noexcept {
   double farthest = -kInfinity;
   for (const Membership& in : zones_of(pair)) {
     const double level = rounded_up(updates_[in.zone].outside_from() + in.margins);
-    if (lower_since < level && level <= lower) farthest = std::max(farthest, level);
+    if (swept_lower < level && level <= lower) farthest = std::max(farthest, level);
   }
   return farthest;
 }
 
-void ZoneRound::add(std::uint32_t pair, const PairSummary& summary) noexcept {
+void Zones::add(std::uint32_t pair, const PairBounds& summary) noexcept {
   for (const Membership& in : zones_of(pair)) {
     updates_[in.zone].add(pair, summary, in.margins);
     ++added_[in.zone];
   }
 }
 
-void ZoneRound::finish(std::span<const ObjectState> objects, const Clearance& pending,
-                       std::uint64_t cycle, std::vector<ZoneReport>& reports) noexcept {
+void Zones::finish(std::span<const TrackedObject> objects, const Clearance& pending,
+                   std::uint64_t cycle, std::vector<ZoneReport>& reports) noexcept {
   for (std::size_t z = 0; z < updates_.size(); ++z) {
-    ZoneUpdate& update = updates_[z];
+    ZoneHysteresis& update = updates_[z];
     if (added_[z] < scene_.zones[z].pairs.size()) {
       const auto least = [&](double lower) {
         return std::min(update.well_outside(), rounded_down(lower - most_margins_[z]));
@@ -80,7 +80,7 @@ void ZoneRound::finish(std::span<const ObjectState> objects, const Clearance& pe
     }
     for (std::size_t m = 0; !objects.empty() && m < members_[z].size(); ++m) {
       const Member& member = members_[z][m];
-      const ObjectState& object = objects[member.object];
+      const TrackedObject& object = objects[member.object];
       if (!object.known()) update.add_rest({-kInfinity, -kInfinity}, member.pair);
       if (object.leapt) update.add_rest({.since = -kInfinity}, member.pair);
     }

@@ -11,9 +11,9 @@
 
 namespace clearance {
 
-class ZoneRound {
+class Zones {
  public:
-  explicit ZoneRound(const Scene& scene);
+  explicit Zones(const Scene& scene);
 
   // Before the pairs: takes the last tick's reports.
   void begin(const std::vector<ZoneReport>& reports) noexcept;
@@ -25,17 +25,17 @@ class ZoneRound {
     return outside_from_.empty() ? -kInfinity : outside_from_[pair];
   }
   // The farthest distance below which the pair is inside a zone, of the zones that it is outside of
-  // with `lower`, m, but not with `lower_since`. -infinity: there is none.
+  // with `lower`, m, but not with `swept_lower`. -infinity: there is none.
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
-                                 double lower_since) const noexcept;
+                                 double swept_lower) const noexcept;
 
   // A pair that is awake.
-  void add(std::uint32_t pair, const PairSummary& summary) noexcept;
+  void add(std::uint32_t pair, const PairBounds& summary) noexcept;
 
   // What was not added: farther than its zones watch for since the last tick, at least `pending`
   // apart where that is less (margins not subtracted), or unknown. `objects`: none where all are
   // known and none has leapt.
-  void finish(std::span<const ObjectState> objects, const Clearance& pending, std::uint64_t cycle,
+  void finish(std::span<const TrackedObject> objects, const Clearance& pending, std::uint64_t cycle,
               std::vector<ZoneReport>& reports) noexcept;
 
  private:
@@ -61,7 +61,7 @@ class ZoneRound {
   std::vector<std::vector<Member>> members_;  // by zone
   std::vector<double> most_margins_;          // by zone: of any of its pairs, m
   // By zone, of this tick.
-  std::vector<ZoneUpdate> updates_;
+  std::vector<ZoneHysteresis> updates_;
   std::vector<std::uint32_t> added_;
 };
 

@@ -234,8 +234,8 @@ void judge_zone(const Scene& scene, const Zone& zone, const ZoneReport& report,
     least = std::min(least, since[p] - margins);
   }
   const bool was_active = report.active != report.changed;
-  ASSERT_LE(report.clearance_since, least + rounding) << "pair " << pair;
-  ASSERT_LE(report.clearance_since, report.clearance);
+  ASSERT_LE(report.swept_clearance, least + rounding) << "pair " << pair;
+  ASSERT_LE(report.swept_clearance, report.clearance);
   ASSERT_TRUE(report.active || least + rounding >= zone.enter_below) << "pair " << pair;
   ASSERT_TRUE(report.active || !was_active || least + rounding > zone.leave_above);
 }
@@ -273,8 +273,8 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
       const PairReport pair = monitor.pair(p);
       ASSERT_LE(pair.lower, truth.now[p] + rounding) << "tick " << t << " pair " << p;
       ASSERT_GE(pair.upper, truth.now[p] - rounding) << "tick " << t << " pair " << p;
-      ASSERT_LE(pair.lower_since, truth.since[p] + rounding) << "tick " << t << " pair " << p;
-      ASSERT_LE(pair.lower_since, pair.lower) << "tick " << t << " pair " << p;
+      ASSERT_LE(pair.swept_lower, truth.since[p] + rounding) << "tick " << t << " pair " << p;
+      ASSERT_LE(pair.swept_lower, pair.lower) << "tick " << t << " pair " << p;
       least = std::min(least, truth.now[p]);
       least_since = std::min(least_since, truth.since[p]);
       known_for[p] = pair.status == PairStatus::kUnknown ? 0 : known_for[p] + 1;
@@ -287,7 +287,7 @@ TEST_P(PolyhedraAdversaries, FindNoBoundAboveTheTruthNowOrSinceTheLastTickAndNoE
       }
     }
     ASSERT_LE(report.lower_all, least + rounding) << "tick " << t;
-    ASSERT_LE(report.lower_all_since, least_since + rounding) << "tick " << t;
+    ASSERT_LE(report.swept_lower_all, least_since + rounding) << "tick " << t;
     if (report.minimum_proved) {
       ASSERT_NEAR(truth.now[report.minimum.pair], least, rounding) << "tick " << t;
       ASSERT_LE(report.minimum.lower, least + rounding) << "tick " << t;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/batch.hpp"
+#include "core/distance.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 

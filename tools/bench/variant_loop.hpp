@@ -34,10 +34,10 @@ constexpr double kContact = 1e-13;  // m
 constexpr double kRate = 1e-12;     // below this share of the distance a release gains nothing
 
 template <Scan kScan>
-bool step(ActiveSide& a, ActiveSide& b) {
+bool step(ActiveFeature& a, ActiveFeature& b) {
   const Delta to = delta(a, b);
   const Vec3 move_a = to.a - a.common(), move_b = to.b - b.common();
-  const auto alpha_of = [](const ActiveSide& side, const Vec3& move) {
+  const auto alpha_of = [](const ActiveFeature& side, const Vec3& move) {
     return kScan == Scan::kNeighbours ? alpha(side, move) : alpha_over_all(side, move);
   };
   const Alpha alpha_a = alpha_of(a, move_a), alpha_b = alpha_of(b, move_b);
@@ -46,11 +46,11 @@ bool step(ActiveSide& a, ActiveSide& b) {
   return alpha_a.blocking == kNone && alpha_b.blocking == kNone;
 }
 
-inline void let_go(ActiveSide& side, const Lambda& l) { side.place(l.to, l.index, side.own()); }
+inline void let_go(ActiveFeature& side, const Lambda& l) { side.place(l.to, l.index, side.own()); }
 
 // The best release of both bodies, or of each.
 template <Release kRelease>
-bool release_best(ActiveSide& a, ActiveSide& b, double least) {
+bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
   const Vec3 towards = b.common() - a.common();
   const Lambda of_a = lambda(a, towards), of_b = lambda(b, -towards);
   const bool a_wants = of_a.rate > least, b_wants = of_b.rate > least;
@@ -62,7 +62,7 @@ bool release_best(ActiveSide& a, ActiveSide& b, double least) {
 }
 
 // Every active facet with a negative multiplier at once: the feature that is left.
-inline bool release_all(ActiveSide& side, const Vec3& towards_in_common, double least) {
+inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, double least) {
   const Lambda best = lambda(side, towards_in_common);
   if (!(best.rate > least)) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
@@ -103,7 +103,7 @@ inline bool release_all(ActiveSide& side, const Vec3& towards_in_common, double 
   return true;
 }
 
-inline bool release_all(ActiveSide& a, ActiveSide& b, double least) {
+inline bool release_all(ActiveFeature& a, ActiveFeature& b, double least) {
   const Vec3 towards = b.common() - a.common();
   const bool from_a = release_all(a, towards, least);
   return release_all(b, -towards, least) || from_a;
@@ -112,7 +112,7 @@ inline bool release_all(ActiveSide& a, ActiveSide& b, double least) {
 }  // namespace variant
 
 template <Release kRelease, Scan kScan>
-LoopEnd dqp3_variant(ActiveSide& a, ActiveSide& b) {
+LoopEnd dqp3_variant(ActiveFeature& a, ActiveFeature& b) {
   using namespace variant;
   for (int cycle = 1; cycle <= kCycles; ++cycle) {
     const double apart = (b.common() - a.common()).norm();

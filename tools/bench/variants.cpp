@@ -10,7 +10,7 @@ namespace clearance::bench {
 namespace {
 
 // As in the thesis: from the last active set, or else from the middle.
-void place(ActiveSide& side, const TrackingState::Side& hint) {
+void place(ActiveFeature& side, const TrackingState::Side& hint) {
   if (!side.place_tracked(hint)) side.place_inside(side.body().interior);
 }
 
@@ -26,7 +26,7 @@ class Variant {
   void restore(const TrackingState& tracking) { tracking_ = tracking; }
   Answer query(const Pose& world_from_a, const Pose& world_from_b) {
     const RelativePose a_from_b = relative_pose(world_from_a, world_from_b);
-    ActiveSide a(a_, nullptr), b(b_, &a_from_b);
+    ActiveFeature a(a_, nullptr), b(b_, &a_from_b);
     place(a, tracking_.a);
     place(b, tracking_.b);
     const LoopEnd end = dqp3_variant<kRelease, kScan>(a, b);
@@ -60,7 +60,7 @@ class Moved {
   void restore(const TrackingState& tracking) { tracking_ = tracking; }
   // At the poses of the last move().
   Answer loop() {
-    ActiveSide a(a_.at_pose(), nullptr), b(b_.at_pose(), nullptr);
+    ActiveFeature a(a_.at_pose(), nullptr), b(b_.at_pose(), nullptr);
     tracking_.a.point = a_.point(tracking_.a.point);
     tracking_.b.point = b_.point(tracking_.b.point);
     place(a, tracking_.a);

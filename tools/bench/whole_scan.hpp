@@ -16,7 +16,7 @@ namespace clearance::bench {
 }
 
 // The same as alpha(), found the long way.
-[[nodiscard]] inline Alpha alpha_over_all(const ActiveSide& side, const Vec3& move_in_common) {
+[[nodiscard]] inline Alpha alpha_over_all(const ActiveFeature& side, const Vec3& move_in_common) {
   if (side.feature() == Feature::kVertex || side.feature() == Feature::kInside) {
     return alpha(side, move_in_common);
   }

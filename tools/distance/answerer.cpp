@@ -20,7 +20,7 @@ OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z(
 // Of two bodies that overlap, in frame A: where a search for the closest points ends.
 Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                   const RelativePose& a_from_b) {
-  ActiveSide side_a(a, nullptr), side_b(b, &a_from_b);
+  ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   side_a.place_cold(side_b.point_to_common(b.interior));
   side_b.place_cold(a.interior);
   (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).tight);

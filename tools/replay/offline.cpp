@@ -164,11 +164,11 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
     return kUsage;
   }
   for (const std::string& output : {arguments.out, arguments.csv}) {
-    if (!spares_inputs("clearance-replay", output,
-                       {arguments.recording, arguments.cell, arguments.reference})) {
+    if (!output_is_not_an_input("clearance-replay", output,
+                                {arguments.recording, arguments.cell, arguments.reference})) {
       return kUsage;
     }
-    if (!may_write("clearance-replay", output, arguments.force)) return kFailed;
+    if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
   }
   std::optional<CellResult> cell = find_cell(arguments);
   if (!cell) return kFailed;

@@ -41,8 +41,8 @@ struct Models {
 class Judge {
  public:
   explicit Judge(const Scene& scene)
-      : hulls_(enclosing_hulls(scene)),
-        balls_(enclosing_balls(scene.objects.size(), parts_of(scene))) {}
+      : hulls_(bounding_hulls(scene)),
+        balls_(bounding_spheres(scene.objects.size(), parts_of(scene))) {}
 
   Models models(const Scene& scene, std::size_t i) {
     const Object& object = scene.objects[i];
@@ -74,8 +74,8 @@ class Judge {
     return errors_.back().second;
   }
 
-  std::vector<EnclosingHull> hulls_;
-  std::vector<EnclosingBall> balls_;
+  std::vector<BoundingHull> hulls_;
+  std::vector<BoundingSphere> balls_;
   std::vector<std::pair<const ConvexPolyhedron*, double>> errors_;
 };
 

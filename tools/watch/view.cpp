@@ -93,7 +93,7 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
   lines.emplace_back(width)
       .add("          ")
       .add(fmt::format("in [{:.6f}, {:.6f}] m, since the last tick at least {:.6f} m  ", pair.lower,
-                       pair.upper, pair.lower_since))
+                       pair.upper, pair.swept_lower))
       .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
            report.minimum_proved ? Style::kGood : Style::kWarning);
   lines.emplace_back(width).add(fmt::format("          {}  normal ({:.2f} {:.2f} {:.2f})",
@@ -116,7 +116,7 @@ void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
            report.unknown != 0 ? Style::kWarning : Style::kPlain)
       .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m; refreshed no more "
                        "than {} ticks ago",
-                       report.lower_all, report.lower_all_since, report.oldest_evaluation_cycles));
+                       report.lower_all, report.swept_lower_all, report.oldest_evaluation_cycles));
 }
 
 void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {

@@ -19,9 +19,9 @@ std::int32_t facet_towards(const ConvexPolyhedron& body, const Vec3& normal) {
   return kNone;
 }
 
-TEST(ActiveSide, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
+TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   const ConvexPolyhedron body = cube();
-  ActiveSide side(body, nullptr);
+  ActiveFeature side(body, nullptr);
   side.place_inside(Vec3::Zero());
   // On the plane of the facet that is said to block, a metre beside it.
   advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
@@ -30,11 +30,11 @@ TEST(ActiveSide, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   EXPECT_EQ(side.own(), Vec3(0.5, 0.5, 0.0));
 }
 
-TEST(ActiveSide, OfABodyWithoutEndStartsNoFartherOutThanAnyClosestPoint) {
+TEST(ActiveFeature, OfABodyWithoutEndStartsNoFartherOutThanAnyClosestPoint) {
   const ConvexPolyhedron floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
-  const ActiveSide other(box, nullptr);
+  const ActiveFeature other(box, nullptr);
   const TrackingState::Side near{2, false, 0, {1.0, 2.0, 0.0}}, far{2, false, 0, {1e17, 2.0, 0.0}};
-  ActiveSide side(floor, nullptr);
+  ActiveFeature side(floor, nullptr);
   side.place_near(near, other, 2.0);
   EXPECT_EQ(side.own(), near.point);
   side.place_near(far, other, 2.0);

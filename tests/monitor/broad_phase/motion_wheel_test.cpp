@@ -9,10 +9,10 @@
 namespace clearance {
 namespace {
 
-TEST(WakeWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
+TEST(MotionWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
   constexpr std::uint32_t kPairs = 500;
   Random random(81);
-  WakeWheels wheels(2, kPairs);
+  MotionWheels wheels(2, kPairs);
   std::vector<double> since(kPairs), due(kPairs);  // m, of travel of object 1
   double travelled = 0.0;
   std::vector<std::uint32_t> pairs;
@@ -31,7 +31,7 @@ TEST(WakeWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
     pairs.clear();
     ASSERT_TRUE(wheels.take_due(1, kPairs, pairs));
     for (const std::uint32_t p : pairs) {
-      EXPECT_GE(travelled - since[p], 0.74 * (due[p] - since[p]) - 2.0 * WakeWheels::kUnit);
+      EXPECT_GE(travelled - since[p], 0.74 * (due[p] - since[p]) - 2.0 * MotionWheels::kUnit);
     }
     for (std::uint32_t p = 0; p < kPairs; ++p) {
       const bool is_due = due[p] <= travelled;
@@ -41,8 +41,8 @@ TEST(WakeWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
   }
 }
 
-TEST(WakeWheels, APairIsTakenOnceAndOffBothWheels) {
-  WakeWheels wheels(2, 3);
+TEST(MotionWheels, APairIsTakenOnceAndOffBothWheels) {
+  MotionWheels wheels(2, 3);
   ASSERT_TRUE(wheels.set(2, 0, 0.1));
   ASSERT_TRUE(wheels.set(3, 1, 0.1));
   std::vector<std::uint32_t> pairs;
@@ -55,8 +55,8 @@ TEST(WakeWheels, APairIsTakenOnceAndOffBothWheels) {
   EXPECT_FALSE(wheels.is_set(3));
 }
 
-TEST(WakeWheels, WhatIsLeftForLackOfRoomIsTakenNextTime) {
-  WakeWheels wheels(1, 10);
+TEST(MotionWheels, WhatIsLeftForLackOfRoomIsTakenNextTime) {
+  MotionWheels wheels(1, 10);
   for (std::uint32_t p = 0; p < 10; ++p) ASSERT_TRUE(wheels.set(2 * p, 0, 0.1 + 0.01 * p));
   wheels.advance(0, 1.0);
   std::vector<std::uint32_t> pairs;
@@ -67,9 +67,9 @@ TEST(WakeWheels, WhatIsLeftForLackOfRoomIsTakenNextTime) {
   EXPECT_EQ(pairs, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
-TEST(WakeWheels, LessThanAUnitCannotBeSet) {
-  WakeWheels wheels(1, 1);
-  EXPECT_FALSE(wheels.set(0, 0, 0.5 * WakeWheels::kUnit));
+TEST(MotionWheels, LessThanAUnitCannotBeSet) {
+  MotionWheels wheels(1, 1);
+  EXPECT_FALSE(wheels.set(0, 0, 0.5 * MotionWheels::kUnit));
   EXPECT_FALSE(wheels.is_set(0));
   EXPECT_TRUE(wheels.set(0, 0, kInfinity)) << "as far as the widest ring";
   wheels.cancel(0);

@@ -71,16 +71,16 @@ TEST(ReportQueue, AllocatesNothingInTheTickThread) {
   Monitor monitor(scene);
   ReportQueue queue(scene, {.reports = 8, .inputs = 8, .samples_a_batch = 4});
   const PoseBatch batch = batch_of(1, 4);
-  Vitals vitals;
-  vitals.rejected.resize(scene.objects.size());
-  vitals.ages.resize(scene.objects.size());
+  LoopStatistics statistics;
+  statistics.rejected.resize(scene.objects.size());
+  statistics.ages.resize(scene.objects.size());
   const Report& report = monitor.tick({}, test::kStart);
   const SourceUse use{};
   const std::uint64_t before = allocations();
   for (int i = 0; i < 20; ++i) {  // full slots and dropped ones
     queue.input(batch);
     queue.report(report, {&use, 1});
-    queue.vitals(vitals);
+    queue.statistics(statistics);
   }
   EXPECT_EQ(allocations() - before, 0u);
 }

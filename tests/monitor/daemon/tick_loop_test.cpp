@@ -66,7 +66,9 @@ class ListedReports final : public ReportSink {
     rejected = report.rejected;
     if (report.cycle == slow_cycle) clock_.pass(slow_ns);
   }
-  void vitals(const Vitals& vitals) noexcept override { all_vitals.push_back(vitals); }
+  void statistics(const LoopStatistics& statistics) noexcept override {
+    all_vitals.push_back(statistics);
+  }
 
   std::uint64_t slow_cycle = 0;
   std::int64_t slow_ns = 0;
@@ -74,7 +76,7 @@ class ListedReports final : public ReportSink {
   std::vector<std::size_t> inputs_before;
   std::vector<std::int64_t> times_ns;
   std::vector<std::vector<SourceUse>> used;
-  std::vector<Vitals> all_vitals;
+  std::vector<LoopStatistics> all_vitals;
   std::array<std::uint64_t, kRejects> rejected{};
 
  private:
@@ -98,9 +100,9 @@ struct Loop {
   void run(const TickLoopOptions& options) {
     TickLoop loop(scene, poses, {&reports}, clock, options);
     loop.run(stop);
-    vitals = loop.vitals();
+    statistics = loop.statistics();
   }
-  Vitals vitals;
+  LoopStatistics statistics;
 };
 
 TEST(TickLoop, TicksOnItsDeadlines) {
@@ -109,8 +111,8 @@ TEST(TickLoop, TicksOnItsDeadlines) {
   EXPECT_EQ(loop.reports.cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
   EXPECT_EQ(loop.reports.times_ns,
             (std::vector<std::int64_t>{kTick, 2 * kTick, 3 * kTick, 4 * kTick, 5 * kTick}));
-  EXPECT_EQ(loop.vitals.overruns, 0u);
-  EXPECT_EQ(loop.vitals.skipped_cycles, 0u);
+  EXPECT_EQ(loop.statistics.overruns, 0u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 0u);
 }
 
 TEST(TickLoop, StartsTheNextTickAtOnceAfterAShortOverrun) {
@@ -118,8 +120,8 @@ TEST(TickLoop, StartsTheNextTickAtOnceAfterAShortOverrun) {
   loop.reports.slow_cycle = 2;
   loop.reports.slow_ns = kTick + kTick / 4;
   loop.run({.max_ticks = 4});
-  EXPECT_EQ(loop.vitals.overruns, 1u);
-  EXPECT_EQ(loop.vitals.skipped_cycles, 0u);
+  EXPECT_EQ(loop.statistics.overruns, 1u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 0u);
   EXPECT_EQ(loop.reports.times_ns,
             (std::vector<std::int64_t>{kTick, 2 * kTick, 3 * kTick + kTick / 4, 4 * kTick}));
 }
@@ -130,8 +132,8 @@ TEST(TickLoop, SkipsMissedDeadlinesAndIsBackOnItsGridWithoutAGapInTheCycles) {
   loop.reports.slow_ns =
       5 * kTick + kTick / 2;  // from 2 to 7.5: deadlines 3 to 6 have passed, 7 is late
   loop.run({.max_ticks = 5});
-  EXPECT_EQ(loop.vitals.overruns, 1u);
-  EXPECT_EQ(loop.vitals.skipped_cycles, 4u);
+  EXPECT_EQ(loop.statistics.overruns, 1u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 4u);
   EXPECT_EQ(loop.reports.cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
   EXPECT_EQ(
       loop.reports.times_ns,
@@ -144,10 +146,10 @@ TEST(TickLoop, CountsHowLateItWakesAndHowLongTicksTake) {
   loop.reports.slow_cycle = 3;
   loop.reports.slow_ns = 400'000;
   loop.run({.max_ticks = 10});
-  EXPECT_EQ(loop.vitals.wakeup.count(), 10u);
-  EXPECT_EQ(loop.vitals.wakeup.max_ns(), 20'000);
-  EXPECT_EQ(loop.vitals.tick.max_ns(), 400'000);
-  EXPECT_EQ(loop.vitals.tick_second_max_ns, 0) << "begins again once it was handed over";
+  EXPECT_EQ(loop.statistics.wakeup.count(), 10u);
+  EXPECT_EQ(loop.statistics.wakeup.max_ns(), 20'000);
+  EXPECT_EQ(loop.statistics.tick.max_ns(), 400'000);
+  EXPECT_EQ(loop.statistics.tick_second_max_ns, 0) << "begins again once it was handed over";
   EXPECT_EQ(loop.reports.all_vitals.back().tick_second_max_ns, 400'000);
 }
 
@@ -192,7 +194,7 @@ TEST(TickLoop, RefusesBatchesMadeForAnotherSceneAndCountsThem) {
   loop.run({.max_ticks = 2});
   const auto cause = static_cast<std::size_t>(Reject::kWrongRevision);
   EXPECT_EQ(loop.reports.rejected[cause], 2u);
-  EXPECT_EQ(loop.vitals.rejected[0][cause], 2u);
+  EXPECT_EQ(loop.statistics.rejected[0][cause], 2u);
   EXPECT_EQ(loop.reports.used[0].at(0).sequence_number, 2u);
 }
 
@@ -200,9 +202,9 @@ TEST(TickLoop, RemembersTheSmallestDistanceSeen) {
   Loop loop;
   loop.poses.add("arm", 1, 1);
   loop.run({.max_ticks = 3});
-  ASSERT_TRUE(loop.vitals.minimum.known);
-  EXPECT_EQ(loop.vitals.minimum.cycle, 1u);
-  EXPECT_NEAR(loop.vitals.minimum.pair.distance, 0.9, 1e-12);
+  ASSERT_TRUE(loop.statistics.minimum.known);
+  EXPECT_EQ(loop.statistics.minimum.cycle, 1u);
+  EXPECT_NEAR(loop.statistics.minimum.pair.distance, 0.9, 1e-12);
 }
 
 TEST(TickLoop, StopsWhenTold) {
@@ -221,7 +223,7 @@ class CountingSink final : public ReportSink {
     if (report.cycle == 1) first_ = allocations();
     last_ = allocations();
   }
-  void vitals(const Vitals&) noexcept override {}
+  void statistics(const LoopStatistics&) noexcept override {}
   [[nodiscard]] std::uint64_t allocated() const noexcept { return last_ - first_; }
 
  private:
@@ -230,7 +232,7 @@ class CountingSink final : public ReportSink {
 
 TEST(TickLoop, AllocatesNothingOnceItRuns) {
   Loop loop;
-  loop.scene.rate_hz = 10.0;  // vitals are handed over on the way
+  loop.scene.rate_hz = 10.0;  // statistics are handed over on the way
   for (std::uint64_t i = 1; i <= 300; ++i) loop.poses.add("arm", i, 3);
   CountingSink sink;
   TickLoop ticking(loop.scene, loop.poses, {&sink}, loop.clock,

@@ -15,11 +15,11 @@ Scene two_movers() {
       {test::moving("a", {test::ball(0.1)}), test::moving("b", {test::ball(0.1)})});
 }
 
-Vitals no_vitals(const Scene& scene) {
-  Vitals vitals;
-  vitals.rejected.resize(scene.objects.size());
-  vitals.ages.resize(scene.objects.size());
-  return vitals;
+LoopStatistics no_vitals(const Scene& scene) {
+  LoopStatistics statistics;
+  statistics.rejected.resize(scene.objects.size());
+  statistics.ages.resize(scene.objects.size());
+  return statistics;
 }
 
 class Sender {
@@ -49,7 +49,7 @@ class Sender {
 };
 
 // The numbers of the next `count` batches.
-std::vector<std::uint64_t> take(DdsPoses& poses, std::size_t count) {
+std::vector<std::uint64_t> take(PoseReader& poses, std::size_t count) {
   std::vector<std::uint64_t> numbers;
   EXPECT_TRUE(test::eventually([&] {
     while (const PoseBatch* batch = poses.next()) numbers.push_back(batch->sequence_number);
@@ -63,14 +63,14 @@ struct Port {
   Scene scene = two_movers();
   DdsOptions dds = test::own_dds();
   Participant participant{dds};
-  DdsPoses poses{scene, participant};
+  PoseReader poses{scene, participant};
 
   void wait_for(const Sender& sender) {
     ASSERT_TRUE(test::eventually([&] { return test::matched_readers(sender.writer()) == 1; }));
   }
 };
 
-TEST(DdsPoses, HandsEveryBatchOverInOrder) {
+TEST(PoseReader, HandsEveryBatchOverInOrder) {
   Port port;
   Sender sender(port.scene, port.dds, "arm");
   port.wait_for(sender);
@@ -90,7 +90,7 @@ TEST(DdsPoses, HandsEveryBatchOverInOrder) {
   EXPECT_EQ(tallies[0].lost, 0u);
 }
 
-TEST(DdsPoses, KeepsThePosesAsTheyWereSent) {
+TEST(PoseReader, KeepsThePosesAsTheyWereSent) {
   Port port;
   Sender sender(port.scene, port.dds, "arm");
   port.wait_for(sender);
@@ -103,7 +103,7 @@ TEST(DdsPoses, KeepsThePosesAsTheyWereSent) {
   EXPECT_EQ(batch->samples[2].world_from_object.position, Vec3(0, 0, 1));
 }
 
-TEST(DdsPoses, CountsGapsInTheNumbersButNotANewStartAsLoss) {
+TEST(PoseReader, CountsGapsInTheNumbersButNotANewStartAsLoss) {
   Port port;
   Sender sender(port.scene, port.dds, "arm");
   port.wait_for(sender);
@@ -112,11 +112,11 @@ TEST(DdsPoses, CountsGapsInTheNumbersButNotANewStartAsLoss) {
   EXPECT_EQ(port.poses.tallies().at(0).lost, 2u);
 }
 
-TEST(DdsPoses, CutsABatchThatIsTooLargeForTheCell) {
+TEST(PoseReader, CutsABatchThatIsTooLargeForTheCell) {
   Port port;
   Sender sender(port.scene, port.dds, "arm");
   port.wait_for(sender);
-  const std::size_t room = DdsPoses::samples_a_batch(port.scene);
+  const std::size_t room = PoseReader::samples_a_batch(port.scene);
   sender.send(1, room + 5);
   sender.send(2, 1);
   const PoseBatch* batch = nullptr;
@@ -127,7 +127,7 @@ TEST(DdsPoses, CutsABatchThatIsTooLargeForTheCell) {
   EXPECT_EQ(port.poses.tallies().at(0).cut_poses, 5u);
 }
 
-TEST(DdsPoses, KeepsSourcesApartAndRefusesOneTooMany) {
+TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
   Port port;
   std::vector<std::unique_ptr<Sender>> senders;
   for (std::size_t i = 0; i <= kMaxSources; ++i) {
@@ -148,11 +148,11 @@ TEST(DdsPoses, KeepsSourcesApartAndRefusesOneTooMany) {
   EXPECT_EQ(port.poses.next(), nullptr);
 }
 
-TEST(DdsPoses, DropsAndCountsWhatNoTickTakes) {
+TEST(PoseReader, DropsAndCountsWhatNoTickTakes) {
   Port port;
   Sender sender(port.scene, port.dds, "arm");
   port.wait_for(sender);
-  for (std::uint64_t i = 1; i <= DdsPoses::kBatches + 10; ++i) {
+  for (std::uint64_t i = 1; i <= PoseReader::kBatches + 10; ++i) {
     sender.send(i);
     ASSERT_TRUE(test::eventually([&] {
       const auto tallies = port.poses.tallies();
@@ -160,10 +160,10 @@ TEST(DdsPoses, DropsAndCountsWhatNoTickTakes) {
     }));
   }
   EXPECT_EQ(port.poses.tallies().at(0).lost, 10u);
-  EXPECT_EQ(take(port.poses, DdsPoses::kBatches).size(), DdsPoses::kBatches);
+  EXPECT_EQ(take(port.poses, PoseReader::kBatches).size(), PoseReader::kBatches);
 }
 
-TEST(DdsPoses, HearsNothingFromAnotherPartition) {
+TEST(PoseReader, HearsNothingFromAnotherPartition) {
   Port port;
   DdsOptions elsewhere = port.dds;
   elsewhere.partition += "-elsewhere";

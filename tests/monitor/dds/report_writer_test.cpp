@@ -44,10 +44,10 @@ struct Publisher {
   Scene scene = watched_cell();
   DdsOptions dds = test::own_dds();
   Participant participant{dds};
-  DdsPoses poses{scene, participant};
+  PoseReader poses{scene, participant};
   ReportQueue queue{scene, {.reports = 16}};
-  std::unique_ptr<DdsReports> reports =
-      std::make_unique<DdsReports>(scene, participant, queue, poses);
+  std::unique_ptr<ReportWriter> reports =
+      std::make_unique<ReportWriter>(scene, participant, queue, poses);
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 
@@ -66,7 +66,7 @@ struct Publisher {
   }
 };
 
-TEST(DdsReports, PublishesEveryTickAsItWas) {
+TEST(ReportWriter, PublishesEveryTickAsItWas) {
   Publisher publisher;
   Participant client(publisher.dds);
   Reader<clearance_msg_Distances> reader(client, publisher.scene.topics.distances,
@@ -91,7 +91,7 @@ TEST(DdsReports, PublishesEveryTickAsItWas) {
   }
 }
 
-TEST(DdsReports, TellsALateClientNamesAndZones) {
+TEST(ReportWriter, TellsALateClientNamesAndZones) {
   Publisher publisher;
   Participant client(publisher.dds);
   Reader<clearance_msg_ZoneState> early(client, publisher.scene.topics.zones, Delivery::kLatched);
@@ -115,7 +115,7 @@ TEST(DdsReports, TellsALateClientNamesAndZones) {
   EXPECT_TRUE(zone->active);
 }
 
-TEST(DdsReports, PublishesAZoneOnlyWhenItChanges) {
+TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
   Publisher publisher;
   Participant client(publisher.dds);
   Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
@@ -136,24 +136,24 @@ TEST(DdsReports, PublishesAZoneOnlyWhenItChanges) {
   expect_next(false, 6);
 }
 
-TEST(DdsReports, SaysHowTheDaemonIs) {
+TEST(ReportWriter, SaysHowTheDaemonIs) {
   Publisher publisher;
   Participant client(publisher.dds);
   Reader<clearance_msg_Health> reader(client, publisher.scene.topics.health, Delivery::kLatched);
-  Vitals vitals;
-  vitals.rejected.resize(2);
-  vitals.ages.resize(2);
-  vitals.cycle = 1000;
-  vitals.now_ns = test::kStart;
-  vitals.overruns = 3;
-  vitals.skipped_cycles = 4;
-  for (int i = 0; i < 999; ++i) vitals.tick.add(20'000);
-  vitals.tick.add(90'000);
-  vitals.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
-  vitals.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
-  vitals.rejected_total[static_cast<std::size_t>(Reject::kUnknownObject)] = 6;
-  vitals.ages[0] = {.age_ns = 7'000'000, .stale = false};
-  publisher.queue.vitals(vitals);
+  LoopStatistics statistics;
+  statistics.rejected.resize(2);
+  statistics.ages.resize(2);
+  statistics.cycle = 1000;
+  statistics.now_ns = test::kStart;
+  statistics.overruns = 3;
+  statistics.skipped_cycles = 4;
+  for (int i = 0; i < 999; ++i) statistics.tick.add(20'000);
+  statistics.tick.add(90'000);
+  statistics.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
+  statistics.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
+  statistics.rejected_total[static_cast<std::size_t>(Reject::kUnknownObject)] = 6;
+  statistics.ages[0] = {.age_ns = 7'000'000, .stale = false};
+  publisher.queue.statistics(statistics);
 
   const clearance_msg_Health* health = reader.next();
   ASSERT_NE(health, nullptr);

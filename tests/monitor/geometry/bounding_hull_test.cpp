@@ -22,7 +22,7 @@ Object object_of(std::vector<Part> parts) {
   return object;
 }
 
-TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets) {
+TEST(BoundingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets) {
   Scene scene;
   const Part floor{"floor", test::half_space(Vec3::UnitZ(), 0.0), {}};
   scene.objects = {object_of({box_at(1.0, Vec3::Zero()), box_at(1.0, Vec3::UnitX())}),
@@ -30,7 +30,7 @@ TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets)
                    object_of({box_at(1.0, Vec3::Zero()), floor}),
                    object_of({{"ball", test::made(hard::facet_ball(10)), {}}})};
   ASSERT_GT(scene.objects[4].parts[0].shape.facets.size(), kFineFacets);
-  const auto hulls = enclosing_hulls(scene);
+  const auto hulls = bounding_hulls(scene);
   ASSERT_EQ(hulls.size(), 5u);
   EXPECT_TRUE(hulls[0]);
   EXPECT_FALSE(hulls[1]);
@@ -40,7 +40,7 @@ TEST(EnclosingHull, IsMadeOfObjectsOfSeveralBoundedPartsOrOfOnePartOfManyFacets)
   EXPECT_LE(hulls[4]->facets.size(), kFineFacets / 2);
 }
 
-TEST(EnclosingHull, IsSharedByObjectsOfTheSamePartsOnly) {
+TEST(BoundingHull, IsSharedByObjectsOfTheSamePartsOnly) {
   Scene scene;
   const auto pair = [](double half, double apart) {
     return object_of({box_at(half, Vec3::Zero()), box_at(half, apart * Vec3::UnitX())});
@@ -51,7 +51,7 @@ TEST(EnclosingHull, IsSharedByObjectsOfTheSamePartsOnly) {
   Part turned = box_at(1.0, 3.0 * Vec3::UnitX());
   turned.object_from_part.orientation = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
   scene.objects.push_back(object_of({box_at(1.0, Vec3::Zero()), turned}));
-  const auto hulls = enclosing_hulls(scene);
+  const auto hulls = bounding_hulls(scene);
   EXPECT_EQ(hulls[0], hulls[3]);
   for (const std::size_t other : {1u, 2u, 4u}) EXPECT_NE(hulls[0], hulls[other]) << other;
 }

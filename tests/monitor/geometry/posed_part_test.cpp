@@ -7,23 +7,23 @@
 namespace clearance {
 namespace {
 
-PlacedPart placed(const Scene& scene, const Pose& world_from_object) {
-  PlacedPart part = parts_of(scene).front();
-  ObjectState object;
+PosedPart placed(const Scene& scene, const Pose& world_from_object) {
+  PosedPart part = parts_of(scene).front();
+  TrackedObject object;
   accept(scene.objects.front(), test::sample(0, world_from_object, 1), object);
   advance(scene.objects.front(), 1, object);
   place(object, part);
   return part;
 }
 
-TEST(PlacedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
+TEST(PosedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
   Random random(11);
   for (int i = 0; i < 5000; ++i) {
     const double scale = std::pow(10.0, random.uniform(-3.0, 4.0));
     const Scene scene =
         test::cell_of({test::moving("arm", {test::capsule(1.0, 0.1, random.pose(scale))})});
     const Pose pose = random.pose(scale);
-    const PlacedPart part = placed(scene, pose);
+    const PosedPart part = placed(scene, pose);
     for (const Vec3& anchor : part.shape->anchors) {
       const test::LongVec point = anchor.cast<long double>();
       const test::LongVec exact = test::exactly(pose, test::exactly(part.object_from_part, point));
@@ -37,26 +37,26 @@ TEST(PlacedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
   }
 }
 
-TEST(PlacedPart, WithoutAnOffsetHasThePoseOfItsObjectToTheBit) {
+TEST(PosedPart, WithoutAnOffsetHasThePoseOfItsObjectToTheBit) {
   const Scene scene = test::cell_of({test::moving("arm", {test::ball(0.1)})});
   const Pose pose = Random(12).pose(3.0);
-  const PlacedPart part = placed(scene, pose);
+  const PosedPart part = placed(scene, pose);
   EXPECT_EQ(part.world_from_part.position, pose.position);
   EXPECT_EQ(part.world_from_part.orientation.coeffs(), pose.orientation.coeffs());
   EXPECT_EQ(placing_error(part, part), 0.0);
 }
 
-TEST(PlacedPart, ShiftedPartsOfOneObjectStayParallelToTheBit) {
+TEST(PosedPart, ShiftedPartsOfOneObjectStayParallelToTheBit) {
   const Scene scene = test::cell_of({test::moving("arm", {test::ball(0.1, test::at(1, 2, 3))})});
   const Pose pose = Random(13).pose(3.0);
   EXPECT_EQ(placed(scene, pose).world_from_part.orientation.coeffs(), pose.orientation.coeffs());
 }
 
-TEST(PlacedPart, ATiltedFloorCostsABoundedPartOnlyRounding) {
+TEST(PosedPart, ATiltedFloorCostsABoundedPartOnlyRounding) {
   Random random(14);
   const Scene scene = test::cell_of({test::moving("floor", {test::floor(random.pose(1.0))})});
   const Scene other = test::cell_of({test::moving("ball", {test::ball(0.1)})});
-  const PlacedPart tilted = placed(scene, random.pose(1.0));
+  const PosedPart tilted = placed(scene, random.pose(1.0));
   EXPECT_GT(tilted.turn_error, 0.0);
   EXPECT_LT(placing_error(tilted, placed(other, random.pose(5.0))), 1e-12);
 }

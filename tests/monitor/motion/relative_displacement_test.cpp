@@ -15,9 +15,9 @@ using test::kStart;
 using test::kTick;
 
 // As a tick leaves it that took it from one pose to another.
-ObjectState gone(const Pose& from, const Pose& to, double reach) {
+TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   const Object object = test::moving("gone", {test::ball(0.1)});
-  ObjectState state;
+  TrackedObject state;
   for (const std::int64_t now : {kStart, kStart + kTick}) {
     accept(object, test::sample(0, now == kStart ? from : to, now), state);
     advance(object, now, state);
@@ -65,7 +65,7 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const Pose a_to = after(a, shift, turn);
     const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
                             turn + differ * scale * random.in_box(0.5));
-    const ObjectState of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
+    const TrackedObject of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
     const double told = relative_travel(of_a, of_b);
     ASSERT_EQ(told, relative_travel(of_a, of_b));
     const bool b_goes = reach_b <= reach_a;
@@ -87,7 +87,7 @@ TEST(RelativeTravel, WhatRidesOnTheSameLinkHardlyComesNearer) {
   const auto riding = [&](const Pose& on_link) {
     return gone(compose(link, on_link), compose(turned, on_link), 0.1);
   };
-  const ObjectState a = riding(test::at(1, 0, 0)), b = riding(test::at(1.2, 0.1, 0.3));
+  const TrackedObject a = riding(test::at(1, 0, 0)), b = riding(test::at(1.2, 0.1, 0.3));
   EXPECT_GT(a.travel + b.travel, 1e-3);
   EXPECT_LT(relative_travel(a, b), 1e-6);
   EXPECT_LT(relative_travel(b, a), 1e-6);
@@ -96,11 +96,11 @@ TEST(RelativeTravel, WhatRidesOnTheSameLinkHardlyComesNearer) {
 TEST(RelativeTravel, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
-  const ObjectState floor = gone({}, turned, kInfinity);
-  const ObjectState ball = gone(test::at(0, 1, 1), test::at(0, 1, 1.001), 0.1);
+  const TrackedObject floor = gone({}, turned, kInfinity);
+  const TrackedObject ball = gone(test::at(0, 1, 1), test::at(0, 1, 1.001), 0.1);
   EXPECT_LT(relative_travel(floor, ball), 3e-3);
   EXPECT_LT(relative_travel(ball, floor), 3e-3);
-  const ObjectState other = gone({}, turned, kInfinity);
+  const TrackedObject other = gone({}, turned, kInfinity);
   EXPECT_EQ(relative_travel(floor, other), kInfinity);
 }
 
@@ -124,7 +124,7 @@ TEST(RelativeTravel, IsWhatAPublishedPairIsReportedBy) {
         test::sample(1, compose(arm, test::at(1.12, 0, 0)), kStart + t * kTick)};
     const PairReport& pair = monitor.tick(samples, kStart + t * kTick).pairs[0];
     ASSERT_NEAR(pair.lower, 0.02, 1e-12);
-    ASSERT_NEAR(pair.lower_since, 0.02, 1e-6) << "tick " << t << "; both have gone 2 mm";
+    ASSERT_NEAR(pair.swept_lower, 0.02, 1e-6) << "tick " << t << "; both have gone 2 mm";
   }
 }
 

@@ -84,11 +84,11 @@ TEST(BetweenEnds, NoInstantOfTheWayIsNearerThanReported) {
       const PairReport& report = pair.tick(flights[0].pose, flights[1].pose);
       for (Flight& flight : flights) flight.go();
       for (int k = 0; k <= 20 && t > 0; ++k) {
-        ASSERT_LE(report.lower_since, pair.truth(0.05 * k) + 1e-12)
+        ASSERT_LE(report.swept_lower, pair.truth(0.05 * k) + 1e-12)
             << "case " << i << " tick " << t;
       }
       ways += t > 0 && report.lower > 0.0;
-      close += t > 0 && report.lower_since > std::min(last, report.lower) - 0.1 * scale;
+      close += t > 0 && report.swept_lower > std::min(last, report.lower) - 0.1 * scale;
       last = report.lower;
     }
   }
@@ -105,7 +105,7 @@ TEST(BetweenEnds, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) 
     a.orientation = b.orientation = Eigen::AngleAxisd(0.002 * t, Vec3::UnitZ());
     const PairReport& report = pair.tick(a, b);
     if (t > 0) {
-      ASSERT_GT(report.lower_since, std::min(last, report.lower) - 1e-6) << "tick " << t;
+      ASSERT_GT(report.swept_lower, std::min(last, report.lower) - 1e-6) << "tick " << t;
     }
     last = report.lower;
   }

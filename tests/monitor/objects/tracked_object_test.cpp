@@ -19,7 +19,7 @@ constexpr std::int64_t kFutureLimit = 5 * kTick;
 PoseSample good() { return test::sample(0, test::at(1, 2, 3), kStart); }
 
 std::optional<Reject> judged(const PoseSample& sample) {
-  return refusal(sample, ObjectState{}, kStart, kFutureLimit);
+  return refusal(sample, TrackedObject{}, kStart, kFutureLimit);
 }
 
 Object late_after(std::int64_t limit_ns, double max_speed) {
@@ -31,9 +31,9 @@ Object late_after(std::int64_t limit_ns, double max_speed) {
 
 const Object kInTime = late_after(20 * kTick, kInfinity);
 
-TEST(ObjectState, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
+TEST(TrackedObject, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
 
-TEST(ObjectState, RefusesEveryNonFiniteFigure) {
+TEST(TrackedObject, RefusesEveryNonFiniteFigure) {
   for (const double bad : {kNan, kInfinity, -kInfinity, 2e9}) {
     for (int i = 0; i < 3; ++i) {
       PoseSample sample = good();
@@ -57,7 +57,7 @@ TEST(ObjectState, RefusesEveryNonFiniteFigure) {
   }
 }
 
-TEST(ObjectState, RefusesAQuaternionFarFromUnitLength) {
+TEST(TrackedObject, RefusesAQuaternionFarFromUnitLength) {
   for (const double norm : {0.0, 0.5, 0.998, 1.002, 2.0, 1e300}) {
     PoseSample sample = good();
     sample.world_from_object.orientation.coeffs() *= norm;
@@ -70,18 +70,18 @@ TEST(ObjectState, RefusesAQuaternionFarFromUnitLength) {
   }
 }
 
-TEST(ObjectState, RefusesAStampFartherAheadThanTheLimit) {
+TEST(TrackedObject, RefusesAStampFartherAheadThanTheLimit) {
   PoseSample sample = good();
   sample.stamp_ns = kStart + kFutureLimit;
   EXPECT_EQ(judged(sample), std::nullopt);
   sample.stamp_ns += 1;
   EXPECT_EQ(judged(sample), Reject::kFuture);
   sample.stamp_ns = kLatest;
-  EXPECT_EQ(refusal(sample, ObjectState{}, kEarliest, kFutureLimit), Reject::kFuture);
+  EXPECT_EQ(refusal(sample, TrackedObject{}, kEarliest, kFutureLimit), Reject::kFuture);
 }
 
-TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
-  ObjectState state;
+TEST(TrackedObject, RefusesTimeGoingBackwardsButNotStandingStill) {
+  TrackedObject state;
   accept(kInTime, good(), state);
   PoseSample sample = good();
   EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), std::nullopt);
@@ -89,8 +89,8 @@ TEST(ObjectState, RefusesTimeGoingBackwardsButNotStandingStill) {
   EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), Reject::kBackwards);
 }
 
-TEST(ObjectState, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
-  ObjectState state;
+TEST(TrackedObject, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
+  TrackedObject state;
   accept(kInTime, good(), state);
   EXPECT_FALSE(state.velocity_known());
 
@@ -114,8 +114,8 @@ TEST(ObjectState, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   EXPECT_EQ(state.twist.linear, Vec3(7, 8, 9));
 }
 
-TEST(ObjectState, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
-  ObjectState state;
+TEST(TrackedObject, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
+  TrackedObject state;
   PoseSample next = good();
   const auto take = [&](std::int64_t after_ns, bool has_twist) {
     next.stamp_ns += after_ns;
@@ -136,8 +136,8 @@ TEST(ObjectState, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
 }
 
 // 30 ms apart, where poses of 20 ms are late: known for the time in which they are not.
-TEST(ObjectState, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
-  ObjectState state;
+TEST(TrackedObject, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
+  TrackedObject state;
   PoseSample next = good();
   accept(kInTime, next, state);
   for (int pose = 1; pose < 5; ++pose) {
@@ -152,16 +152,16 @@ TEST(ObjectState, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNot
   }
 }
 
-TEST(ObjectState, FixedObjectsAreKnownToBeAtRest) {
-  const ObjectState state = initial_state(test::fixed("wall", {}, test::at(1, 2, 3)));
+TEST(TrackedObject, FixedObjectsAreKnownToBeAtRest) {
+  const TrackedObject state = initial_state(test::fixed("wall", {}, test::at(1, 2, 3)));
   EXPECT_TRUE(state.velocity_known());
   EXPECT_EQ(state.twist.linear, Vec3::Zero());
   EXPECT_EQ(state.twist.angular, Vec3::Zero());
 }
 
-TEST(ObjectState, MotionIsTheNetOneOfATick) {
+TEST(TrackedObject, MotionIsTheNetOneOfATick) {
   const Object object = late_after(kTick, kInfinity);
-  ObjectState state;
+  TrackedObject state;
   accept(kInTime, good(), state);
   advance(object, kStart, state);
   EXPECT_EQ(state.motion.shift, 0.0);
@@ -178,9 +178,9 @@ TEST(ObjectState, MotionIsTheNetOneOfATick) {
   EXPECT_EQ(state.motion.shift, 0.0);
 }
 
-TEST(ObjectState, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
+TEST(TrackedObject, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   const Object stated = late_after(20 * kTick, 2.0);
-  ObjectState state;
+  TrackedObject state;
   accept(kInTime, good(), state);
   advance(stated, kStart + 20 * kTick, state);
   EXPECT_FALSE(state.late);
@@ -196,10 +196,10 @@ TEST(ObjectState, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   EXPECT_FALSE(state.known());
 }
 
-TEST(ObjectState, AgesOfExtremeStampsDoNotOverflow) {
+TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   PoseSample sample = good();
   sample.stamp_ns = kEarliest;
-  ObjectState state;
+  TrackedObject state;
   accept(kInTime, sample, state);
   advance(late_after(0, 1.0), kLatest, state);
   EXPECT_EQ(state.age_ns, kLatest);

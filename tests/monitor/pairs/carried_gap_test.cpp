@@ -45,7 +45,7 @@ class AskedOnce {
   }
 
   Scene scene_;
-  std::vector<PlacedPart> parts_;
+  std::vector<PosedPart> parts_;
   std::array<Pose, 2> poses_;
   std::array<double, 2> turned_{};
   Vec3 normal_;

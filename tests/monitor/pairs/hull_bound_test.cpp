@@ -61,21 +61,21 @@ struct TwoObjects {
   }
 };
 
-TEST(HullQuery, IsNeverAboveTheDistanceOfTheParts) {
+TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
   Random random(201);
   int apart = 0;
   for (int round = 0; round < 60; ++round) {
     TwoObjects two(random);
-    std::vector<PlacedPart> parts = parts_of(two.scene);
+    std::vector<PosedPart> parts = parts_of(two.scene);
     PairTable table(two.scene, parts);
-    HullQuery hulls(two.scene, parts);
+    HullBound hulls(two.scene, parts);
     ASSERT_TRUE(hulls.possible(table.entries[0]));
-    std::vector<ObjectState> objects(2);
-    for (ObjectState& object : objects) {
+    std::vector<TrackedObject> objects(2);
+    for (TrackedObject& object : objects) {
       object.seen = object.moved = true;
       object.pose.position = random.in_box(4.0);
     }
-    for (PlacedPart& part : parts) place(objects[part.object], part);
+    for (PosedPart& part : parts) place(objects[part.object], part);
     Evaluation evaluation{objects, parts, 1, table, 10};
     const double lower = hulls.lower(0, evaluation);
     EXPECT_EQ(evaluation.queries_left, 9u);
@@ -86,7 +86,7 @@ TEST(HullQuery, IsNeverAboveTheDistanceOfTheParts) {
   EXPECT_GT(apart, 30);
 }
 
-TEST(HullQuery, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
+TEST(HullBound, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
   scene.objects.resize(5);
   const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));
@@ -97,9 +97,9 @@ TEST(HullQuery, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
   scene.objects[3].parts = {{"floor", floor, {}}, {"a", cube, {}}};
   scene.objects[4].parts = {{"ball", test::made(hard::facet_ball(10)), {}}};
   scene.pairs = {{0, 1, false}, {0, 2, false}, {0, 3, false}, {1, 2, false}, {1, 4, false}};
-  const std::vector<PlacedPart> parts = parts_of(scene);
+  const std::vector<PosedPart> parts = parts_of(scene);
   const PairTable table(scene, parts);
-  const HullQuery hulls(scene, parts);
+  const HullBound hulls(scene, parts);
   EXPECT_TRUE(hulls.possible(table.entries[0]));
   EXPECT_TRUE(hulls.possible(table.entries[1])) << "a floor alone is its own model";
   EXPECT_FALSE(hulls.possible(table.entries[2])) << "a floor and a cube have no hull";
@@ -108,7 +108,7 @@ TEST(HullQuery, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
 }
 
 // Time runs fast, so that pairs wake and fall asleep all the time.
-TEST(HullQuery, HidesNoPairThatMattersFromTheTick) {
+TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
   const auto cell = parse_cell(warehouse_cell({.objects = 120, .seed = 3}), "warehouse.yaml");
   Scene scene = std::get<Scene>(cell);
   scene.budget = 60;

@@ -21,7 +21,7 @@ inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
   append(bytes, pair.refresh_age_cycles);
   append(bytes, pair.part_a);
   append(bytes, pair.part_b);
-  for (const double figure : {pair.distance, pair.lower, pair.upper, pair.lower_since,
+  for (const double figure : {pair.distance, pair.lower, pair.upper, pair.swept_lower,
                               pair.closing_speed, pair.time_to_contact}) {
     append(bytes, figure);
   }
@@ -37,14 +37,14 @@ inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
   append(bytes, report.oldest_evaluation_cycles);
   append(bytes, report.minimum_proved);
   append(bytes, report.lower_all);
-  append(bytes, report.lower_all_since);
+  append(bytes, report.swept_lower_all);
   append(bytes, report.minimum);
   for (const PairReport& pair : report.pairs) append(bytes, pair);
   for (const ZoneReport& zone : report.zones) {
     append(bytes, zone.active);
     append(bytes, zone.proved);
     append(bytes, zone.clearance);
-    append(bytes, zone.clearance_since);
+    append(bytes, zone.swept_clearance);
     append(bytes, zone.pair);
   }
   append(bytes, report.rejected);

@@ -12,7 +12,7 @@ namespace {
 
 // The oracle takes the text by its word: pairs in a ring, whose turn comes only when all of its
 // queries are left, and nobody may wait longer than the ticks that were promised.
-TEST(RefreshPace, LetsEveryPairHaveItsTurnInTimeFromNoMoreThanIsKept) {
+TEST(RefreshBudget, LetsEveryPairHaveItsTurnInTimeFromNoMoreThanIsKept) {
   Random random(31);
   for (int run = 0; run < 200; ++run) {
     const auto ticks = static_cast<std::uint64_t>(random.integer(1, 60));
@@ -22,7 +22,7 @@ TEST(RefreshPace, LetsEveryPairHaveItsTurnInTimeFromNoMoreThanIsKept) {
       of_one = static_cast<std::uint64_t>(random.integer(0, 3) == 0 ? random.integer(1, 40) : 1);
       pairs.add(of_one);
     }
-    RefreshPace pace(pairs, ticks, true);
+    RefreshBudget pace(pairs, ticks, true);
     std::vector<std::uint64_t> last(rows.size(), 0);
     std::size_t next = 0;
     for (std::uint64_t t = 1; t < 5 * ticks; ++t) {
@@ -44,8 +44,8 @@ TEST(RefreshPace, LetsEveryPairHaveItsTurnInTimeFromNoMoreThanIsKept) {
   }
 }
 
-TEST(RefreshPace, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
-  RefreshPace pace({.rows = 100, .most = 10}, 10, false);
+TEST(RefreshBudget, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
+  RefreshBudget pace({.rows = 100, .most = 10}, 10, false);
   for (int t = 0; t < 100; ++t) {
     pace.begin_tick();
     ASSERT_EQ(pace.kept(), 0u);
@@ -54,8 +54,8 @@ TEST(RefreshPace, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
 }
 
 // One of 25 pairs is due every 400 ticks: what is urgent hardly notices.
-TEST(RefreshPace, KeepsAQueryOnlyWhenOneIsDue) {
-  RefreshPace pace({.rows = 24, .most = 1}, 10'000, true);
+TEST(RefreshBudget, KeepsAQueryOnlyWhenOneIsDue) {
+  RefreshBudget pace({.rows = 24, .most = 1}, 10'000, true);
   std::vector<std::uint32_t> kept;
   for (int t = 0; t < 10'000; ++t) {
     pace.begin_tick();

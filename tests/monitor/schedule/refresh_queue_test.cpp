@@ -13,7 +13,7 @@ constexpr std::uint32_t kNobody = RefreshQueue::kNobody;
 class RefreshQueueTest : public testing::Test {
  protected:
   RefreshQueueTest() {
-    for (ObjectState& object : objects) object.seen = true;
+    for (TrackedObject& object : objects) object.seen = true;
   }
 
   static Scene four_balls() {
@@ -37,10 +37,10 @@ class RefreshQueueTest : public testing::Test {
   }
 
   Scene scene = four_balls();
-  std::vector<PlacedPart> parts = parts_of(scene);
+  std::vector<PosedPart> parts = parts_of(scene);
   PairTable table{scene, parts};
   BroadPhase broad_phase{scene, parts, {std::vector<double>(6), std::vector<double>(4)}, {}, 100};
-  std::vector<ObjectState> objects = std::vector<ObjectState>(4);
+  std::vector<TrackedObject> objects = std::vector<TrackedObject>(4);
   RefreshQueue queue{4, 6};
 };
 

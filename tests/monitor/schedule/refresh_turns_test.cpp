@@ -39,7 +39,7 @@ const Report& tick_with_first_at(const Pose& pose, int t, Monitor& monitor) {
   return monitor.tick(std::span(&sample, 1), sample.stamp_ns);
 }
 
-TEST(Triage, TheRestIsEvaluatedTheStalestFirst) {
+TEST(Scheduler, TheRestIsEvaluatedTheStalestFirst) {
   Scene scene = side_by_side(20);
   scene.budget = 5;
   Monitor monitor(scene);
@@ -62,7 +62,7 @@ TEST(Triage, TheRestIsEvaluatedTheStalestFirst) {
 }
 
 // Bounding balls prove nothing here, so that only an evaluation refreshes a pair.
-TEST(Triage, EveryPublishedPairTellsHowLongAgoItWasRefreshedAndTheReportTheLongest) {
+TEST(Scheduler, EveryPublishedPairTellsHowLongAgoItWasRefreshedAndTheReportTheLongest) {
   Scene scene = side_by_side(20);
   for (ObjectPair& pair : scene.pairs) pair.publish = true;
   scene.budget = 3;
@@ -81,7 +81,7 @@ TEST(Triage, EveryPublishedPairTellsHowLongAgoItWasRefreshedAndTheReportTheLonge
   EXPECT_GE(longest, 6u) << "20 pairs, three a tick";
 }
 
-TEST(Triage, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
+TEST(Scheduler, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
   Scene scene = far_apart(200);
   Monitor monitor(scene);
   for (int t = 0; t < 100; ++t) {
@@ -93,7 +93,7 @@ TEST(Triage, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
 }
 
 // Nobody states a speed, so that an object that falls silent is unknown.
-TEST(Triage, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
+TEST(Scheduler, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
   std::vector<Object> objects;
   for (int i = 0; i < 40; ++i) {
     objects.push_back(test::moving("pole", {test::capsule(10.0, 0.01)}));
@@ -132,7 +132,7 @@ TEST(Triage, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
   EXPECT_TRUE(lost);
 }
 
-TEST(Triage, FirstBinsAreEvaluatedEveryTick) {
+TEST(Scheduler, FirstBinsAreEvaluatedEveryTick) {
   Scene scene = far_apart(20);
   scene.objects.push_back(test::fixed("near", {test::ball(0.1)}, test::at(11.0, 0.41, 0)));
   scene.pairs.push_back({0, 21, false});
@@ -149,7 +149,7 @@ TEST(Triage, FirstBinsAreEvaluatedEveryTick) {
   }
 }
 
-TEST(Triage, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
+TEST(Scheduler, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
   Scene scene = far_apart(20);
   scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within it
   scene.budget = 4;
@@ -161,7 +161,7 @@ TEST(Triage, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
   }
 }
 
-TEST(Triage, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
+TEST(Scheduler, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
   Scene scene = far_apart(20);
   scene.zones = {test::zone_over(scene, 1000.0, 1000.0)};
   scene.budget = 4;
@@ -169,7 +169,7 @@ TEST(Triage, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
   EXPECT_FALSE(tick_with_first_at(test::at(0, 0, 0), 0, monitor).zones[0].proved);
 }
 
-TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
+TEST(Scheduler, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
   Scene scene = far_apart(20);
   for (std::size_t p = 0; p < 15; ++p) scene.pairs[p].publish = true;
   scene.budget = 4;
@@ -183,7 +183,7 @@ TEST(Triage, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
 }
 
 // A hundred published pairs are due to the last in every tick, and what is awake takes the rest.
-TEST(Triage, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
+TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
   Scene scene = side_by_side(150);
   for (std::size_t p = 0; p < 100; ++p) scene.pairs[p].publish = true;
   scene.refresh_s = 0.05;
@@ -199,7 +199,7 @@ TEST(Triage, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
   }
 }
 
-TEST(Triage, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
+TEST(Scheduler, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
   Scene scene = far_apart(20);
   for (std::size_t p = 10; p < 14; ++p) scene.pairs[p].publish = true;
   scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within it
@@ -213,7 +213,7 @@ TEST(Triage, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCove
   }
 }
 
-TEST(Triage, PublishedPairsComeBeforeTheRest) {
+TEST(Scheduler, PublishedPairsComeBeforeTheRest) {
   Scene scene = far_apart(20);
   scene.pairs[17].publish = true;
   scene.budget = 3;

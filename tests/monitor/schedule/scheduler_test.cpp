@@ -94,7 +94,7 @@ class MovingCell {
 using StyleAndBudget = std::tuple<Style, std::uint32_t>;
 class EveryBudget : public testing::TestWithParam<StyleAndBudget> {};
 
-INSTANTIATE_TEST_SUITE_P(Triage, EveryBudget,
+INSTANTIATE_TEST_SUITE_P(Scheduler, EveryBudget,
                          testing::Combine(testing::Values(Style::kCrawl, Style::kSpin,
                                                           Style::kJitter, Style::kTeleport),
                                           testing::Values(0u, 1u, 7u, 40u, 1000u)));
@@ -128,7 +128,7 @@ TEST_P(EveryBudget, EveryBoundHoldsInEveryTick) {
   }
 }
 
-TEST(Triage, EvaluatesWhatIsPublishedInEveryTickThatTheBudgetCovers) {
+TEST(Scheduler, EvaluatesWhatIsPublishedInEveryTickThatTheBudgetCovers) {
   Random random(41);
   Scene scene = thin_bodies(random);
   for (ObjectPair& pair : scene.pairs) pair.publish = true;
@@ -142,7 +142,7 @@ TEST(Triage, EvaluatesWhatIsPublishedInEveryTickThatTheBudgetCovers) {
   }
 }
 
-TEST(Triage, EvaluatesAllWhenAskedTo) {
+TEST(Scheduler, EvaluatesAllWhenAskedTo) {
   Random random(41);
   Scene scene = thin_bodies(random);
   scene.evaluate_all = true;
@@ -151,7 +151,7 @@ TEST(Triage, EvaluatesAllWhenAskedTo) {
   for (int t = 0; t < 20; ++t) EXPECT_EQ(motion.tick(monitor).evaluated, scene.pairs.size());
 }
 
-TEST(Triage, LeavesAloneWhatNobodyAsksForAndCannotBeTheMinimum) {
+TEST(Scheduler, LeavesAloneWhatNobodyAsksForAndCannotBeTheMinimum) {
   Random random(41);
   Scene scene = thin_bodies(random);
   scene.refresh_s = 1e6;
@@ -162,7 +162,7 @@ TEST(Triage, LeavesAloneWhatNobodyAsksForAndCannotBeTheMinimum) {
   EXPECT_LT(queries, scene.pairs.size() / 2) << "the budget would cover all";
 }
 
-TEST(Triage, ProvesTheMinimumOnAFractionOfTheBudget) {
+TEST(Scheduler, ProvesTheMinimumOnAFractionOfTheBudget) {
   Random random(43);
   Scene scene = thin_bodies(random);
   scene.budget = 12;  // of 70 part pairs
@@ -174,7 +174,7 @@ TEST(Triage, ProvesTheMinimumOnAFractionOfTheBudget) {
 }
 
 // The boxes of these two corners are nearer to each other than the corners.
-TEST(Triage, BoundsHoldBeforeAnythingIsEvaluated) {
+TEST(Scheduler, BoundsHoldBeforeAnythingIsEvaluated) {
   const auto corner = [](double size) {
     const std::array<Vec3, 4> points{Vec3::Zero(), size * Vec3::UnitX(), size * Vec3::UnitY(),
                                      size * Vec3::UnitZ()};
@@ -191,7 +191,7 @@ TEST(Triage, BoundsHoldBeforeAnythingIsEvaluated) {
   EXPECT_GT(monitor.pair(0).lower, 0.0);
 }
 
-TEST(Triage, SaysWhenTheBudgetEndsBeforeTheMinimumIsProved) {
+TEST(Scheduler, SaysWhenTheBudgetEndsBeforeTheMinimumIsProved) {
   Random random(45);
   Scene scene = thin_bodies(random);
   scene.budget = 1;
@@ -200,7 +200,7 @@ TEST(Triage, SaysWhenTheBudgetEndsBeforeTheMinimumIsProved) {
   EXPECT_FALSE(motion.tick(monitor).minimum_proved);
 }
 
-TEST(Triage, PartsThatCannotBeTheClosestAreNotEvaluatedAndThePairIsDecidedAllTheSame) {
+TEST(Scheduler, PartsThatCannotBeTheClosestAreNotEvaluatedAndThePairIsDecidedAllTheSame) {
   std::vector<Part> chain;
   for (int i = 0; i < 5; ++i) chain.push_back(test::ball(0.1, test::at(0, i, 0)));
   const Scene scene = test::cell_of(

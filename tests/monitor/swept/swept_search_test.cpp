@@ -30,7 +30,7 @@ class TwoOnTheirWay {
         parts_(parts_of(scene_)),
         table_(scene_, parts_) {
     for (std::uint32_t i = 0; i < 2; ++i) {
-      ObjectState& state = objects_.emplace_back();
+      TrackedObject& state = objects_.emplace_back();
       for (const Pose& pose : {motion.from[i], motion.to[i]}) {
         const std::int64_t now = kStart + (&pose == &motion.from[i] ? 0 : kTick);
         accept(scene_.objects[i], test::sample(i, pose, now), state);
@@ -41,9 +41,9 @@ class TwoOnTheirWay {
     }
   }
 
-  PassageBounds decide(double level, std::uint32_t queries = 1000) {
+  SweptBounds decide(double level, std::uint32_t queries = 1000) {
     Evaluation evaluation{objects_, parts_, 2, table_, queries};
-    const PassageBounds bounds = Passage(0, evaluation).decide(level, evaluation);
+    const SweptBounds bounds = SweptSearch(0, evaluation).decide(level, evaluation);
     queries_ = queries - evaluation.queries_left;
     return bounds;
   }
@@ -63,9 +63,9 @@ class TwoOnTheirWay {
  private:
   Scene scene_;
   Motion2 motion_;
-  std::vector<PlacedPart> parts_;
+  std::vector<PosedPart> parts_;
   PairTable table_;
-  std::vector<ObjectState> objects_;
+  std::vector<TrackedObject> objects_;
   std::uint32_t queries_ = 0;
 };
 
@@ -96,13 +96,13 @@ Motion2 any_motion(Random& random) {
   return motion;
 }
 
-TEST(Passage, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther) {
+TEST(SweptSearch, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther) {
   Random random(91);
   int outside = 0, inside = 0;
   for (int i = 0; i < 1500; ++i) {
     TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));
     const double level = random.uniform(-0.05, 0.6);
-    const PassageBounds bounds = pair.decide(level);
+    const SweptBounds bounds = pair.decide(level);
     double least = kInfinity;
     for (int k = 0; k <= 50; ++k) {
       const DistanceResult truth = pair.truth(0.02 * k);
@@ -118,18 +118,18 @@ TEST(Passage, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther) {
   EXPECT_GT(outside + inside, 1490) << "the rest is as near to the level as no query tells";
 }
 
-TEST(Passage, BothEndsTellAllOfAStraightWay) {
+TEST(SweptSearch, BothEndsTellAllOfAStraightWay) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(-1.0, 0, 0.2)};
   motion.to = {test::at(0, 0, 0), test::at(1.0, 0, 0.2)};
   TwoOnTheirWay pair(test::block({0.4, 0.4, 0.1}), test::block({0.05, 0.05, 0.05}), motion);
-  const PassageBounds bounds = pair.decide(0.04);
+  const SweptBounds bounds = pair.decide(0.04);
   EXPECT_GE(bounds.lower, 0.04) << "it passes 5 cm above";
   EXPECT_LE(bounds.lower, 0.05);
   EXPECT_LE(pair.queries(), 6u);
 }
 
-TEST(Passage, ApproachingIsNearestAtTheEndAndTellsSoByTwoQueries) {
+TEST(SweptSearch, ApproachingIsNearestAtTheEndAndTellsSoByTwoQueries) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(0.1, 0.03, 1.2)};
   motion.to = {test::at(0, 0, 0), test::at(0, 0, 0.3)};
@@ -138,7 +138,7 @@ TEST(Passage, ApproachingIsNearestAtTheEndAndTellsSoByTwoQueries) {
   EXPECT_EQ(pair.queries(), 2u);
 }
 
-TEST(Passage, AThrownNeedleIsFoundInThePlateThatItFliesThrough) {
+TEST(SweptSearch, AThrownNeedleIsFoundInThePlateThatItFliesThrough) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(0.01, 0.02, -0.5)};
   motion.to = {test::at(0, 0, 0), test::at(0.0, 0.0, 0.7)};
@@ -146,12 +146,12 @@ TEST(Passage, AThrownNeedleIsFoundInThePlateThatItFliesThrough) {
   TwoOnTheirWay pair(test::block({1.0, 1.0, 0.001}), test::block({0.002, 0.002, 0.02}), motion);
   EXPECT_GT(pair.truth(0.0).lower, 0.4);
   EXPECT_GT(pair.truth(1.0).lower, 0.6);
-  const PassageBounds bounds = pair.decide(0.0);
+  const SweptBounds bounds = pair.decide(0.0);
   EXPECT_LT(bounds.upper, 0.0) << "was in the plate";
   EXPECT_LT(bounds.lower, 0.0);
 }
 
-TEST(Passage, BodiesThatMoveTogetherDoNotMove) {
+TEST(SweptSearch, BodiesThatMoveTogetherDoNotMove) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(0, 0, 0.301)};
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.05, Vec3::UnitX()));
@@ -164,18 +164,18 @@ TEST(Passage, BodiesThatMoveTogetherDoNotMove) {
   EXPECT_LE(pair.queries(), 4u);
 }
 
-TEST(Passage, AFloorThatTurnsIsBoundedAsSeenFromTheFloor) {
+TEST(SweptSearch, AFloorThatTurnsIsBoundedAsSeenFromTheFloor) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(0.3, 0, 0.5)};
   motion.to = {test::at(0, 0, 0), test::at(0.3, 0, 0.5)};
   motion.to[0].orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
   TwoOnTheirWay pair(test::floor(), test::ball(0.1), motion);
-  const PassageBounds bounds = pair.decide(0.3);
+  const SweptBounds bounds = pair.decide(0.3);
   EXPECT_GE(bounds.lower, 0.3);
   EXPECT_LE(bounds.lower, 0.4);
 }
 
-TEST(Passage, WithoutQueriesNothingIsTold) {
+TEST(SweptSearch, WithoutQueriesNothingIsTold) {
   Random random(92);
   TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));
   EXPECT_EQ(pair.decide(0.1, 1).lower, -kInfinity);
@@ -211,12 +211,12 @@ TEST_F(FlyBy, AZoneIsEnteredByWhatFliesThroughBetweenTwoTicks) {
     const Report& report = tick(monitor, test::at(0.1, 0.15, -0.6));
     EXPECT_TRUE(report.zones[0].active) << budget;
     EXPECT_EQ(report.zones[0].pair, 0u);
-    EXPECT_LT(report.zones[0].clearance_since, 0.05);
-    EXPECT_LE(report.lower_all_since, 0.05);
+    EXPECT_LT(report.zones[0].swept_clearance, 0.05);
+    EXPECT_LE(report.swept_lower_all, 0.05);
     if (budget < 100) continue;
     EXPECT_GT(report.zones[0].clearance, 0.5) << "gone again";
     EXPECT_TRUE(report.zones[0].proved);
-    EXPECT_LT(report.pairs[0].lower_since, 0.05);
+    EXPECT_LT(report.pairs[0].swept_lower, 0.05);
     EXPECT_FALSE(tick(monitor, test::at(0.1, 0.15, -0.6)).zones[0].active);
   }
 }
@@ -227,20 +227,20 @@ TEST_F(FlyBy, AZoneIsNotEnteredByWhatFliesPastOutside) {
   const Report& report = tick(monitor, test::at(1.0, 0.3, 0.0));  // 0.1 m from the corner
   EXPECT_FALSE(report.zones[0].active);
   EXPECT_TRUE(report.zones[0].proved);
-  EXPECT_GE(report.zones[0].clearance_since, 0.05);
-  EXPECT_GE(report.pairs[0].lower_since, 0.05);
+  EXPECT_GE(report.zones[0].swept_clearance, 0.05);
+  EXPECT_GE(report.pairs[0].swept_lower, 0.05);
 }
 
 TEST_F(FlyBy, FirstPosesAndThoseAfterAGapHaveNoWayBehindThem) {
   Monitor monitor(scene_);
   const Report& first = tick(monitor, test::at(0, 0, 1.0));
   EXPECT_FALSE(first.zones[0].active);
-  EXPECT_EQ(first.pairs[0].lower_since, first.pairs[0].lower);
+  EXPECT_EQ(first.pairs[0].swept_lower, first.pairs[0].lower);
   now_ += 100 * kTick;
   EXPECT_TRUE(monitor.tick({}, now_).zones[0].active) << "late, and nobody said how fast it is";
   const Report& back = tick(monitor, test::at(0, 0, -1.0));
   EXPECT_FALSE(back.zones[0].active);
-  EXPECT_EQ(back.pairs[0].lower_since, back.pairs[0].lower);
+  EXPECT_EQ(back.pairs[0].swept_lower, back.pairs[0].lower);
 }
 
 TEST_F(FlyBy, ALeapOfTenKilometresEntersEveryZoneOfTheObject) {
@@ -249,8 +249,8 @@ TEST_F(FlyBy, ALeapOfTenKilometresEntersEveryZoneOfTheObject) {
   const Report& report = tick(monitor, test::at(2e4, 0, 0));
   EXPECT_TRUE(report.zones[0].active);
   EXPECT_FALSE(report.zones[0].proved);
-  EXPECT_EQ(report.pairs[0].lower_since, -kInfinity);
-  EXPECT_EQ(report.lower_all_since, -kInfinity);
+  EXPECT_EQ(report.pairs[0].swept_lower, -kInfinity);
+  EXPECT_EQ(report.swept_lower_all, -kInfinity);
   EXPECT_GT(report.lower_all, 1.0);
   EXPECT_FALSE(tick(monitor, test::at(2e4, 0, 0)).zones[0].active);
 }

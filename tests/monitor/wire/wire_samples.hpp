@@ -42,7 +42,7 @@ inline void any_pair(std::mt19937_64& random, clearance_msg_PairDistance& pair) 
   pair.distance = any_double(random);
   pair.lower = any_double(random);
   pair.upper = any_double(random);
-  pair.lower_since = any_double(random);
+  pair.swept_lower = any_double(random);
   pair.witness_a = any_vector(random);
   pair.witness_b = any_vector(random);
   pair.normal = any_vector(random);
@@ -77,7 +77,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Distances>& repor
   report->publish_ns = static_cast<std::int64_t>(random());
   report->minimum_known = random() % 2 != 0;
   report->lower_all = any_double(random);
-  report->lower_all_since = any_double(random);
+  report->swept_lower_all = any_double(random);
   any_pair(random, report->minimum);
   report->queries = static_cast<std::uint32_t>(random());
   reserve_sequence(report->sources, random() % clearance_msg_kMaxSources);
@@ -125,7 +125,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_ZoneState>& zone)
   any_bounded_text(random, zone->name);
   zone->active = random() % 2 != 0;
   zone->clearance = any_double(random);
-  zone->clearance_since = any_double(random);
+  zone->swept_clearance = any_double(random);
   zone->since_cycle = random();
   zone->now_ns = static_cast<std::int64_t>(random());
 }

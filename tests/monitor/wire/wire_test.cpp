@@ -156,7 +156,7 @@ TEST(Cdr, ReadsBigEndianWriters) {
   EXPECT_FALSE(zone->proved);
   EXPECT_EQ(5u, zone->pair);
   EXPECT_EQ(0.5, zone->clearance);
-  EXPECT_EQ(0.25, zone->clearance_since);
+  EXPECT_EQ(0.25, zone->swept_clearance);
   EXPECT_EQ(7u, zone->since_cycle);
   EXPECT_EQ(9u, zone->cycle);
   EXPECT_EQ(1, zone->now_ns);
@@ -255,7 +255,7 @@ TEST(Convert, ZoneStateCarriesNameAndTickAndCutsAnOverlongName) {
   EXPECT_EQ(std::string(64, 'z'), zone->name);
   EXPECT_TRUE(zone->active);
   EXPECT_EQ(0.04, zone->clearance);
-  EXPECT_EQ(0.03, zone->clearance_since);
+  EXPECT_EQ(0.03, zone->swept_clearance);
   EXPECT_EQ(3u, zone->since_cycle);
   EXPECT_EQ(5u, zone->cycle);
   EXPECT_EQ(6, zone->now_ns);

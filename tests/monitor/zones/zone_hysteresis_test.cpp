@@ -22,12 +22,12 @@ class ZoneState : public testing::Test {
 
   // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
   const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
-    ZoneUpdate update(zone_, report_);
-    return tick({.status = status, .lower = first + 0.03, .lower_since = first + 0.03},
-                {.status = status, .lower = second + 0.03, .lower_since = second + 0.03});
+    ZoneHysteresis update(zone_, report_);
+    return tick({.status = status, .lower = first + 0.03, .swept_lower = first + 0.03},
+                {.status = status, .lower = second + 0.03, .swept_lower = second + 0.03});
   }
-  const ZoneReport& tick(const PairSummary& first, const PairSummary& second) {
-    ZoneUpdate update(zone_, report_);
+  const ZoneReport& tick(const PairBounds& first, const PairBounds& second) {
+    ZoneHysteresis update(zone_, report_);
     update.add(0, first, kMargins);
     update.add(1, second, kMargins);
     update.finish(++cycle_, report_);
@@ -76,16 +76,16 @@ TEST_F(ZoneState, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEnter
 
 TEST_F(ZoneState, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
   const auto status = PairStatus::kConverged;
-  const PairSummary nearest{.status = status, .lower = 0.23, .lower_since = 0.23};
-  PairSummary passing{.status = status, .lower = 0.53, .lower_since = 0.08, .upper_since = 0.09};
+  const PairBounds nearest{.status = status, .lower = 0.23, .swept_lower = 0.23};
+  PairBounds passing{.status = status, .lower = 0.53, .swept_lower = 0.08, .swept_upper = 0.09};
   EXPECT_TRUE(tick(nearest, passing).active);
   EXPECT_EQ(report_.pair, 1u);
   EXPECT_NEAR(report_.clearance, 0.2, 1e-12) << "of the other pair, and of now";
-  EXPECT_NEAR(report_.clearance_since, 0.05, 1e-12);
+  EXPECT_NEAR(report_.swept_clearance, 0.05, 1e-12);
   EXPECT_TRUE(report_.proved) << "it was there";
   EXPECT_FALSE(tick(nearest, nearest).active);
   EXPECT_EQ(report_.pair, 0u);
-  passing.upper_since = 0.5;
+  passing.swept_upper = 0.5;
   EXPECT_TRUE(tick(nearest, passing).active);
   EXPECT_FALSE(report_.proved) << "it may have been there";
 }
@@ -99,7 +99,7 @@ TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
 }
 
 TEST_F(ZoneState, AZoneOfNoPairsIsNeverActive) {
-  const ZoneUpdate update(zone_, report_);
+  const ZoneHysteresis update(zone_, report_);
   update.finish(1, report_);
   EXPECT_FALSE(report_.active);
   EXPECT_TRUE(report_.proved);
