@@ -64,7 +64,7 @@ void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noex
 
 RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMotion& moving,
                          const PosedPart& part) noexcept {
-  const Vec3& middle = part.ball_in_world.centre;
+  const Vec3& middle = part.sphere_in_world.centre;
   const Vec3 arm = middle - moving.from.position;
   const Vec3 from_resting = middle - resting.from.position;
   const double length = arm.norm();
@@ -84,7 +84,7 @@ RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMo
   const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kTurnRounding : 0.0;
 
   RelativeMotion motion;
-  motion.turning = rounded_up(swept(turning, part.ball_in_world.radius));
+  motion.turning = rounded_up(swept(turning, part.sphere_in_world.radius));
   motion.speed = rounded_up(of_middle + motion.turning);
   motion.bending = rounded_up(rounded_up(change + turn_of_frame * of_middle) + error);
   return motion;

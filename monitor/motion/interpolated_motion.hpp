@@ -27,7 +27,7 @@ void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noex
 // rounding included.
 struct RelativeMotion {
   double speed = kInfinity;    // of any point of the part, m
-  double turning = kInfinity;  // of any point about the middle of the part's ball, m
+  double turning = kInfinity;  // of any point about the middle of the part's sphere, m
   double bending = kInfinity;  // acceleration of that middle, m
 };
 

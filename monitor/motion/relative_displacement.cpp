@@ -29,7 +29,7 @@ double turn_error(const Motion& motion) noexcept {
 
 }  // namespace
 
-double relative_travel(const TrackedObject& a, const TrackedObject& b) noexcept {
+double relative_displacement(const TrackedObject& a, const TrackedObject& b) noexcept {
   const bool from_a = b.reach <= a.reach;
   const TrackedObject& resting = from_a ? a : b;
   const TrackedObject& moving = from_a ? b : a;

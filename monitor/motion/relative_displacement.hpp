@@ -8,8 +8,8 @@ namespace clearance {
 
 // No point of either has come farther since the last tick as seen from the other, m, on the way
 // there and on the way on from there, both together; infinity: no better than what both have
-// travelled. Both were known at the last tick and neither has leapt. README.md, "Between two
-// ticks".
-[[nodiscard]] double relative_travel(const TrackedObject& a, const TrackedObject& b) noexcept;
+// displacement. Both were known at the last tick and neither has discontinuous. README.md, "Between
+// two ticks".
+[[nodiscard]] double relative_displacement(const TrackedObject& a, const TrackedObject& b) noexcept;
 
 }  // namespace clearance

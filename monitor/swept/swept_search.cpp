@@ -32,28 +32,29 @@ Meeting least_between(double left, double fall_right, double right, double fall_
 
 }  // namespace
 
-SweptSearch::SweptSearch(std::uint32_t row, const Evaluation& evaluation) noexcept
-    : a_(evaluation.parts[evaluation.table.part_a[row]]),
-      b_(evaluation.parts[evaluation.table.part_b[row]]),
+SweptSearch::SweptSearch(std::uint32_t part_pair, const Evaluation& evaluation) noexcept
+    : a_(evaluation.parts[evaluation.table.part_a[part_pair]]),
+      b_(evaluation.parts[evaluation.table.part_b[part_pair]]),
       way_a_(way_of(evaluation.objects[a_.object])),
       way_b_(way_of(evaluation.objects[b_.object])),
       directed_(a_.keeps_direction && b_.keeps_direction),
-      tracking_(evaluation.table.tracking[row]) {
+      tracking_(evaluation.table.tracking[part_pair]) {
   place_on_way(way_a_, 0.0, a_);
   place_on_way(way_b_, 0.0, b_);
   const RelativeMotion of_a = seen_from(way_b_, way_a_, a_);
   const RelativeMotion of_b = seen_from(way_a_, way_b_, b_);
   from_b_ = of_a.speed < of_b.speed;
   motion_ = from_b_ ? of_a : of_b;
-  for (const Vec3& place : {way_a_.from.position, way_a_.to.position, way_b_.from.position,
-                            way_b_.to.position, a_.ball_in_world.centre, b_.ball_in_world.centre}) {
+  for (const Vec3& place :
+       {way_a_.from.position, way_a_.to.position, way_b_.from.position, way_b_.to.position,
+        a_.sphere_in_world.centre, b_.sphere_in_world.centre}) {
     direction_error_ += kDirectionError * place.norm();
   }
 }
 
 SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
   SweptBounds bounds;
-  if (!(motion_.speed < kInfinity) || evaluation.queries_left < kLeastQueries) return bounds;
+  if (!(motion_.speed < kInfinity) || evaluation.budget.left() < kLeastQueries) return bounds;
   insert(look(0.0, evaluation));
   insert(look(1.0, evaluation));
   while (true) {
@@ -64,7 +65,7 @@ SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
     if (bounds.lower >= level || bounds.upper < level) return bounds;
     const Instant& left = instants_[lowest.before];
     const double width = instants_[lowest.before + 1].s - left.s;
-    if (size_ == kMostInstants || evaluation.queries_left == 0 || width < kLeastGap) return bounds;
+    if (size_ == kMostQueries || evaluation.budget.left() == 0 || width < kLeastGap) return bounds;
     insert(look(left.s + width * std::clamp(lowest.deepest, 0.25, 0.75), evaluation));
   }
 }
@@ -74,13 +75,13 @@ SweptSearch::Instant SweptSearch::look(double s, Evaluation& evaluation) noexcep
   place_on_way(way_b_, s, b_);
   const DistanceResult found = distance(
       *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
-  --evaluation.queries_left;
-  const RowBounds bounds = for_exact_poses(found, a_, b_);
+  evaluation.budget.spend();
+  const DistanceBounds bounds = for_exact_poses(found, a_, b_);
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
   const PosedPart& other = from_b_ ? a_ : b_;
   const Pose frame = pose_on_way(from_b_ ? way_b_ : way_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
-  instant.middle = into * (other.ball_in_world.centre - frame.position);
+  instant.middle = into * (other.sphere_in_world.centre - frame.position);
   if (directed_) {
     instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
   }

@@ -21,7 +21,7 @@ TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   for (const std::int64_t now : {kStart, kStart + kTick}) {
     accept(object, test::sample(0, now == kStart ? from : to, now), state);
     advance(object, now, state);
-    travel(reach, state);
+    displace(reach, state);
   }
   return state;
 }
@@ -66,8 +66,8 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
                             turn + differ * scale * random.in_box(0.5));
     const TrackedObject of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
-    const double told = relative_travel(of_a, of_b);
-    ASSERT_EQ(told, relative_travel(of_a, of_b));
+    const double told = relative_displacement(of_a, of_b);
+    ASSERT_EQ(told, relative_displacement(of_a, of_b));
     const bool b_goes = reach_b <= reach_a;
     for (int k = 0; k < 4; ++k) {
       const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? reach_b : reach_a);
@@ -75,7 +75,7 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
           b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
       ASSERT_LE(way, told + 1e-13) << "case " << i;
     }
-    tighter += told < 0.9 * (of_a.travel + of_b.travel);
+    tighter += told < 0.9 * (of_a.displacement + of_b.displacement);
   }
   EXPECT_GT(tighter, 1500);
 }
@@ -88,9 +88,9 @@ TEST(RelativeTravel, WhatRidesOnTheSameLinkHardlyComesNearer) {
     return gone(compose(link, on_link), compose(turned, on_link), 0.1);
   };
   const TrackedObject a = riding(test::at(1, 0, 0)), b = riding(test::at(1.2, 0.1, 0.3));
-  EXPECT_GT(a.travel + b.travel, 1e-3);
-  EXPECT_LT(relative_travel(a, b), 1e-6);
-  EXPECT_LT(relative_travel(b, a), 1e-6);
+  EXPECT_GT(a.displacement + b.displacement, 1e-3);
+  EXPECT_LT(relative_displacement(a, b), 1e-6);
+  EXPECT_LT(relative_displacement(b, a), 1e-6);
 }
 
 TEST(RelativeTravel, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
@@ -98,16 +98,16 @@ TEST(RelativeTravel, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
   const TrackedObject floor = gone({}, turned, kInfinity);
   const TrackedObject ball = gone(test::at(0, 1, 1), test::at(0, 1, 1.001), 0.1);
-  EXPECT_LT(relative_travel(floor, ball), 3e-3);
-  EXPECT_LT(relative_travel(ball, floor), 3e-3);
+  EXPECT_LT(relative_displacement(floor, ball), 3e-3);
+  EXPECT_LT(relative_displacement(ball, floor), 3e-3);
   const TrackedObject other = gone({}, turned, kInfinity);
-  EXPECT_EQ(relative_travel(floor, other), kInfinity);
+  EXPECT_EQ(relative_displacement(floor, other), kInfinity);
 }
 
 TEST(RelativeTravel, TellsNothingOfMoreThanARadian) {
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(1.5, Vec3::UnitX());
-  EXPECT_EQ(relative_travel(gone({}, turned, 0.1), gone({}, turned, 0.1)), kInfinity);
+  EXPECT_EQ(relative_displacement(gone({}, turned, 0.1), gone({}, turned, 0.1)), kInfinity);
 }
 
 // Two balls on one arm that swings at 2 m/s, 20 mm apart: neither comes nearer between two ticks.

@@ -95,7 +95,7 @@ TEST(BetweenEnds, NoInstantOfTheWayIsNearerThanReported) {
   EXPECT_GT(close, ways / 2) << "of " << ways << ": mostly hardly less than the nearer end";
 }
 
-// 5 cm apart at 2 m/s and 2 rad/s: their travel alone would leave a millimetre open.
+// 5 cm apart at 2 m/s and 2 rad/s: their displacement alone would leave a millimetre open.
 TEST(BetweenEnds, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) {
   Watched pair(test::moving("a", {test::block({0.1, 0.1, 0.1})}),
                test::moving("b", {test::block({0.2, 0.2, 0.1})}));

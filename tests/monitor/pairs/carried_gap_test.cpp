@@ -26,7 +26,7 @@ class AskedOnce {
 
   void move(std::size_t object, const Pose& to) {
     turned_[object] = rounded_up(turned_[object] + motion_between(poses_[object], to).turn);
-    parts_[object].turning = swept(turned_[object], parts_[object].ball_in_part.radius);
+    parts_[object].turning = swept(turned_[object], parts_[object].sphere_in_part.radius);
     poses_[object] = to;
     place_at(to, parts_[object]);
   }
@@ -40,7 +40,7 @@ class AskedOnce {
     return distance(*parts_[0].shape, *parts_[1].shape,
                     relative_pose(parts_[0].world_from_part, parts_[1].world_from_part), cold);
   }
-  [[nodiscard]] RowBounds bounds(const DistanceResult& found) const {
+  [[nodiscard]] DistanceBounds bounds(const DistanceResult& found) const {
     return for_exact_poses(found, parts_[0], parts_[1]);
   }
 
