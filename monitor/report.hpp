@@ -1,4 +1,8 @@
 // What comes out of a tick.
+//
+// One rule for what is not known: a figure is NaN, a lower bound -infinity, an upper bound
+// +infinity, and the status says why. An age, which is an integer, is negative then. A signed
+// distance of -infinity is known: no translation parts the two.
 #pragma once
 
 #include <array>
@@ -39,11 +43,11 @@ struct PairReport {
   // Holds at every instant since the last tick, for objects that went from the pose in use then to
   // this one's straight and evenly, turning evenly about one axis, the shorter way (README.md,
   // "Between two ticks"); less e for objects that displaced from that way by e, both together. A
-  // late object also strays by what it may have moved unseen. Of a pair that was not known at the
-  // last tick: as `lower`. -infinity when unknown, or when an object discontinuous 10 km.
+  // late object is also off it by what it may have moved unseen. Of a pair that was not known at
+  // the last tick: as `lower`. -infinity when unknown, or after a discontinuity of 10 km.
   double swept_lower = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  // unit, from A to B; zero where no translation parts them
+  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where no translation parts them
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
   // when either velocity is not known: after a first pose without twist, or one that follows a gap
   // longer than twice the age limit, and while a pose is late. Fixed objects are at rest.

@@ -25,8 +25,8 @@ double share_of_a(double usual_a, double usual_b) noexcept {
   return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
 }
 
-// How far from where it is now the object may have been since the last tick, m. After a leap every
-// zone of it says so itself.
+// How far from where it is now the object may have been since the last tick, m. After a
+// discontinuity every zone of it says so itself.
 double displacement_since_last_tick(const TrackedObject& object) noexcept {
   return object.unseen_since + (object.discontinuous ? 0.0 : object.known_displacement());
 }
@@ -232,7 +232,7 @@ DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 
-// Raising the horizon is every object travelling that far at once.
+// Raising the horizon counts as if every object had moved that far at once.
 void BroadPhase::move_horizon(double to) noexcept {
   if (to > horizon_ && horizon_ > -kInfinity) {
     const double by = rounded_up(to - horizon_);

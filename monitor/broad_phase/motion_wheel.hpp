@@ -1,4 +1,4 @@
-// Alarm clocks that run on displacement instead of time: one wheel an object, one hook a pair and
+// Timing wheels that run on displacement instead of time: one wheel an object, one hook a pair and
 // side.
 //
 // A hook on an object's wheel is due before the object has moved farther than the hook was set for;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/convex_polyhedron.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {

@@ -1,5 +1,5 @@
 // What both ends of the way from one tick to the next tell of what lies between.
-// README.md, "Between two ticks", has the motion that is meant, and the proofs.
+// monitor/swept/README.md has the motion that is meant, and the proofs.
 #pragma once
 
 #include "core/vec.hpp"
@@ -7,7 +7,7 @@
 namespace clearance {
 
 // At least as far apart all the way, m: bounds of the distance at its ends, and what both bodies
-// have displacement, that way and on from any point of it. -infinity where the displacement is.
+// have moved by, that way and on from any point of it. -infinity where the displacement is.
 [[nodiscard]] double lower_by_ends(double before, double now, double displacement) noexcept;
 
 // What an evaluation told: `lower`, m, along `normal` (world, A to B), for the exact poses of then.

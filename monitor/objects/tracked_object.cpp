@@ -12,8 +12,8 @@ namespace {
 // A unit quaternion's norm is within a thousandth of 1; here squared.
 constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
 constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
-// A jump beyond any cell. Adding it to what was displacement would cost digits for good: after 1e4
-// km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
+// A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
+// after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
 
 bool usable(const Vec3& v) noexcept {

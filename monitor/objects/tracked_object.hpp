@@ -8,6 +8,8 @@
 
 #include "config/scene.hpp"
 #include "monitor/motion/displacement.hpp"
+#include "monitor/motion/interpolated_motion.hpp"
+#include "monitor/motion/relative_displacement.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {
@@ -20,7 +22,8 @@ struct TrackedObject {
   bool moved = false;          // it is not that of the last tick
   bool first_seen = false;     // nothing was known of it at the last tick
   bool discontinuous = false;  // something was, but that is farther off than anything moves
-  // None of the exceptions: known and on time, now and at the last tick, and no leap between.
+  // None of the exceptions: known and on time, now and at the last tick, and no discontinuity
+  // between.
   bool plain = false;
   double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
   double unseen_since = 0.0;    // the larger of that at the last tick, if known then, and now, m
@@ -53,6 +56,15 @@ struct TrackedObject {
   [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
   // Whether `twist` is how it moves now: a late object may do anything since its stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
+
+  // Since the last tick, where it was known then: as seen from another, and the way it is taken to
+  // have gone.
+  [[nodiscard]] BodyMotion body_motion() const noexcept {
+    return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
+  }
+  [[nodiscard]] InterpolatedMotion interpolated() const noexcept {
+    return interpolated_motion(moved ? pose_before : pose, pose);
+  }
 
   // As `displacement`, since the last tick or since something has been known of it, m.
   [[nodiscard]] double known_displacement() const noexcept {

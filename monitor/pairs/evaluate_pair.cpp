@@ -32,7 +32,7 @@ inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evalu
 // Returns what the directions of this evaluation and of one in the last tick tell of the time
 // between them.
 // point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
-// off by what rounding makes of how far the two are apart. `known`: bounds of the part_pair before.
+// off by what rounding makes of how far the two are apart. `known`: bounds of the part pair before.
 inline double take_in(const DistanceResult& found, const Vec3& point_on_b,
                       const DistanceBounds& known, std::uint32_t part_pair, const Gone& gone,
                       const Evaluation& evaluation) noexcept {
@@ -77,14 +77,14 @@ void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
 }
 
-// The part_pair that was the closest, as far as is known, and mostly still is.
+// The part pair that was the closest, as far as is known, and mostly still is.
 std::uint32_t likely_part_pair(std::uint32_t pair, const PairTable& table) noexcept {
   const auto first = table.upper.begin() + table.entries[pair].first_part_pair;
   const auto end = table.upper.begin() + table.entries[pair].end_part_pair;
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
-// A pair of several part_pairs on its way through them.
+// A pair of several part pairs on its way through them.
 struct PartPairs {
   double displacement;  // since they were last brought up to date, m
   bool is_new;          // that was in this tick: of the last one nothing is known
@@ -95,7 +95,7 @@ struct PartPairs {
   bool all_that_matter = true;
 };
 
-// A part_pair among others that displacement alone proves not to be the closest: brought up to date
+// A part pair among others that displacement alone proves not to be the closest: brought up to date
 // by that. What is carried so was no nearer on the way from where it was before.
 inline bool stays_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable& table) noexcept {
   const double lower = rounded_down(table.lower[part_pair] - part_pairs.displacement);
@@ -108,7 +108,7 @@ inline bool stays_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable&
   return true;
 }
 
-// Any other part_pair: brought up to date no more precisely than it takes to tell that it is not
+// Any other part pair: brought up to date no more precisely than it takes to tell that it is not
 // the closest, else evaluated, as far as the budget goes.
 void settle_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
                       Evaluation& evaluation) noexcept {

@@ -24,12 +24,12 @@ struct Evaluation {
   return evaluation.objects[table.entries[pair].object_a].known() &&
          evaluation.objects[table.entries[pair].object_b].known();
 }
-// The pair was evaluated in this tick, all part_pairs that matter.
+// The pair was evaluated in this tick, all part pairs that matter.
 [[nodiscard]] inline bool is_evaluated(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   return evaluation.table.entries[pair].evaluated_cycle == evaluation.cycle;
 }
 
-// Takes in the answer to a query of a pair's only part_pair, which brings the pair up to date, and
+// Takes in the answer to a query of a pair's only part pair, which brings the pair up to date, and
 // the witness point on B in B's own frame (TrackingState). Does not count the query.
 void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
             const Evaluation& evaluation) noexcept;
@@ -38,7 +38,7 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 [[nodiscard]] DistanceBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
                                              const PosedPart& b) noexcept;
 
-// Brings an object pair up to date and evaluates it as far as the budget goes: the part_pair that
+// Brings an object pair up to date and evaluates it as far as the budget goes: the part pair that
 // may be closest, then every other one that may be closer still. Rows whose carried bounds prove
 // that they are not are left as they are: the pair's distance does not depend on them. Both objects
 // are known.

@@ -11,8 +11,8 @@
 namespace clearance {
 namespace {
 
-// Of the distance: what objects have displacement leaves less than half of this open, where nobody
-// has to know how they go together.
+// Of the distance: what objects have moved by leaves less than half of this open, and how they
+// move as seen from each other is not looked at.
 constexpr double kSmallDisplacement = 1.0 / 64.0;
 // Of the displacement: nor where directions leave less than this open.
 constexpr double kSmallShare = 1.0 / 4096.0;
@@ -32,7 +32,7 @@ PairStatus status_of(DistanceStatus status) noexcept {
   return PairStatus::kLoose;
 }
 
-// The part_pair with the smallest upper bound, evaluated ones before all others.
+// The part pair with the smallest upper bound, evaluated ones before all others.
 std::uint32_t closest_part_pair(std::uint32_t first, std::uint32_t end,
                                 const PairTable& table) noexcept {
   std::uint32_t closest = first;
@@ -80,8 +80,8 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
   return status;
 }
 
-// Of two objects that were known at the last tick and have not discontinuous since. `along`: what
-// the directions of two evaluations tell, m.
+// Of two objects that were known at the last tick and have made no discontinuity since. `along`:
+// what the directions of two evaluations tell, m.
 double lower_on_the_way(const TrackedObject& a, const TrackedObject& b, double before, double now,
                         double along, SweptPrecision precision) noexcept {
   const double displacement = rounded_up(a.displacement + b.displacement);
@@ -93,7 +93,8 @@ double lower_on_the_way(const TrackedObject& a, const TrackedObject& b, double b
   const bool matters =
       displacement > kSmallDisplacement * now && a.displacement > 0.0 && b.displacement > 0.0;
   if (precision == SweptPrecision::kByDisplacement || !matters) return std::min(now, lower);
-  const double relative = std::min(displacement, relative_displacement(a, b));
+  const double relative =
+      std::min(displacement, relative_displacement(a.body_motion(), b.body_motion()));
   return std::min(now, std::max(lower, lower_by_ends(before, now, relative)));
 }
 
@@ -207,8 +208,9 @@ void report_on(std::uint32_t pair, const PairBounds& bounds,
   report.distance = closest.distance;
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;
-  report.normal = closest.normal;
-  const bool has_speed = a.velocity_known() && b.velocity_known() && !closest.normal.isZero(0.0);
+  const bool has_normal = !closest.normal.isZero(0.0);
+  report.normal = has_normal ? closest.normal : Vec3::Constant(kNan);
+  const bool has_speed = a.velocity_known() && b.velocity_known() && has_normal;
   report.closing_speed =
       has_speed ? closing_speed(velocity_at(closest.witness_a, a.pose, a.twist),
                                 velocity_at(closest.witness_b, b.pose, b.twist), closest.normal)

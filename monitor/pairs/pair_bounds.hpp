@@ -1,4 +1,4 @@
-// One object pair in this tick: its part_pairs of the pair table brought together, lateness counted
+// One object pair in this tick: its part pairs in the pair table brought together, lateness counted
 // in.
 #pragma once
 
@@ -17,7 +17,7 @@ struct PairBounds {
   double swept_lower = -kInfinity;
   double swept_upper = kInfinity;  // at some instant no farther apart than this, m
   std::uint32_t part_pair = 0;  // the closest part pair, as far as is known: smallest upper bound
-  std::uint64_t evaluated_cycle = 0;  // of that part_pair; 0: no part_pair ever was
+  std::uint64_t evaluated_cycle = 0;  // of that part pair; 0: no part pair ever was
 };
 
 // How closely the time since the last tick is looked at.

@@ -1,8 +1,8 @@
 // What is known about every pair: bounds for the poses in use, and the last evaluation.
 //
-// An object pair owns consecutive part_pairs, one for every part of the first with every part of
-// the second. A part_pair's bounds are true for the poses at which the pair was last brought up to
-// date; how far both objects have displacement since makes them true for those in use. So a pair
+// An object pair owns consecutive part pairs, one for every part of the first with every part of
+// the second. A part pair's bounds are true for the poses at which the pair was last brought up to
+// date; how far both objects have moved since makes them true for those in use. So a pair
 // that nobody looks at costs nothing.
 #pragma once
 
@@ -28,7 +28,7 @@ struct ClosestPoints {
   ClosestPoints() noexcept;
 };
 
-// TrackedObject::displacement of both objects of a pair, m.
+// TrackedObject::accumulated of both objects of a pair, m.
 struct AccumulatedDisplacement {
   double a = 0.0, b = 0.0;
 };
@@ -40,12 +40,12 @@ struct DistanceBounds {
 // Of an object pair, all that ticks ask of it whether it is evaluated or not: one cache line.
 struct alignas(64) PairEntry {
   std::uint32_t object_a = 0, object_b = 0;
-  std::uint32_t first_part_pair = 0, end_part_pair = 0;  // its part_pairs, the latter excluded
+  std::uint32_t first_part_pair = 0, end_part_pair = 0;  // its part pairs, the latter excluded
   AccumulatedDisplacement carried_at;                    // when they were last brought up to date
   std::uint64_t carried_cycle = 0;                       // the tick in which that was; 0: never
-  double least_lower = -kInfinity;                       // over its part_pairs then, m
+  double least_lower = -kInfinity;                       // over its part pairs then, m
   double lower_before = -kInfinity;                      // for the poses of the tick before that, m
-  std::uint64_t evaluated_cycle = 0;  // when all part_pairs that matter last were; 0: never
+  std::uint64_t evaluated_cycle = 0;  // when all part pairs that matter last were; 0: never
 };
 
 struct PairTable {
@@ -55,7 +55,7 @@ struct PairTable {
   // directions of two evaluations tell; -infinity: they do not.
   std::vector<double> lower_between;
 
-  // By part_pair.
+  // By part pair.
   std::vector<std::uint32_t> part_a, part_b;             // indices into parts_of(scene)
   std::vector<double> lower, upper;                      // true at carried_at, m
   std::vector<std::uint64_t> part_pair_evaluated_cycle;  // 0: never
@@ -102,22 +102,22 @@ struct PairTable {
 [[nodiscard]] double lower_last_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                                      std::uint64_t cycle, const PairTable& table) noexcept;
 
-// A part_pair's bounds for the poses in use, both objects having been seen: looser by what they
-// have displacement, but never looser than the parts' spheres tell.
+// A part pair's bounds for the poses in use, both objects having been seen: looser by what they
+// have moved by, but never looser than the parts' spheres tell.
 [[nodiscard]] DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,
                                         const std::vector<PosedPart>& parts,
                                         const PairTable& table) noexcept;
 
-// Brings a pair's part_pairs up to date. Both objects have been seen.
+// Brings a pair's part pairs up to date. Both objects have been seen.
 void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
            const std::vector<PosedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
 
-// Takes note that a pair's part_pairs are up to date, before least_lower is: that is still known of
+// Takes note that a pair's part pairs are up to date, before least_lower is: that is still known of
 // the pair as it was.
 void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                   std::uint64_t cycle, PairTable& table) noexcept;
 
-// Takes note of a lower bound of the pair's distance for the poses in use, m. Its part_pairs are
+// Takes note of a lower bound of the pair's distance for the poses in use, m. Its part pairs are
 // carried by displacement alone, which costs a fraction of carry(): their spheres are looked at by
 // who asks for them.
 void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,

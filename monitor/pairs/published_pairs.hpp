@@ -1,4 +1,4 @@
-// The pairs whose figures somebody asked for: those that are published, or all.
+// The pairs whose figures are published, or where a scene evaluates all, all pairs.
 //
 // They are evaluated in every tick that has room for them, in one straight loop: pairs of single
 // parts by vector code, many at once (core/batch.hpp), the others one by one.
@@ -45,7 +45,7 @@ class PublishedPairs {
   std::vector<Group> groups_;
   std::vector<std::uint32_t> body_parts_;  // what part each body of the groups is
   std::vector<Pose> world_from_body_;      // of this tick
-  std::vector<std::uint32_t> many_parts_;  // pairs of more than one part_pair
+  std::vector<std::uint32_t> many_parts_;  // pairs of more than one part pair
   std::vector<std::uint32_t> known_;       // of those, in this tick
 };
 

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/batch.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_difference.hpp"
 

@@ -1,6 +1,6 @@
 // How many queries of a tick are kept back so that pairs that take turns have theirs in time.
 //
-// Each tick owes (part_pairs + 1) / ticks of a query; what a whole number of them has come to is
+// Each tick owes (part pairs + 1) / ticks of a query; what a whole number of them has come to is
 // due. Who may spend due + most - 1 queries, `most` being what one pair can take, spends what is
 // due or is through with all. So over any `ticks` ticks at least `part_pairs` are spent, and
 // everybody has had a turn. Counted in whole numbers: nothing drifts.

@@ -1,5 +1,5 @@
 // How near did two parts come between two ticks? From queries at a few instants of the way, and
-// what the motion between those allows. README.md, "Between two ticks".
+// what the motion between those allows. README.md here.
 #pragma once
 
 #include <array>
@@ -50,10 +50,10 @@ class SweptSearch {
   void insert(const Instant& instant) noexcept;
 
   PosedPart a_, b_;
-  InterpolatedMotion way_a_, way_b_;
+  InterpolatedMotion motion_a_, motion_b_;
   bool from_b_ = false;    // A is seen from B's object, not B from A's: the slower of the two
   bool directed_ = false;  // a separating direction goes on separating bodies that only shift
-  RelativeMotion motion_;
+  RelativeMotion relative_;
   double direction_error_ = 0.0;  // of a middle's place along a normal, m
   TrackingState tracking_;
   std::array<Instant, kMostQueries> instants_;

@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// At the part_pairs that the objects' displacement leaves open; no more of them once one was
+// At the part pairs that the objects' displacement leaves open; no more of them once one was
 // nearer.
 SweptBounds look_closer(std::uint32_t pair, double level, double displacement,
                         Evaluation& evaluation) noexcept {

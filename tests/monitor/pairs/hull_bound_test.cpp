@@ -86,7 +86,7 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
   EXPECT_GT(apart, 30);
 }
 
-TEST(HullBound, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
+TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
   scene.objects.resize(5);
   const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));

@@ -243,7 +243,7 @@ TEST_F(FlyBy, FirstPosesAndThoseAfterAGapHaveNoWayBehindThem) {
   EXPECT_EQ(back.pairs[0].swept_lower, back.pairs[0].lower);
 }
 
-TEST_F(FlyBy, ALeapOfTenKilometresEntersEveryZoneOfTheObject) {
+TEST_F(FlyBy, ADiscontinuityOfTenKilometresEntersEveryZoneOfTheObject) {
   Monitor monitor(scene_);
   tick(monitor, test::at(0, 0, 1.0));
   const Report& report = tick(monitor, test::at(2e4, 0, 0));
