@@ -19,8 +19,8 @@ void add_direction(Separators& list, const Vec3& v) noexcept {
 }
 
 void add_facets(Separators& list, const ActiveFeature& a, const ActiveFeature& b) noexcept {
-  if (a.feature() == Feature::kFacet) list.add({a.facet().normal, a.index(), kNone});
-  if (b.feature() == Feature::kFacet) {
+  if (a.feature() == FeatureKind::kFacet) list.add({a.facet().normal, a.index(), kNone});
+  if (b.feature() == FeatureKind::kFacet) {
     list.add({-towards_case::normal_of(b), kNone, b.index()});
   }
 }
@@ -65,12 +65,12 @@ Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   const Vec3 between = b.common() - a.common();
   add_facets(list, a, b);
   Vec3 direct = between;
-  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
-  if (b.feature() == Feature::kEdge) direct = across(direct, along(b));
-  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
+  if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
+  if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
+  if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   add_direction(list, direct);
   // Says more only where the points are so near to each other that rounding has a part in `direct`.
-  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+  if (a.feature() == FeatureKind::kEdge && b.feature() == FeatureKind::kEdge) {
     add_crossing_edges(list, a, b, between);
   }
   return list;

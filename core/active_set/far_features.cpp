@@ -92,12 +92,12 @@ FarApart from_facet(const PolarCone& cone, const ActiveFeature& edge, const Acti
 }  // namespace
 
 FarApart far_apart(const ActiveFeature& a, const ActiveFeature& b, const Precision& p) noexcept {
-  const auto are = [&](Feature of_a, Feature of_b) {
+  const auto are = [&](FeatureKind of_a, FeatureKind of_b) {
     return a.feature() == of_a && b.feature() == of_b;
   };
-  if (are(Feature::kEdge, Feature::kEdge)) return across_edges(a, b, p);
-  if (are(Feature::kEdge, Feature::kFacet)) return from_facet(PolarCone(a, b), a, b, p);
-  if (are(Feature::kFacet, Feature::kEdge)) return from_facet(PolarCone(a, b), b, a, p);
+  if (are(FeatureKind::kEdge, FeatureKind::kEdge)) return across_edges(a, b, p);
+  if (are(FeatureKind::kEdge, FeatureKind::kFacet)) return from_facet(PolarCone(a, b), a, b, p);
+  if (are(FeatureKind::kFacet, FeatureKind::kEdge)) return from_facet(PolarCone(a, b), b, a, p);
   return {};
 }
 

@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-class Tenure {
+class Residence {
  public:
   // Features that vector code could not tell of are tried there again after so many rounds.
   static constexpr std::uint16_t kRetry = 64;

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "core/model/support_function.cpp"
 #include "core/numerics/simd_targets.hpp"
 // That comes first.
-#include "core/feature_walk/pair-inl.hpp"
+#include "core/model/edge_scan-inl.hpp"
 #include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
 
@@ -14,8 +14,8 @@ namespace clearance::HWY_NAMESPACE {
 std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at, bool& certain) {
   for (;;) {
     const SteepestEdge way = steepest(body, body.vertices[at], m);
-    certain = way.rate < -kCertainRate;
-    if (!(way.rate > kCertainRate)) return at;
+    certain = way.derivative < -kDerivativeError;
+    if (!(way.derivative > kDerivativeError)) return at;
     at = body.neighbours[way.at];
   }
 }
@@ -141,7 +141,7 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
     if (height > best.reach) best = {height, level[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const Neighbour n = neighbour(body, body.vertex_edges[vertex.first_edge + i], m);
-      if (n.slope > -kCertainRate && !level.add(n.vertex)) return support_by_scan(body, m);
+      if (n.slope > -kDerivativeError && !level.add(n.vertex)) return support_by_scan(body, m);
     }
   }
   return best;

@@ -28,20 +28,20 @@ constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 // say.
 bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const TrackingState& state,
                   Separator& out) noexcept {
-  const auto has = [](const TrackingState::Side& side, int dimension, std::size_t count) {
-    return side.dimension == dimension && side.feature >= 0 &&
-           static_cast<std::size_t>(side.feature) < count;
+  const auto has = [](const TrackingState::Side& side, FeatureKind kind, std::size_t count) {
+    return side.kind == kind && side.feature >= 0 && static_cast<std::size_t>(side.feature) < count;
   };
-  if (has(state.a, 2, a.body().facets.size())) {
+  if (has(state.a, FeatureKind::kFacet, a.body().facets.size())) {
     out = {a.body().facets[state.a.feature].normal, state.a.feature, kNone};
     return true;
   }
-  if (has(state.b, 2, b.body().facets.size())) {
+  if (has(state.b, FeatureKind::kFacet, b.body().facets.size())) {
     const Vec3& normal = b.body().facets[state.b.feature].normal;
     out = {-b.direction_to_common(normal).normalized(), kNone, state.b.feature};
     return true;
   }
-  if (!has(state.a, 1, a.body().edges.size()) || !has(state.b, 1, b.body().edges.size())) {
+  if (!has(state.a, FeatureKind::kEdge, a.body().edges.size()) ||
+      !has(state.b, FeatureKind::kEdge, b.body().edges.size())) {
     return false;
   }
   const Edge& e = a.body().edges[state.a.feature];
@@ -189,7 +189,8 @@ TrackingState at_farthest(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                           const RelativePose& a_from_b, const Vec3& normal) noexcept {
   const std::int32_t of_a = support(a, normal).anchor;
   const std::int32_t of_b = support(b, -(a_from_b.rotation.transpose() * normal)).anchor;
-  return {{0, false, of_a, a.anchors[of_a]}, {0, false, of_b, b.anchors[of_b]}};
+  return {{FeatureKind::kVertex, false, of_a, a.anchors[of_a]},
+          {FeatureKind::kVertex, false, of_b, b.anchors[of_b]}};
 }
 
 // The points that meet when B has been moved clear of A.
@@ -201,7 +202,7 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   RelativePose moved = a_from_b;
   moved.translation += (found.value + farther) * found.normal;
   DistanceResult apart;
-  if (walk_features(a, b, moved, state, apart) != WalkEnd::kLost) {
+  if (walk_features(a, b, moved, state, apart) != WalkEnd::kUndecided) {
     r.iterations = apart.iterations;
   } else {
     r.iterations = settle_apart(a, b, moved, state);
@@ -233,7 +234,7 @@ void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   r.distance = std::clamp(-found.value, r.lower, r.upper);
   r.normal = found.normal;
   place_witnesses(a, b, a_from_b, found, state, r);
-  state.a.deep = true;
+  state.a.penetrating = true;
 }
 
 }  // namespace
@@ -241,8 +242,8 @@ void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                        const RelativePose& a_from_b, TrackingState& state,
                        DistanceResult& result) noexcept {
-  if (!state.a.deep) return false;
-  state.a.deep = false;
+  if (!state.a.penetrating) return false;
+  state.a.penetrating = false;
   const Depth found = tracked_depth(a, b, a_from_b, state);
   if (!(found.lower > 0.0 && found.value < kInfinity)) return false;
   conclude_overlapping(a, b, a_from_b, found, state, result);

@@ -46,7 +46,7 @@ void prove_from_below(Bounds& bounds, const ActiveFeature& a, const ActiveFeatur
   const PolarCone cone(a, b);
   // Doubles know the direction across lines at an angle f to 1/f ulps, and may prefer one to it
   // along which one of them falls, by what that comes to where they are closest.
-  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+  if (a.feature() == FeatureKind::kEdge && b.feature() == FeatureKind::kEdge) {
     const auto across = cone.across_lines(a.edge(), b.edge());
     if (across.off < kInfinity) {
       raise({across.n});
@@ -83,8 +83,9 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
 double proved_distance(const Vec3& n, double apart, const ActiveFeature& a, const ActiveFeature& b,
                        const Precision& p) noexcept {
   const auto along_edge = [&](const ActiveFeature& s) {
-    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
-                                         : 0.0;
+    return s.feature() == FeatureKind::kEdge
+               ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
+               : 0.0;
   };
   return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }
@@ -228,7 +229,7 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (still_overlapping(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
     narrow_bounds(a, b, a_from_b, state, result);
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);
   }
   finish(a, b, result);

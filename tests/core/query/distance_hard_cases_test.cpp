@@ -243,8 +243,14 @@ TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
   const hard::HardCase c = hard::case_of("twisted_images", 201700000);
   DistanceJudge judge(c.a, c.b);
   TrackingState state;
-  state.a = {0, false, 6, {-0.19070708568473327, -2.2977091586443654, -1.6383416706387699}};
-  state.b = {1, false, 14, {2.3348357887424309, 0.69295394283147593, -0.70402263704604096}};
+  state.a = {FeatureKind::kVertex,
+             false,
+             6,
+             {-0.19070708568473327, -2.2977091586443654, -1.6383416706387699}};
+  state.b = {FeatureKind::kEdge,
+             false,
+             14,
+             {2.3348357887424309, 0.69295394283147593, -0.70402263704604096}};
   const auto faults = judge.faults(judge.ask(c.pose_a, c.pose_b, state),
                                    judge.truth(c.pose_a, c.pose_b), c.pose_a, c.pose_b);
   EXPECT_TRUE(faults.empty()) << joined(faults);
@@ -295,8 +301,8 @@ TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
   const auto truth = judge.truth(c.pose_a, c.pose_b);
   for (const bool deep : {false, true}) {
     TrackingState state;
-    state.a = {2, deep, 0, Vec3(-1.53301e17, 3.15683e16, 0.0)};
-    state.b = {0, false, 3, Vec3(-1.85647e16, 2.07706e16, -7.44492e16)};
+    state.a = {FeatureKind::kFacet, deep, 0, Vec3(-1.53301e17, 3.15683e16, 0.0)};
+    state.b = {FeatureKind::kVertex, false, 3, Vec3(-1.85647e16, 2.07706e16, -7.44492e16)};
     const auto faults =
         judge.faults(judge.ask(c.pose_a, c.pose_b, state), truth, c.pose_a, c.pose_b);
     EXPECT_TRUE(faults.empty()) << joined(faults);

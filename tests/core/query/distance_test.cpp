@@ -74,8 +74,8 @@ TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
   const Pose pose_b = Pose{{0.1, 0.2, 3}, turned(Vec3::UnitX(), std::numbers::pi / 4)};
   const DistanceResult r = distance(cube(), cube(), relative_pose(pose_a, pose_b), state);
   expect_distance(r, 3 - 2 * half_diagonal);
-  EXPECT_EQ(state.a.dimension, 1);
-  EXPECT_EQ(state.b.dimension, 1);
+  EXPECT_EQ(state.a.kind, FeatureKind::kEdge);
+  EXPECT_EQ(state.b.kind, FeatureKind::kEdge);
 }
 
 TEST(Distance, OfTouchingCubesIsZeroAndSaysTouching) {
@@ -223,8 +223,8 @@ TEST(Distance, HoldsWhereSquaresUnderflow) {
 void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose) {
   static const ConvexPolyhedron sound = cube();
   for (std::uint8_t kinds = 0; kinds < 18; ++kinds) {
-    TrackingState state{{static_cast<std::uint8_t>(kinds % 3), kinds >= 9, 0},
-                        {static_cast<std::uint8_t>(kinds / 3 % 3), false, 0}};
+    TrackingState state{{static_cast<FeatureKind>(kinds % 3), kinds >= 9, 0},
+                        {static_cast<FeatureKind>(kinds / 3 % 3), false, 0}};
     TrackingState other = state;
     for (const DistanceResult& r :
          {distance(a, b, Pose{}, pose, state), distance(a, b, relative_pose(pose, {}), other)}) {
