@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/active_set/polar_cone.hpp"
 #include "core/active_set/separating_direction.hpp"
+#include "core/active_set/unbounded_separation.hpp"
 #include "core/model/support_function.hpp"
 
 namespace clearance {
@@ -36,26 +36,6 @@ double reach(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
   if (facet != kNone) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
   return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
-}
-
-// How far a body's anchors are from one of them, at most.
-double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
-  double out = 0.0;
-  for (const Vec3& anchor : body.anchors) out = std::max(out, (anchor - from).norm());
-  return out;
-}
-
-double separation_of_unbounded(const Separator& s, const ActiveFeature& a,
-                               const ActiveFeature& b) noexcept {
-  const auto [n, off] = PolarCone(a, b).nearest(s);
-  if (!(off < kInfinity)) return -kInfinity;
-  const Vec3& on_a = a.body().anchors[support(a.body(), n).anchor];
-  const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(n)).anchor];
-  const Vec3 between = b.point_to_common(on_b) - on_a;
-  const double origins = b.point_to_common(Vec3::Zero()).norm();
-  const double moved = std::min(between.norm() + spread(a.body(), on_a) + spread(b.body(), on_b),
-                                a.body().bounding_radius + b.body().bounding_radius + origins);
-  return n.dot(between) - off * moved;
 }
 
 }  // namespace

@@ -57,10 +57,6 @@ inline constexpr double kPermutedTranslationError = 4 * kUlp;
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
 
-// Of a matrix each entry of which is rounded once: in the 2-norm no more ulps than that of its
-// entries' magnitudes, which for a rotation is at most 5/3. All of it may be a stretch.
-inline constexpr double kRoundedRotationError = 1.7 * kUlp / kStretched;
-
 // Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
 // in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
 // in ulps of |a|, |b| and |t|
@@ -82,8 +78,9 @@ inline constexpr double kUnderflow = 1e-150;
 // tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
 inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
 
-// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
-inline constexpr double kConvergedGap = 90 * kUlp;
+// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies
+// that overlap or touch, and of two unbounded ones, 1.25e-14.
+inline constexpr double kConvergedGap = 90 * kUlp, kMetGap = 112 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
-#include "core/active_set/far_features.hpp"
-#include "core/active_set/polar_cone.hpp"
 #include "core/feature_walk/feature_walk.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/radii.hpp"
-#include "core/model/wide_rotation.hpp"
 #include "core/penetration/penetration.hpp"
 
 namespace clearance {
@@ -41,20 +37,6 @@ void prove_from_below(Bounds& bounds, const ActiveFeature& a, const ActiveFeatur
     bounds.raise(separation(s, a, b, p), s.normal);
     if (bounds.certain_upper() - bounds.lower <= p.tight) return;
   }
-  if (a.body().bounded() || b.body().bounded()) return;
-  const auto raise = [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); };
-  const PolarCone cone(a, b);
-  // Doubles know the direction across lines at an angle f to 1/f ulps, and may prefer one to it
-  // along which one of them falls, by what that comes to where they are closest.
-  if (a.feature() == FeatureKind::kEdge && b.feature() == FeatureKind::kEdge) {
-    const auto across = cone.across_lines(a.edge(), b.edge());
-    if (across.off < kInfinity) {
-      raise({across.n});
-      raise({-across.n});
-      if (bounds.certain_upper() - bounds.lower <= p.tight) return;
-    }
-  }
-  cone.across_near_parallels(raise);
 }
 
 DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {
@@ -100,15 +82,6 @@ double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const Relati
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
 }
 
-void bound_far_away(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
-                    const Precision& p) noexcept {
-  if (!(bounds.beyond > 0.0)) return;
-  const FarApart far = far_apart(a, b, p);
-  if (!(far.upper + far.beyond < bounds.certain_upper())) return;
-  bounds.upper = far.upper;
-  bounds.beyond = far.beyond;
-}
-
 DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
                              const RelativePose& a_from_b) noexcept {
   const double first = (b.common() - a.common()).norm();
@@ -125,9 +98,9 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
     bounds.raise(proved_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  bound_far_away(bounds, a, b, p);
-  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
+  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight)) {
     prove_from_below(bounds, a, b, p);
+  }
   DistanceResult result = conclude(a, b, bounds, p);
   result.path = DistancePath::kLoop;
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
@@ -159,36 +132,6 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return result;
 }
 
-// Of bodies that overlap or touch more is rounded than of others, and their bounds may come out
-// wider than a converged answer's: then once more, with less rounding of the pose. Both are bounds.
-void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                   const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) noexcept {
-  const double gap = r.upper - r.lower;
-  const bool overlapping = r.status == DistanceStatus::kOverlapping;
-  if (!overlapping && r.status != DistanceStatus::kTouching) return;
-  if (!(gap < kInfinity)) return;
-  const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
-  if (is_as_promised(a, b, p.size, r.upper, gap)) return;
-  const std::optional<RelativePose> nearer = rounded_once(a_from_b);
-  if (!nearer) return;
-  TrackingState again = state;
-  DistanceResult narrower;
-  if (still_overlapping(a, b, *nearer, again, narrower)) {
-    narrower.path = r.path;
-  } else if (overlapping) {
-    return;
-  } else {
-    narrower = searched(a, b, *nearer, again, true);
-  }
-  narrower.iterations += r.iterations;
-  narrower.lower = std::max(narrower.lower, r.lower);
-  narrower.upper = std::min(narrower.upper, r.upper);
-  if (!(narrower.upper - narrower.lower < gap)) return;
-  narrower.distance = std::clamp(narrower.distance, narrower.lower, narrower.upper);
-  r = narrower;
-  state = again;
-}
-
 // Lengths that overflow leave numbers that are none.
 bool says_something(const DistanceResult& r) noexcept {
   return r.lower <= r.distance && r.distance <= r.upper && r.upper < kInfinity &&
@@ -217,7 +160,6 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
   DistanceResult result = searched(a, b, a_from_b, state, depth);
-  if (depth) narrow_bounds(a, b, a_from_b, state, result);
   finish(a, b, result);
   return result;
 }
@@ -228,7 +170,6 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   DistanceResult result;
   if (still_overlapping(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
-    narrow_bounds(a, b, a_from_b, state, result);
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);
   }
