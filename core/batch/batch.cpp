@@ -120,11 +120,12 @@ class DistanceBatch::Rounds {
   // Sorted by where they are now: the processor foresees what it has just done.
   void ask_changed() noexcept {
     std::array<std::uint32_t, kFeaturePairs + 1> ends{};
-    for (const Changed& d : changed_) ++ends[static_cast<std::size_t>(d.features) + 1U];
+    for (const Changed& c : changed_) ++ends[static_cast<std::size_t>(c.features) + 1U];
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
     order_.resize(changed_.size());
-    for (std::uint32_t i = 0; i < order_.size(); ++i)
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
       order_[ends[static_cast<std::size_t>(changed_[i].features)]++] = i;
+    }
     for (const std::uint32_t i : order_) ask_changed(changed_[i]);
   }
 
@@ -138,8 +139,8 @@ class DistanceBatch::Rounds {
     slots_.enter(pair, features);
   }
 
-  // In the order of the pairs. More than one step, and the features are others, or the pair is none
-  // for vector code.
+  // In the order of the pairs. After more than one transition the features are others, or the pair
+  // is not for vector code.
   void ask_unassigned() noexcept {
     for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
       for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {
@@ -157,9 +158,9 @@ class DistanceBatch::Rounds {
     }
   }
 
-  void ask_changed(const Changed& d) noexcept {
-    const std::uint32_t pair = d.pair;
-    ask(pair, d.start);
+  void ask_changed(const Changed& of) noexcept {
+    const std::uint32_t pair = of.pair;
+    ask(pair, of.start);
     Residence& residence = residences_[pair];
     residence.add(rounds_, true);
     const auto features = features_of(pair, of_.states[pair]);

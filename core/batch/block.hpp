@@ -1,9 +1,9 @@
 // What a batch remembers of eight pairs, in the order in which vector code reads it.
 //
-// A row holds one number of eight pairs and is a cache line; vectors of 2, 4 or 8 lanes read the
-// same rows. All pairs of a block are closest in the same kind of features, so that one
-// straight line of code decides whether they still are, without gathering anything: the features'
-// own numbers are in the rows, written when the pair came to these features.
+// A row holds one number of eight tracked pairs and is a cache line; vectors of 2, 4 or 8 lanes
+// read the same rows. All of a block have the same pair of features (FeaturePair), so that
+// straight-line code decides whether these are still closest, without gathering anything: the
+// features' own numbers are in the rows, written when a tracked pair came to them.
 #pragma once
 
 #include <array>
@@ -112,8 +112,8 @@ struct BatchRound {
   std::array<List, kFeaturePairs> lists;
 };
 
-// Judges every lane: where the features of the last query are the closest still and the bounds are
-// tight, writes what distance() would, bit for bit; the others are listed as failed, in so many
+// Judges every lane: where the features of the last query are the closest still and the distance is
+// certified, writes what distance() would, bit for bit; the others are listed as failed, in so many
 // blocks. Picks the widest vectors that the machine has; the results do not depend on it.
 [[nodiscard]] std::size_t run_batch(const BatchRound& round) noexcept;
 

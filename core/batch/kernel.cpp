@@ -21,42 +21,36 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-struct Slack {
-  Lanes slack, tight;
+// What of Precision a certificate takes, m.
+struct Precisions {
+  Lanes error_bound, gap_tolerance;
 };
 
 // precision() of core/model/error_bounds.hpp.
-HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses& pose,
-                            Lanes farthest) {
+HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativePoses& pose,
+                                 Lanes farthest) {
   const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
   const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
-  Lanes reach_a = radius_a, reach_b = radius_b, tight = all(kTightUlps[0]);
-  Lanes on_features = hn::Add(row(kSlackA), row(kSlackB));
+  Lanes reach_a = radius_a, reach_b = radius_b, ulps = all(kTightUlps[0]);
+  Lanes on_features = row(kSlackA) + row(kSlackB);
   if (!plain) {
     const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
-    const auto far = [&](Lanes of_other)
-                         HWY_ATTR { return hn::Add(hn::Add(of_other, apart), farthest); };
-    const auto add = [&](Lanes at, double ulps, Lanes reach) HWY_ATTR {
-      on_features = hn::Add(on_features, hn::Mul(at, hn::Mul(all(kUlp * ulps), reach)));
-    };
-    reach_a = hn::Max(radius_a, hn::Mul(at_a, far(radius_b)));
-    reach_b = hn::Max(radius_b, hn::Mul(at_b, far(radius_a)));
-    add(at_a, kUlpsOnA, reach_a);
-    add(at_b, kUlpsOnB, reach_b);
-    tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
+    reach_a = hn::Max(radius_a, at_a * ((radius_b + apart) + farthest));
+    reach_b = hn::Max(radius_b, at_b * ((radius_a + apart) + farthest));
+    on_features = on_features + at_a * (all(kUlp * kUlpsOnA) * reach_a);
+    on_features = on_features + at_b * (all(kUlp * kUlpsOnB) * reach_b);
+    ulps = hn::IfThenElse(hn::Gt(at_a + at_b, all(0.0)), all(kTightUlps[1]), ulps);
   }
-  const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
-  const Lanes stretched = hn::Mul(all(kStretched), farthest);
-  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), stretched));
-  const Lanes between = hn::Add(hn::Mul(all(kUlp * kUlpsBetween), apart), pose.translation_error);
-  const Lanes slack = hn::Add(hn::Add(on_features, between), hn::Mul(pose.rotation_error, turned));
-  return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
+  const Lanes size = (reach_a + reach_b) + apart;
+  const Lanes turned = hn::Min(reach_b, (reach_a + apart) + all(kStretched) * farthest);
+  const Lanes between = all(kUlp * kUlpsBetween) * apart + pose.translation_error;
+  return {(on_features + between) + pose.rotation_error * turned, (ulps * all(kUlp)) * size};
 }
 
 struct Answers {
   Lanes distance, lower, upper;
   Points normal, point_a, point_b;
-  LaneMask good;  // tight and positive: distance() would have said the same
+  LaneMask good;  // certified: distance() would have said the same
 };
 
 // `kept` where `where`, else `v`.
@@ -65,31 +59,32 @@ HWY_INLINE Points unless(LaneMask where, const Points& kept, const Points& v) {
           hn::IfThenElse(where, kept.z, v.z)};
 }
 
-// From the polyhedra's surfaces to the rounded bodies'.
+// From the polyhedra's surfaces to those of the swept-sphere bodies.
 HWY_INLINE void add_radii(const double* rows, Answers& r) {
   const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
   const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
-  const Lanes sum = hn::Add(radius_a, radius_b);
+  const Lanes sum = radius_a + radius_b;
   const LaneMask bare = hn::Eq(sum, all(0.0));  // whose zeros keep their signs
-  const Lanes rounding = hn::IfThenElse(
-      bare, sum, hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
-  r.distance = hn::Sub(r.distance, sum);
-  r.lower = hn::Sub(r.lower, hn::Add(sum, rounding));
-  r.upper = hn::Sub(r.upper, hn::Sub(sum, rounding));
+  const Lanes rounding =
+      hn::IfThenElse(bare, sum, all(kRadiusRounding) * (sum + hn::Abs(r.upper - sum)));
+  r.distance = r.distance - sum;
+  r.lower = r.lower - (sum + rounding);
+  r.upper = r.upper - (sum - rounding);
   r.point_a = unless(bare, r.point_a, r.point_a + radius_a * r.normal);
   r.point_b = unless(bare, r.point_b, r.point_b - radius_b * r.normal);
   r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
 }
 
-HWY_INLINE Answers conclude(const Closest& c, const Slack& p) {
-  const LaneMask tight = hn::Le(hn::Sub(c.apart, c.certified), p.tight);
+// certify() of core/feature_walk/steps-inl.hpp.
+HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
+  const LaneMask narrow = hn::Le(c.apart - c.certified, p.gap_tolerance);
   Answers r{c.apart,
-            hn::Sub(c.certified, p.slack),
-            hn::Add(c.apart, p.slack),
+            c.certified - p.error_bound,
+            c.apart + p.error_bound,
             c.normal,
             c.point_a,
             c.point_b,
-            hn::And(c.closest, hn::And(hn::Gt(c.certified, p.slack), tight))};
+            hn::And(c.closest, hn::And(hn::Gt(c.certified, p.error_bound), narrow))};
   return r;
 }
 
@@ -133,7 +128,7 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
                                             load_poses(poses, &block.body_b[first]));
   const Closest c = closest<kPair>({rows + kFeatureRows * kBlockLanes, block}, pose);
-  Answers r = conclude(c, precisions(rows, block.plain, pose, c.apart));
+  Answers r = certify(c, precisions(rows, block.plain, pose, c.apart));
   if (HWY_LIKELY(block.plain)) {
     write(r, block, first, round.results);
   } else {

@@ -58,8 +58,8 @@ HWY_INLINE Lanes after(Lanes number) { return hn::Add(number, all(1.0)); }
 
 // Neighbours by their numbers, NextFeature.
 HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, all(from)); }
-HWY_INLINE Lanes if_certain(LaneMask certain, Lanes next) {
-  return hn::IfThenElse(certain, next, all(kNextUnknown));
+HWY_INLINE Lanes next_if(LaneMask beyond_rounding, Lanes next) {
+  return hn::IfThenElse(beyond_rounding, next, all(kNextUnknown));
 }
 // Where s is beyond an end of an edge, the vertex there comes first: `at_begin` or the next number.
 HWY_INLINE Lanes unless_beyond(Lanes begin, Lanes end, Lanes s, NextFeature at_begin, Lanes next) {

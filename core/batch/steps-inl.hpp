@@ -44,7 +44,7 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   const LaneMask from_a = hn::And(hn::Gt(on_a.derivative, error), hn::Ge(on_a.derivative, of_b));
   c.derivative = hn::IfThenElse(from_a, on_a.derivative, of_b);
   c.next = hn::IfThenElse(from_a, on_a.which,
-                          if_certain(hn::Gt(of_b, error), named(on_b.which, kNextOfOther)));
+                          next_if(hn::Gt(of_b, error), named(on_b.which, kNextOfOther)));
   return c;
 }
 
@@ -70,9 +70,8 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
       Beside<!kIsB>{at, kDirectionsAtEdge}.least(owner.opposite().direction_to_own(line.way));
   const LaneMask recede = hn::Lt(side.derivative, hn::Neg(error));
   c.closest = hn::And(within, hn::And(recede, hn::Gt(away.derivative, error)));
-  c.next =
-      hn::IfThenElse(recede, if_certain(hn::Gt(hn::Neg(away.derivative), error), away.which),
-                     if_certain(hn::Gt(side.derivative, error), named(side.which, kNextBeside)));
+  c.next = hn::IfThenElse(recede, next_if(hn::Gt(hn::Neg(away.derivative), error), away.which),
+                          next_if(hn::Gt(side.derivative, error), named(side.which, kNextBeside)));
   c.next = unless_beyond(begin, end, line.s, kNextEnd, c.next);
   line.place_witnesses(c, of_way);
   return c;
@@ -107,8 +106,8 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const LaneMask above = hn::Gt(c.apart, all(0.0)), inside = hn::Ge(within.derivative, all(0.0));
   c.closest = hn::And(hn::And(above, inside), hn::Gt(away.derivative, error));
   const Lanes down =
-      if_certain(hn::Gt(hn::Neg(away.derivative), error), named(away.which, kNextOfOther));
-  c.next = if_certain(above, hn::IfThenElse(inside, down, within.which));
+      next_if(hn::Gt(hn::Neg(away.derivative), error), named(away.which, kNextOfOther));
+  c.next = next_if(above, hn::IfThenElse(inside, down, within.which));
   plane.place_witnesses(c, tip, own_tip);
   return c;
 }
@@ -136,11 +135,11 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
     return hn::IfThenElseZero(leave, hn::Mul(all(step), after(side.which)));
   };
   const LaneMask crossing = hn::Gt(lines.sine2, all(kCrossingSine2));
-  c.next = if_certain(hn::Or(leave_a, leave_b),
-                      hn::Add(beside(leave_a, on_a, 1.0), beside(leave_b, on_b, kNextBesideB)));
+  c.next = next_if(hn::Or(leave_a, leave_b),
+                   hn::Add(beside(leave_a, on_a, 1.0), beside(leave_b, on_b, kNextBesideB)));
   c.next = unless_beyond(begin_b, end_b, lines.t, kNextEndB, c.next);
   c.next = unless_beyond(begin_a, end_a, lines.s, kNextEnd, c.next);
-  c.next = if_certain(crossing, c.next);
+  c.next = next_if(crossing, c.next);
   c.closest = hn::And(hn::And(crossing, recede), hn::And(on_first, on_second));
   c.normal = over(g, sine);
   lines.place_witnesses(c);

@@ -275,9 +275,8 @@ struct TrackedPair {
   Vec4 own_b;             // point_b in frame B
   Vec4 normal;            // unit, from A to B, frame A
   double apart;           // m: |point_b - point_a|; of penetrating bodies minus the depth
-  double certified;  // m: how far apart the normal certifies the polyhedra, Precision::slack not
-                     // yet taken off
-  double slack;      // m: of Precision
+  double certified;    // m: how far apart the normal certifies the polyhedra, but for error_bound
+  double error_bound;  // m: Precision::slack
   int transitions;
   int parallel_transitions;  // of these, to features that are parallel within tolerance
 

@@ -42,7 +42,7 @@ HWY_INLINE double room_on_facet(const ConvexPolyhedron& body, const Facet& facet
   return least;
 }
 
-// Of a pair that holds: the disc's radius.
+// Of the features that touch: the disc's radius.
 HWY_INLINE double room_of(const TrackedPair& pair) {
   double room = pair.room;
   if (pair.on_a.kind == FeatureKind::kFacet) {
@@ -98,7 +98,7 @@ HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
   }
 }
 
-// Is every other way out longer?
+// Is the displacement along every other direction longer?
 HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
   const Vec4 middles = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
   const double along = dot(middles, pair.normal), off = kAmple * size;
@@ -111,7 +111,7 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.apart};
   const Precision p = precision(pair.a, pair.b, place, std::abs(pair.apart));
-  pair.slack = p.slack;
+  pair.error_bound = p.slack;
   const bool certified = pair.apart > 0.0
                              ? pair.certified > p.slack
                              : pair.apart + pair.beyond < -p.slack && is_shortest(pair, p.size);
@@ -150,7 +150,7 @@ HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
   DistanceResult r = result_of(pair);
   r.path = DistancePath::kOverlap;
   if (pair.apart > 0.0) return r;
-  r.upper = (pair.apart + pair.beyond) + pair.slack;
+  r.upper = (pair.apart + pair.beyond) + pair.error_bound;
   r.status = DistanceStatus::kOverlapping;
   return r;
 }

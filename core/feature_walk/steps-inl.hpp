@@ -241,7 +241,7 @@ HWY_INLINE WalkEnd certify(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const Precision p = precision(
       pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.apart}, pair.apart);
-  pair.slack = p.slack;
+  pair.error_bound = p.slack;
   pair.on_a.point = vec3(pair.point_a);
   pair.on_b.point = vec3(pair.own_b);
   const bool certified = pair.certified > p.slack && pair.apart - pair.certified <= p.tight;
@@ -273,7 +273,8 @@ HWY_INLINE DistanceResult result_of(const TrackedPair& pair) {
   static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
   DistanceResult r;
   double* numbers = &r.distance;
-  store4(vec4(pair.apart, pair.certified - pair.slack, pair.apart + pair.slack, 0.0), numbers);
+  store4(vec4(pair.apart, pair.certified - pair.error_bound, pair.apart + pair.error_bound, 0.0),
+         numbers);
   store4(pair.normal, numbers + 3);
   store4(pair.point_a, numbers + 6);
   store4(pair.point_b, numbers + 9);

@@ -20,22 +20,22 @@ namespace clearance::HWY_NAMESPACE {
 // The first lanes of four, at most.
 HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
 
-// How fast up to four of a row's n vectors, from number i on, rise along g.
+// The directional derivatives along g of up to four of a row's n vectors, from number i on.
 HWY_INLINE Vec4 derivatives(const double* row, std::int32_t n, std::int32_t i, const Vec4 (&g)[3]) {
   return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
 }
 
-// Does a vertex's every edge fall away along g, by more than -limit per unit length?
+// Is the directional derivative along g of every edge of a vertex below `limit`, per unit length?
 HWY_INLINE bool all_edges_recede(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g,
                                  double limit) {
   const double* row = body.outgoing.row(vertex.first_edge);
   const std::int32_t n = vertex.edges;
   const Vec4 along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
-  unsigned rise = ~less(derivatives(row, n, 0, along), spread(limit)) & first_lanes(n);
+  unsigned others = ~less(derivatives(row, n, 0, along), spread(limit)) & first_lanes(n);
   for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
-    rise |= ~less(derivatives(row, n, i, along), spread(limit)) & first_lanes(n - i);
+    others |= ~less(derivatives(row, n, i, along), spread(limit)) & first_lanes(n - i);
   }
-  return rise == 0;
+  return others == 0;
 }
 
 // In the order of the sums of Vec4, and of a batch's lanes.
@@ -63,14 +63,15 @@ HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& ver
   return steepest(body, vertex, vec3(g));
 }
 
-// How fast the facets beside an edge, left and right, rise along g; a segment's only edge has none.
+// The directional derivatives along g of the facets beside an edge, left and right; a segment's
+// only edge has none.
 HWY_INLINE Vec2 facet_derivatives(const Edge& edge, Vec4 g) {
   const double* inward = edge.inward.data();
   return (load2(inward) * vec2(lane(g, 0)) + load2(inward + 2) * vec2(lane(g, 1))) +
          load2(inward + 4) * vec2(lane(g, 2));
 }
 
-// Do both fall away along g, by more than -limit per unit length?
+// Are both below `limit`, per unit length?
 HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
   return edge.facet[0] == kNone || both_less(facet_derivatives(edge, g), vec2(limit));
 }

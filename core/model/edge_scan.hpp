@@ -1,4 +1,4 @@
-// The steepest of the edges that leave a vertex.
+// The edge with the greatest directional derivative of those that leave a vertex.
 #pragma once
 
 #include <cstdint>

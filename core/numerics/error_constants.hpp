@@ -89,17 +89,17 @@ inline constexpr double kRadiusRounding = 0x1.1p-53;
 // (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
 inline constexpr double kSlender = 0x1p-20;
 
-// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give
+// A directional derivative beyond this, per unit length, has the sign that exact arithmetic would give
 // with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of their
-// product all but the last sum, which is exact there or as small as the rate, by 2: 7 of 8.
+// product all but the last sum, which is exact there or as small as the derivative, by 2: 7 of 8.
 inline constexpr double kDerivativeError = 0x1p-50;
 
-// Facets that are level along two edges may be tilted by a little more than either.
+// Facets that are parallel along two edges may be tilted by a little more than either.
 inline constexpr double kParallelTilt = 2.0 * kDerivativeError;
 
 // How far off the tilt of an edge or facet against a direction may be: rotating the direction (4),
 // both directions' own rounding (1 each). What their product adds, 2 over the smaller body's size,
-// is left over of the counts above: a point on a level feature takes 12 and 9 of them.
+// is left over of the counts above: a point on a parallel feature takes 12 and 9 of them.
 inline constexpr double kTiltError = 6 * kUlp;
 
 // Edges nearer to parallel than this (the sine's square) have no direction across both that is

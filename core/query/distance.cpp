@@ -36,15 +36,15 @@ inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
   return result;
 }
 
-// From no features, from parallel ones, or of bodies that penetrated each other.
-inline HWY_NOINLINE DistanceResult walk_from_others(const ConvexPolyhedron& a,
-                                                    const ConvexPolyhedron& b,
-                                                    const Pose& world_from_a,
-                                                    const Pose& world_from_b, TrackingState& state,
-                                                    WalkStart start) {
+// From no features, from parallel ones, or of bodies that penetrated each other. `start`: as of
+// walk().
+template <class... Start>
+HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                           const Pose& world_from_a, const Pose& world_from_b,
+                                           TrackingState& state, Start... start) {
   if (state.a.penetrating) return walk_penetrating(a, b, world_from_a, world_from_b, state);
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
-  TrackedPair pair(a, b, a_from_b, state, start);
+  TrackedPair pair(a, b, a_from_b, state, start...);
   if (walk(pair) == WalkEnd::kCertified) return rounded_result_of(pair);
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
@@ -62,15 +62,36 @@ inline HWY_NOINLINE DistanceResult walk_further(const ConvexPolyhedron& a,
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
+DistanceResult tracked_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                   const Pose& world_from_a, const Pose& world_from_b,
+                                   TrackingState& state) {
+  return walk_from_others(a, b, world_from_a, world_from_b, state);
+}
+inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexPolyhedron& a,
+                                                         const ConvexPolyhedron& b,
+                                                         const Pose& world_from_a,
+                                                         const Pose& world_from_b,
+                                                         TrackingState& state, WalkStart start) {
+  return walk_from_others(a, b, world_from_a, world_from_b, state, start);
+}
+
 // Every query by poses: transitions until the features are closest and certified, else the search.
+// `start` is a WalkStart or nothing: one argument more than fits into registers costs a query that
+// begins at the beginning 1 ns. So does a query that begins at no feature if it comes by here:
+// distance() looks at the state first.
+template <class... Start>
 HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                const Pose& world_from_a, const Pose& world_from_b,
-                               TrackingState& state, WalkStart start) {
+                               TrackingState& state, Start... start) {
   if (HWY_UNLIKELY(!is_straight(state) || !can_be_walked(a, b, state))) {
-    return walk_from_others(a, b, world_from_a, world_from_b, state, start);
+    if constexpr (sizeof...(start) == 0) {
+      return tracked_from_others(a, b, world_from_a, world_from_b, state);
+    } else {
+      return continued_from_others(a, b, world_from_a, world_from_b, state, start...);
+    }
   }
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
-  TrackedPair pair(a, b, a_from_b, state, start);
+  TrackedPair pair(a, b, a_from_b, state, start...);
   ++pair.transitions;
   const Transition first = transition<Tracking::kFirst>(pair);
   if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == WalkEnd::kCertified)) {
@@ -80,12 +101,10 @@ HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron
                       {pair.transitions, pair.parallel_transitions}, first);
 }
 
-// Twice: `start` is one argument more than fits into registers, and costs a query that begins at
-// the beginning 1 ns.
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
-  return walk(a, b, world_from_a, world_from_b, state, {});
+  return walk(a, b, world_from_a, world_from_b, state);
 }
 DistanceResult continued_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                   const Pose& world_from_a, const Pose& world_from_b,
@@ -106,6 +125,7 @@ HWY_AFTER_NAMESPACE();
 namespace clearance {
 
 HWY_EXPORT(tracked_distance);
+HWY_EXPORT(tracked_from_others);
 HWY_EXPORT(continued_distance);
 
 namespace {
@@ -116,10 +136,10 @@ std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const Co
                                              double far_away) noexcept {
   if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return {};
   const double apart = a_from_b.translation.norm(), size = a.bounding_radius + b.bounding_radius;
-  const double slack = a_from_b.translation_error + 0x1p-50 * (apart + size) + kUnderflow;
+  const double error = a_from_b.translation_error + 0x1p-50 * (apart + size) + kUnderflow;
   DistanceResult r;
-  r.lower = apart - size - slack;
-  r.upper = apart + size + slack;
+  r.lower = apart - size - error;
+  r.upper = apart + size + error;
   r.distance = r.lower;
   r.normal = a_from_b.translation / apart;
   r.point_on_a = a.interior;
@@ -169,7 +189,9 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const Pose& world_from_a, const Pose& world_from_b,
                         TrackingState& state) noexcept {
-  return HWY_STATIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state);
+  return is_straight(state)
+             ? HWY_STATIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state)
+             : HWY_STATIC_DISPATCH(tracked_from_others)(a, b, world_from_a, world_from_b, state);
 }
 
 #else
@@ -195,8 +217,9 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
-  return HWY_DISPATCH_TABLE(tracked_distance)[chosen->GetIndex()](a, b, world_from_a, world_from_b,
-                                                                  state);
+  const auto& queries = is_straight(state) ? HWY_DISPATCH_TABLE(tracked_distance)
+                                           : HWY_DISPATCH_TABLE(tracked_from_others);
+  return queries[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
 
 #endif

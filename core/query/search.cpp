@@ -15,14 +15,14 @@
 namespace clearance {
 namespace {
 
-// What is known so far of the distance between the cores, slack not yet taken.
+// What is known so far of the distance between the polyhedra, the error bound not yet taken off.
 struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
-  double beyond = 0.0;  // what the points' places may cost beyond the slack
+  double beyond = 0.0;  // what the points' places may cost beyond the error bound
   Vec3 normal = Vec3::Zero();
 
-  [[nodiscard]] double certain_upper() const noexcept { return upper + beyond; }
+  [[nodiscard]] double certified_upper() const noexcept { return upper + beyond; }
   void raise(double value, const Vec3& n) noexcept {
     if (value > lower) {
       lower = value;
@@ -31,11 +31,11 @@ struct Bounds {
   }
 };
 
-void prove_from_below(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
-                      const Precision& p) noexcept {
+void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
+                   const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
-    if (bounds.certain_upper() - bounds.lower <= p.tight) return;
+    if (bounds.certified_upper() - bounds.lower <= p.tight) return;
   }
 }
 
@@ -50,7 +50,7 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
                         const Precision& p) noexcept {
   DistanceResult r;
   r.lower = bounds.lower - p.slack;
-  r.upper = bounds.certain_upper() + p.slack;
+  r.upper = bounds.certified_upper() + p.slack;
   r.distance = bounds.upper;
   r.normal = unit_along(bounds.normal);
   r.point_on_a = a.common();
@@ -59,11 +59,11 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
   return r;
 }
 
-// The distance that the optimal active set proves by itself: what lies behind both features along
-// `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
-// n.
-double proved_distance(const Vec3& n, double apart, const ActiveFeature& a, const ActiveFeature& b,
-                       const Precision& p) noexcept {
+// The distance that the optimal active set certifies by itself: both bodies lie behind their
+// features along n. Along an active edge the body may reach its whole length farther, as far as
+// rounding tilts n.
+double certified_distance(const Vec3& n, double apart, const ActiveFeature& a,
+                          const ActiveFeature& b, const Precision& p) noexcept {
   const auto along_edge = [&](const ActiveFeature& s) {
     return s.feature() == FeatureKind::kEdge
                ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
@@ -72,8 +72,8 @@ double proved_distance(const Vec3& n, double apart, const ActiveFeature& a, cons
   return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }
 
-// Lines that all but run along each other are closest far beyond where Precision looks for the
-// closest points of unbounded bodies: what rounding costs the points there.
+// m: what rounding costs points that lie far beyond where Precision looks for the closest points of
+// unbounded bodies, as those of lines that are nearly parallel.
 double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
                     const Precision& p) noexcept {
   if (a.body().bounded() || b.body().bounded()) return 0.0;
@@ -95,26 +95,26 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
   if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
     const double apart = outcome.towards.norm();
     const Vec3 n = outcome.towards / apart;
-    bounds.raise(proved_distance(n, apart, a, b, p), n);
+    bounds.raise(certified_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight)) {
-    prove_from_below(bounds, a, b, p);
+  if (!met && !(bounds.certified_upper() - bounds.lower <= p.tight)) {
+    certify_lower(bounds, a, b, p);
   }
   DistanceResult result = conclude(a, b, bounds, p);
   result.path = DistancePath::kLoop;
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.certain_upper() - above > p.tight) {
+  if (bounds.certified_upper() - above > p.tight) {
     refine(a, b, a_from_b, p, result);
     result.path = DistancePath::kRobust;
   }
-  // Points far away, whose places cost much, may be nearer than is proved.
+  // Points far away, whose places cost much, may be nearer than is certified.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
   return result;
 }
 
-// From the features of the state on, which it moves on; of the cores, without radii.
+// From the features of the state on, which it moves on; of the polyhedra, without radii.
 DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
