@@ -13,4 +13,12 @@ namespace clearance::test {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()));
 }
 
+// On the straight way from one pose to another with an even turn, s in [0, 1].
+[[nodiscard]] inline Pose between(const Pose& from, const Pose& to, double s) {
+  Pose pose;
+  pose.position = from.position + s * (to.position - from.position);
+  pose.orientation = from.orientation.normalized().slerp(s, to.orientation.normalized());
+  return pose;
+}
+
 }  // namespace clearance::test

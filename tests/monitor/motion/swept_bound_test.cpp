@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "monitor/monitor.hpp"
-#include "tests/monitor/adversary_motion.hpp"
 #include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "monitor/monitor.hpp"
-#include "tests/monitor/adversary_motion.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/poses.hpp"
 
 namespace clearance {
 namespace {

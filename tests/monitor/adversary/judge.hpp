@@ -1,0 +1,51 @@
+// Holds every figure of a report against an oracle: bounds now and since the last tick, counts,
+// ages, the minimum, zones.
+#pragma once
+
+#include <vector>
+
+#include "config/refresh_share.hpp"
+#include "monitor/monitor.hpp"
+#include "tests/monitor/adversary/adversary.hpp"
+#include "tests/monitor/adversary/oracle.hpp"
+
+namespace clearance::test {
+
+class Judge {
+ public:
+  // `budget_is_ample`: it covers whatever may be asked in a tick.
+  Judge(const Scene& scene, const Oracle& oracle, Style style, bool budget_is_ample);
+
+  // One tick; fails the running test where the report is false. Tells whether it did.
+  [[nodiscard]] bool accepts(const Report& report, const Monitor& monitor, Adversary& adversary);
+
+  // Zones that were entered for caution only, in ticks, from the thirtieth on.
+  [[nodiscard]] int uncertain_zones() const { return uncertain_zones_; }
+
+ private:
+  void find_truth(Adversary& adversary);
+  void judge_pairs(const Report& report, const Monitor& monitor);
+  [[nodiscard]] bool is_bounded(std::uint32_t pair) const;
+  void judge_bounds(std::uint32_t pair, const PairReport& report) const;
+  void judge_age(std::uint32_t pair, const PairReport& report, std::uint64_t cycle);
+  void judge_counts(const Report& report) const;
+  void judge_minimum(const Report& report) const;
+  void judge_zone(const Zone& zone, const ZoneReport& report, bool all_fresh);
+  void judge_turns(const Report& report) const;
+
+  const Scene& scene_;
+  const Oracle& oracle_;
+  const Style style_;
+  const bool ample_;
+  const RefreshShare share_;
+  const long double rounding_;  // of poses and of the oracle, m
+  int tick_ = -1;
+  // By pair, m: in this tick, and at the least of the instants tried since the last one.
+  std::vector<long double> now_, since_;
+  std::vector<std::uint64_t> known_for_;    // by pair: ticks in a row
+  std::array<std::uint32_t, 4> counted_{};  // evaluated, carried, stale, unknown
+  std::uint64_t stalest_ = 0;               // ticks
+  int uncertain_zones_ = 0;
+};
+
+}  // namespace clearance::test
