@@ -65,7 +65,7 @@ struct Options {
   bool cold = false;
   int repeat = 1;
   bool check = false;
-  double tolerance = 1e-14, gap = 1e-14;
+  double tolerance = 1e-14, gap = 1.25e-14;
 };
 
 void tell(const Options& options, std::size_t line, const std::vector<std::string>& faults) {

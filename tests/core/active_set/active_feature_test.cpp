@@ -25,7 +25,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   side.place_inside(Vec3::Zero());
   // On the plane of the facet that is said to block, a metre beside it.
   advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
-  ASSERT_EQ(side.feature(), Feature::kFacet);
+  ASSERT_EQ(side.feature(), FeatureKind::kFacet);
   EXPECT_EQ(side.facet().normal, Vec3::UnitY());
   EXPECT_EQ(side.own(), Vec3(0.5, 0.5, 0.0));
 }
