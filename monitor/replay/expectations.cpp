@@ -105,7 +105,8 @@ std::optional<std::string> Expectations::check_passages(const Report& report,
                          metres(found.upper), expected);
     }
     return fmt::format(
-        "{} is not certified to have been {} apart between this tick and the last: lower bound {}{}",
+        "{} is not certified to have been {} apart between this tick and the last: lower bound "
+        "{}{}",
         who, metres(*min_distance_), metres(found.lower), expected);
   }
   return std::nullopt;
