@@ -1,5 +1,7 @@
 #include "config/cell_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -22,6 +24,7 @@
 namespace clearance {
 namespace {
 
+// Limits that keep every derived number (periods, counts) within its type.
 constexpr std::int64_t kMaxBudget = 1'000'000'000;
 constexpr std::int64_t kMaxDomain = 232;                 // the last whose ports fit into 16 bits
 constexpr std::size_t kMaxDdsName = 255;                 // bytes
@@ -31,8 +34,8 @@ constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 // The sections of a cell, one function each.
 class CellReader {
  public:
-  CellReader(const std::filesystem::path& file, Diagnostics& complaints, Revision& revision)
-      : file_(file), complaints_(complaints), revision_(revision) {}
+  CellReader(const std::filesystem::path& file, Diagnostics& diagnostics, Revision& revision)
+      : file_(file), diagnostics_(diagnostics), revision_(revision) {}
 
   void read(const YamlNode& root, Scene& scene);
 
@@ -45,38 +48,40 @@ class CellReader {
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // where the cell gives it
 };
 
+// Both units must be named: a default would be wrong for many cells, in silence.
 std::optional<Units> CellReader::read_units(const YamlNode& node) {
-  MapReader map(node, "the units", complaints_);
+  MapReader map(node, "the units", diagnostics_);
   const YamlNode* length_node = map.required("length");
   const YamlNode* angle_node = map.required("angle");
   map.refuse_unknown_keys();
   std::optional<LengthUnit> length;
   std::optional<AngleUnit> angle;
-  if (length_node != nullptr) length = read_length_unit(*length_node, complaints_);
-  if (angle_node != nullptr) angle = read_angle_unit(*angle_node, complaints_);
+  if (length_node != nullptr) length = read_length_unit(*length_node, diagnostics_);
+  if (angle_node != nullptr) angle = read_angle_unit(*angle_node, diagnostics_);
   if (!length || !angle) return std::nullopt;
   return Units{*length, *angle};
 }
 
+// Rate, budget and time limits; what a cell leaves out keeps the default of Scene.
 void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
   if (const YamlNode* rate = map.optional("rate_hz")) {
     scene.rate_hz =
-        read_number(*rate, kRates, "the rate in Hz", complaints_).value_or(scene.rate_hz);
+        read_number(*rate, kRates, "the rate in Hz", diagnostics_).value_or(scene.rate_hz);
   }
   budget_ = map.optional("budget");
   if (budget_ != nullptr) {
     const auto queries =
-        read_integer(*budget_, 1, kMaxBudget, "distance queries a tick", complaints_);
+        read_integer(*budget_, 1, kMaxBudget, "distance queries a tick", diagnostics_);
     if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
   }
   if (const YamlNode* refresh = map.optional("refresh_s")) {
     scene.refresh_s = read_number(*refresh, kRefreshes,
-                                  "seconds within which every pair is refreshed", complaints_)
+                                  "seconds within which every pair is refreshed", diagnostics_)
                           .value_or(scene.refresh_s);
   }
   if (const YamlNode* limit = map.optional("future_limit_ms")) {
@@ -88,7 +93,7 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
 
 // DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
 void CellReader::read_topics(const YamlNode& node, Topics& topics) {
-  MapReader map(node, "the topics", complaints_);
+  MapReader map(node, "the topics", diagnostics_);
   std::map<std::string, const char*> taken;
   for (const auto& [key, topic] : {std::pair("poses", &topics.poses),
                                    {"distances", &topics.distances},
@@ -97,7 +102,7 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
                                    {"zones", &topics.zones}}) {
     const YamlNode* name_node = map.optional(key);
     const auto name = name_node == nullptr ? std::optional(*topic)
-                                           : read_text(*name_node, "a topic's name", complaints_);
+                                           : read_text(*name_node, "a topic's name", diagnostics_);
     if (!name) continue;
     const bool plain = std::all_of(name->begin(), name->end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -105,38 +110,46 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
     });
     if (name->empty() || !plain || name->size() > kMaxDdsName ||
         (name->front() >= '0' && name->front() <= '9')) {
-      complaints_.add(
+      diagnostics_.add(
           *name_node,
-          "found " + describe(*name_node) +
-              "; expected a topic's name: letters, digits, '_' and '/', no digit first");
+          fmt::format(
+              "found {}; expected a topic's name: letters, digits, '_' and '/', no digit first",
+              describe(*name_node)));
     } else if (const auto [same, is_new] = taken.emplace(*name, key); !is_new) {
-      complaints_.add(name_node == nullptr ? node : *name_node,
-                      "found the topic '" + *name + "' for both '" + same->second + "' and '" +
-                          key + "'; expected a topic of its own for each");
+      diagnostics_.add(
+          name_node == nullptr ? node : *name_node,
+          fmt::format(
+              "found the topic '{}' for both '{}' and '{}'; expected a topic of its own for each",
+              *name, same->second, key));
     }
     *topic = *name;
   }
   map.refuse_unknown_keys();
 }
 
+// Where the daemon is on DDS. The command line overrides the domain and the partition.
 void CellReader::read_dds(const YamlNode& node, Scene& scene) {
-  MapReader map(node, "the dds settings", complaints_);
+  MapReader map(node, "the dds settings", diagnostics_);
   if (const YamlNode* domain = map.optional("domain")) {
-    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", complaints_);
+    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics_);
     scene.domain = static_cast<std::uint32_t>(id.value_or(0));
   }
   if (const YamlNode* partition = map.optional("partition")) {
-    scene.partition = read_text(*partition, "a DDS partition", complaints_).value_or("");
+    scene.partition = read_text(*partition, "a DDS partition", diagnostics_).value_or("");
     if (!is_partition(scene.partition)) {
-      complaints_.add(*partition,
-                      "found " + describe(*partition) + "; expected a partition of at most " +
-                          std::to_string(kMaxDdsName) + " bytes without wildcards (* ? [)");
+      diagnostics_.add(
+          *partition,
+          fmt::format(
+              "found {}; expected a partition of at most {} bytes without wildcards (* ? [)",
+              describe(*partition), kMaxDdsName));
     }
   }
   if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, scene.topics);
   map.refuse_unknown_keys();
 }
 
+// Objects, then pairs, then zones: each list names what the one before defines, and is checked as
+// far as that could be read.
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities,
                                         Scene& scene) {
   ObjectDefaults defaults;
@@ -154,14 +167,14 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     ShapeReader shapes(quantities, file_.parent_path(), revision_);
     list = read_objects(*objects_node, defaults, quantities, shapes);
   }
-  GroupIndex members(list, complaints_);
+  GroupIndex group_index(list, diagnostics_);
   PairList pairs;
   pairs.complete = false;
   if (pairs_node != nullptr)
-    pairs = read_pairs(*pairs_node, allowed_node, list, members, complaints_);
+    pairs = read_pairs(*pairs_node, allowed_node, list, group_index, diagnostics_);
   if (zones_node != nullptr)
-    scene.zones = read_zones(*zones_node, list, pairs, members, quantities);
-  if (pairs.complete && list.names_known) members.refuse_unused_groups();
+    scene.zones = read_zones(*zones_node, list, pairs, group_index, quantities);
+  if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
     scene.simulation = read_simulation(*simulation_node, list, quantities);
   scene.pairs = std::move(pairs.pairs);
@@ -169,46 +182,46 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
 }
 
 void CellReader::read(const YamlNode& root, Scene& scene) {
-  MapReader map(root, "a cell", complaints_);
+  MapReader map(root, "a cell", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
-    scene.name = read_name(*name, "the cell's name", complaints_).value_or("");
+    scene.name = read_name(*name, "the cell's name", diagnostics_).value_or("");
   }
   std::optional<Units> units;
   if (const YamlNode* node = map.required("units")) units = read_units(*node);
   // Without units the rest is still read, for what else is wrong with it.
-  const Quantities quantities(units.value_or(Units{}), complaints_);
+  const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
   read_objects_and_pairs(map, quantities, scene);
   map.refuse_unknown_keys();
-  if (complaints_.empty()) refuse_small_budget(root, scene);
+  if (diagnostics_.empty()) refuse_small_budget(root, scene);
 }
 
+// A budget that cannot refresh every pair in time would break the promise of refresh_s in silence.
 void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
   const RefreshShare share = refresh_share(scene);
   if (share.queries() <= scene.budget) return;
-  complaints_.add(
+  diagnostics_.add(
       budget_ != nullptr ? *budget_ : root,
-      "found a budget of " + std::to_string(scene.budget) + "; expected at least " +
-          std::to_string(share.queries()) +
-          " queries a tick, which refreshing every pair within refresh_s takes (ticks: " +
-          std::to_string(share.ticks) + "): raise budget or refresh_s");
+      fmt::format("found a budget of {}; expected at least {} queries a tick, which refreshing "
+                  "every pair within refresh_s takes (ticks: {}): raise budget or refresh_s",
+                  scene.budget, share.queries(), share.ticks));
 }
 
 }  // namespace
 
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file) {
-  Diagnostics complaints(file.string());
+  Diagnostics diagnostics(file.string());
   const auto document = parse_yaml(yaml);
   if (const auto* fault = std::get_if<YamlFault>(&document)) {
-    complaints.add(fault->line, fault->column, fault->reason);
-    return complaints.sorted();
+    diagnostics.add(fault->line, fault->column, fault->reason);
+    return diagnostics.sorted();
   }
   Scene scene;
   Revision revision;
   revision.add(yaml);
-  CellReader(file, complaints, revision).read(std::get<YamlNode>(document), scene);
-  if (!complaints.empty()) return complaints.sorted();
+  CellReader(file, diagnostics, revision).read(std::get<YamlNode>(document), scene);
+  if (!diagnostics.empty()) return diagnostics.sorted();
   scene.revision = revision.value();
   scene.yaml = yaml;
   return scene;
@@ -217,9 +230,10 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
 CellResult read_cell(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file.string());
   if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-    Diagnostics complaints(file.string());
-    complaints.add(1, 1, "found no cell file: " + fault->reason + "; expected a YAML file");
-    return complaints.sorted();
+    Diagnostics diagnostics(file.string());
+    diagnostics.add(1, 1,
+                    fmt::format("found no cell file: {}; expected a YAML file", fault->reason));
+    return diagnostics.sorted();
   }
   return parse_cell(std::get<std::string>(bytes), file);
 }

@@ -1,5 +1,7 @@
 #include "config/diagnostics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -12,7 +14,7 @@ namespace {
 constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
 
 std::string shortened(const std::string& text) {
-  return text.size() <= kShown ? text : text.substr(0, kShown) + "...";
+  return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
 }
 
 }  // namespace
@@ -22,8 +24,7 @@ std::string describe(const YamlNode& node) {
     case YamlNode::Kind::kNull:
       return "nothing";
     case YamlNode::Kind::kSequence:
-      return node.items.empty() ? "an empty list"
-                                : "a list of " + std::to_string(node.items.size());
+      return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
     case YamlNode::Kind::kMap:
       return "a map";
     case YamlNode::Kind::kScalar:
@@ -31,13 +32,13 @@ std::string describe(const YamlNode& node) {
   }
   switch (scalar_type(node)) {
     case ScalarType::kNumber:
-      return "the number " + shortened(node.text);
+      return fmt::format("the number {}", shortened(node.text));
     case ScalarType::kFlag:
       return node.text;
     case ScalarType::kText:
       break;
   }
-  return node.text.empty() ? "an empty text" : "the text '" + shortened(node.text) + "'";
+  return node.text.empty() ? "an empty text" : fmt::format("the text '{}'", shortened(node.text));
 }
 
 void Diagnostics::add(int line, int column, const std::string& text) {
@@ -46,11 +47,11 @@ void Diagnostics::add(int line, int column, const std::string& text) {
   std::replace_if(
       one_line.begin(), one_line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
       ' ');
-  complaints_.push_back({line, column, std::move(one_line)});
+  diagnostics_.push_back({line, column, std::move(one_line)});
 }
 
 std::vector<CellError> Diagnostics::sorted() const {
-  std::vector<Diagnostic> ordered = complaints_;
+  std::vector<Diagnostic> ordered = diagnostics_;
   std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
   });
@@ -61,9 +62,9 @@ std::vector<CellError> Diagnostics::sorted() const {
       });
   ordered.erase(end, ordered.end());
   std::vector<CellError> errors;
-  for (const Diagnostic& complaint : ordered) {
-    errors.push_back({file_ + ":" + std::to_string(complaint.line) + ":" +
-                      std::to_string(complaint.column) + ": " + complaint.text});
+  for (const Diagnostic& diagnostic : ordered) {
+    errors.push_back(
+        {fmt::format("{}:{}:{}: {}", file_, diagnostic.line, diagnostic.column, diagnostic.text)});
   }
   return errors;
 }

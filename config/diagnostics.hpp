@@ -21,8 +21,8 @@ class Diagnostics {
   void add(const YamlNode& at, const std::string& text) { add(at.line, at.column, text); }
   void add(int line, int column, const std::string& text);
 
-  [[nodiscard]] bool empty() const { return complaints_.empty(); }
-  [[nodiscard]] std::size_t count() const { return complaints_.size(); }
+  [[nodiscard]] bool empty() const { return diagnostics_.empty(); }
+  [[nodiscard]] std::size_t count() const { return diagnostics_.size(); }
 
   // In the order of the file.
   [[nodiscard]] std::vector<CellError> sorted() const;
@@ -33,7 +33,7 @@ class Diagnostics {
     std::string text;
   };
   std::string file_;
-  std::vector<Diagnostic> complaints_;
+  std::vector<Diagnostic> diagnostics_;
 };
 
 }  // namespace clearance

@@ -1,13 +1,15 @@
 #include "config/group_index.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "config/spelling.hpp"
 
 namespace clearance {
 
-GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& complaints)
-    : list_(list), complaints_(complaints) {
+GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
+    : list_(list), diagnostics_(diagnostics) {
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
     if (!list.objects[i].name.empty()) entries_[list.objects[i].name] = {{i}, false, false};
   }
@@ -17,14 +19,17 @@ GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& complaints)
       if (entry->second.is_group) {
         entry->second.objects.push_back(i);
       } else {
-        complaints_.add(*list.places[i],
-                        "found the group '" + group + "' of object '" + list.objects[i].name +
-                            "'; expected another name, since an object has this one");
+        diagnostics_.add(*list.places[i],
+                         fmt::format("found the group '{}' of object '{}'; expected another name, "
+                                     "since an object has this one",
+                                     group, list.objects[i].name));
       }
     }
   }
 }
 
+// Unknown names are reported only when all names are known: otherwise the name may belong to an
+// object that could not be read.
 const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const std::string& name) {
   const auto found = entries_.find(name);
   if (found != entries_.end()) {
@@ -34,23 +39,26 @@ const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const s
   if (list_.names_known) {
     std::vector<std::string> names;
     for (const auto& [known, entry] : entries_) names.push_back(known);
-    complaints_.add(node, "found the unknown name '" + name + "'; expected a group or an object" +
-                              did_you_mean(name, names));
+    diagnostics_.add(
+        node, fmt::format("found the unknown name '{}'; expected a group or an object{}", name,
+                          did_you_mean(name, names)));
   }
   return nullptr;
 }
 
+// Both names are looked up even when the first is unknown, so that one run reports both.
 std::optional<Between> GroupIndex::read_between(MapReader& map) {
   const YamlNode* node = map.required("between");
   if (node == nullptr) return std::nullopt;
   if (node->kind != YamlNode::Kind::kSequence || node->items.size() != 2) {
-    complaints_.add(*node, "found " + describe(*node) + "; expected two groups or objects: [A, B]");
+    diagnostics_.add(
+        *node, fmt::format("found {}; expected two groups or objects: [A, B]", describe(*node)));
     return std::nullopt;
   }
   Between between{};
   for (std::size_t side = 0; side < 2; ++side) {
     const YamlNode& item = node->items[side];
-    if (const auto name = read_name(item, "a group or an object", complaints_)) {
+    if (const auto name = read_name(item, "a group or an object", diagnostics_)) {
       between.names[side] = *name;
       between.objects[side] = find(item, *name);
     }
@@ -59,6 +67,7 @@ std::optional<Between> GroupIndex::read_between(MapReader& map) {
   return between;
 }
 
+// Sorted and without repetitions: [arm, arm] meets every pair from both sides.
 std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   std::vector<PairKey> keys;
   for (const std::uint32_t a : *between.objects[0]) {
@@ -72,6 +81,7 @@ std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   return keys;
 }
 
+// The group that was meant is probably one that rules name: those are suggested.
 void GroupIndex::refuse_unused_groups() const {
   std::vector<std::string> used;
   for (const auto& [name, entry] : entries_) {
@@ -80,11 +90,11 @@ void GroupIndex::refuse_unused_groups() const {
   for (const auto& [name, entry] : entries_) {
     if (!entry.is_group || entry.used) continue;
     const std::uint32_t object = entry.objects.front();
-    complaints_.add(*list_.places[object],
-                    "found the group '" + name + "' of object '" + list_.objects[object].name +
-                        "', which nothing under 'pairs', 'allowed_collisions' or "
-                        "'zones' names; expected every group to be used" +
-                        did_you_mean(name, used));
+    diagnostics_.add(
+        *list_.places[object],
+        fmt::format("found the group '{}' of object '{}', which nothing under 'pairs', "
+                    "'allowed_collisions' or 'zones' names; expected every group to be used{}",
+                    name, list_.objects[object].name, did_you_mean(name, used)));
   }
 }
 

@@ -34,17 +34,17 @@ struct Between {
 
 class GroupIndex {
  public:
-  // Complains about a group that has an object's name. The list must outlive this.
-  GroupIndex(const ObjectList& list, Diagnostics& complaints);
+  // Reports a group that has an object's name. The list must outlive this.
+  GroupIndex(const ObjectList& list, Diagnostics& diagnostics);
 
-  // The key `between` of a map. Nothing after a complaint.
+  // The key `between` of a map. Nothing after a diagnostic.
   [[nodiscard]] std::optional<Between> read_between(MapReader& map);
 
   // Every two objects of which one is on each side, ascending, each once. An object has no distance
   // from itself, nor do two fixed objects need watching.
   [[nodiscard]] std::vector<PairKey> pairs(const Between& between) const;
 
-  // Complains about groups that no `between` names: a misspelt group would leave its objects
+  // Reports groups that no `between` names: a misspelt group would leave its objects
   // unwatched.
   void refuse_unused_groups() const;
 
@@ -57,7 +57,7 @@ class GroupIndex {
   const std::vector<std::uint32_t>* find(const YamlNode& node, const std::string& name);
 
   const ObjectList& list_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
   std::map<std::string, Entry> entries_;
 };
 

@@ -1,5 +1,7 @@
 #include "config/map_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -8,27 +10,31 @@
 
 namespace clearance {
 
-MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& complaints)
+// Keys are checked once, here: YAML allows the same key twice, and the first would hide the second.
+MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics)
     : node_(node),
       what_(std::move(what)),
-      complaints_(complaints),
+      diagnostics_(diagnostics),
       is_map_(node.kind == YamlNode::Kind::kMap) {
   if (!is_map_) {
-    complaints_.add(node, "found " + describe(node) + "; expected " + what_ + " (a map)");
+    diagnostics_.add(node, fmt::format("found {}; expected {} (a map)", describe(node), what_));
     return;
   }
   std::map<std::string, const YamlNode*> first;
   for (const YamlEntry& entry : node.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) {
-      complaints_.add(entry.key, "found " + describe(entry.key) + " as a key; expected a word");
+      diagnostics_.add(entry.key,
+                       fmt::format("found {} as a key; expected a word", describe(entry.key)));
     } else if (const auto [same, is_new] = first.emplace(entry.key.text, &entry.key); !is_new) {
-      complaints_.add(entry.key, "found the key '" + entry.key.text +
-                                     "' again; expected it once in " + what_ + " (first in line " +
-                                     std::to_string(same->second->line) + ")");
+      diagnostics_.add(
+          entry.key,
+          fmt::format("found the key '{}' again; expected it once in {} (first in line {})",
+                      entry.key.text, what_, same->second->line));
     }
   }
 }
 
+// Asking makes a key known: refuse_unknown_keys() reports those that nobody asked for.
 const YamlNode* MapReader::optional(const std::string& key) {
   known_.push_back(key);
   for (const YamlEntry& entry : node_.entries) {
@@ -37,29 +43,31 @@ const YamlNode* MapReader::optional(const std::string& key) {
   return nullptr;
 }
 
+// Of what is no map only that has been reported, not every key that it lacks.
 const YamlNode* MapReader::required(const std::string& key) {
   const YamlNode* value = optional(key);
   if (value == nullptr && is_map_) {
-    complaints_.add(node_, "found no key '" + key + "'; expected it in " + what_);
+    diagnostics_.add(node_, fmt::format("found no key '{}'; expected it in {}", key, what_));
   }
   return value;
 }
 
+// A misspelt optional key would otherwise be a default in silence.
 void MapReader::refuse_unknown_keys() {
   for (const YamlEntry& entry : node_.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) continue;
     if (std::find(known_.begin(), known_.end(), entry.key.text) != known_.end()) continue;
-    complaints_.add(entry.key, "found the unknown key '" + entry.key.text + "' in " + what_ +
-                                   "; expected " + one_of(known_) +
-                                   did_you_mean(entry.key.text, known_));
+    diagnostics_.add(entry.key,
+                     fmt::format("found the unknown key '{}' in {}; expected {}{}", entry.key.text,
+                                 what_, one_of(known_), did_you_mean(entry.key.text, known_)));
   }
 }
 
 const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
-                                       Diagnostics& complaints) {
+                                       Diagnostics& diagnostics) {
   static const std::vector<YamlNode> kEmpty;
   if (node.kind == YamlNode::Kind::kSequence) return node.items;
-  complaints.add(node, "found " + describe(node) + "; expected a list of " + what);
+  diagnostics.add(node, fmt::format("found {}; expected a list of {}", describe(node), what));
   return kEmpty;
 }
 

@@ -12,14 +12,14 @@ namespace clearance {
 class MapReader {
  public:
   // `what` names the map in messages: "a zone". Complains when the node is no map or has a key
-  // twice. The node and the complaints must outlive the reader.
-  MapReader(const YamlNode& node, std::string what, Diagnostics& complaints);
+  // twice. The node and the diagnostics must outlive the reader.
+  MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics);
 
   [[nodiscard]] bool is_map() const { return is_map_; }
 
   // The value of a key, or nullptr. Asking makes the key known.
   [[nodiscard]] const YamlNode* optional(const std::string& key);
-  [[nodiscard]] const YamlNode* required(const std::string& key);  // complains when it is missing
+  [[nodiscard]] const YamlNode* required(const std::string& key);  // reports when it is missing
 
   // To be called after the last key was asked for.
   void refuse_unknown_keys();
@@ -27,14 +27,14 @@ class MapReader {
  private:
   const YamlNode& node_;
   std::string what_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
   bool is_map_;
   std::vector<std::string> known_;
 };
 
-// The items of a list; complains and returns an empty list when it is none. `what` finishes
+// The items of a list; reports and returns an empty list when it is none. `what` finishes
 // "expected a list of ...".
 [[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
-                                                     Diagnostics& complaints);
+                                                     Diagnostics& diagnostics);
 
 }  // namespace clearance

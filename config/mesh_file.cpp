@@ -1,5 +1,7 @@
 #include "config/mesh_file.hpp"
 
+#include <fmt/format.h>
+
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -47,19 +49,25 @@ std::string plain(std::string message) {
   return message.replace(first, end - first, "it");
 }
 
+// Any order serves that depends on the coordinates only.
 bool lexicographic(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
 }  // namespace
 
+// The whole file, so that its bytes can go into the revision and be parsed without reading it
+// again.
 std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
   std::error_code fault;
-  if (std::filesystem::is_directory(path, fault)) return MeshFault{"'" + path + "' is a directory"};
+  if (std::filesystem::is_directory(path, fault))
+    return MeshFault{fmt::format("'{}' is a directory", path)};
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) return MeshFault{"'" + path + "' cannot be opened: " + std::strerror(errno)};
+  if (!stream)
+    return MeshFault{fmt::format("'{}' cannot be opened: {}", path, std::strerror(errno))};
   std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (stream.bad()) return MeshFault{"'" + path + "' cannot be read: " + std::strerror(errno)};
+  if (stream.bad())
+    return MeshFault{fmt::format("'{}' cannot be read: {}", path, std::strerror(errno))};
   return bytes;
 }
 

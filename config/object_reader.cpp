@@ -1,5 +1,7 @@
 #include "config/object_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -9,12 +11,14 @@ namespace {
 
 constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
 
+// One object of the list. What cannot be read is reported and left at its default, so that one run
+// reports every mistake of the file.
 class ObjectReader {
  public:
   ObjectReader(const ObjectDefaults& defaults, const Quantities& quantities, ShapeReader& shapes)
       : defaults_(defaults),
         quantities_(quantities),
-        complaints_(quantities.complaints()),
+        diagnostics_(quantities.diagnostics()),
         shapes_(shapes) {}
 
   // Sets names_known to false when the name or a group cannot be read.
@@ -31,21 +35,22 @@ class ObjectReader {
 
   const ObjectDefaults& defaults_;
   const Quantities& quantities_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
   ShapeReader& shapes_;
 };
 
+// The order matters: `fixed` decides which of the other keys an object may have.
 Object ObjectReader::read(const YamlNode& node, bool& names_known) {
   Object object;
-  MapReader map(node, "an object", complaints_);
+  MapReader map(node, "an object", diagnostics_);
   const YamlNode* name_node = map.required("name");
   const auto name =
-      name_node == nullptr ? std::nullopt : read_name(*name_node, "an object's name", complaints_);
+      name_node == nullptr ? std::nullopt : read_name(*name_node, "an object's name", diagnostics_);
   object.name = name.value_or("");
   names_known = names_known && name.has_value();
   if (const YamlNode* groups = map.optional("groups")) read_groups(*groups, object, names_known);
   if (const YamlNode* fixed = map.optional("fixed")) {
-    object.fixed = read_flag(*fixed, complaints_).value_or(false);
+    object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
   }
   object.margin = defaults_.margin;
   if (const YamlNode* margin = map.optional("margin")) {
@@ -57,9 +62,11 @@ Object ObjectReader::read(const YamlNode& node, bool& names_known) {
   return object;
 }
 
+// Reports a key that has no meaning here: it would be ignored in silence otherwise. Asking for it
+// makes it known, so that it is not reported again as unknown.
 void ObjectReader::forbid(MapReader& map, const std::string& key, const std::string& reason) {
   if (const YamlNode* node = map.optional(key)) {
-    complaints_.add(*node, "found '" + key + "' of " + reason);
+    diagnostics_.add(*node, fmt::format("found '{}' of {}", key, reason));
   }
 }
 
@@ -90,15 +97,18 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
   }
 }
 
+// A group that cannot be read may be the one that a rule names, so names are no longer known then
+// and unknown names are not reported.
 void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
   if (node.kind != YamlNode::Kind::kSequence) names_known = false;
-  for (const YamlNode& item : read_list(node, "group names", complaints_)) {
-    const auto group = read_name(item, "a group's name", complaints_);
+  for (const YamlNode& item : read_list(node, "group names", diagnostics_)) {
+    const auto group = read_name(item, "a group's name", diagnostics_);
     if (!group) {
       names_known = false;
     } else if (std::find(object.groups.begin(), object.groups.end(), *group) !=
                object.groups.end()) {
-      complaints_.add(item, "found the group '" + *group + "' again; expected it once an object");
+      diagnostics_.add(
+          item, fmt::format("found the group '{}' again; expected it once an object", *group));
     } else {
       object.groups.push_back(*group);
     }
@@ -119,25 +129,27 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
     forbid(map, kind, "an object that has 'parts'; expected it inside of one of them");
   }
   if (parts->kind == YamlNode::Kind::kSequence && parts->items.empty()) {
-    complaints_.add(*parts, "found an empty list; expected at least one part");
+    diagnostics_.add(*parts, "found an empty list; expected at least one part");
   }
-  for (const YamlNode& part : read_list(*parts, "parts", complaints_)) read_part(part, object);
+  for (const YamlNode& part : read_list(*parts, "parts", diagnostics_)) read_part(part, object);
 }
 
+// A part without a name is called after its shape and its place in the object: box0.
 void ObjectReader::read_part(const YamlNode& node, Object& object) {
-  MapReader map(node, "a part", complaints_);
+  MapReader map(node, "a part", diagnostics_);
   const YamlNode* name_node = map.optional("name");
   const YamlNode* pose_node = map.optional("pose");
   auto shape = shapes_.read(map, node);
   map.refuse_unknown_keys();
   std::optional<std::string> name;
   if (name_node != nullptr) {
-    name = read_name(*name_node, "a part's name", complaints_);
+    name = read_name(*name_node, "a part's name", diagnostics_);
     const bool taken = name && std::any_of(object.parts.begin(), object.parts.end(),
                                            [&](const Part& part) { return part.name == *name; });
     if (taken) {
-      complaints_.add(*name_node,
-                      "found the part name '" + *name + "' again; expected it once an object");
+      diagnostics_.add(
+          *name_node,
+          fmt::format("found the part name '{}' again; expected it once an object", *name));
     }
   }
   const Pose pose = pose_node == nullptr ? Pose{} : quantities_.pose(*pose_node).value_or(Pose{});
@@ -146,11 +158,16 @@ void ObjectReader::read_part(const YamlNode& node, Object& object) {
   add_part(node, std::move(*shape), std::move(own_name), pose, object);
 }
 
+// A moving object must be bounded: the broad phase and the bounds between two ticks enclose it in a
+// sphere.
 void ObjectReader::add_part(const YamlNode& node, NamedShape shape, std::string name,
                             const Pose& pose, Object& object) {
   if (!object.fixed && !shape.shape.bounded()) {
-    complaints_.add(node, "found an unbounded " + shape.kind +
-                              " in a moving object; expected a bounded shape, or fixed: true");
+    diagnostics_.add(
+        node,
+        fmt::format(
+            "found an unbounded {} in a moving object; expected a bounded shape, or fixed: true",
+            shape.kind));
     return;
   }
   object.parts.push_back({std::move(name), std::move(shape.shape), pose});
@@ -168,7 +185,7 @@ const YamlNode& name_place(const YamlNode& object) {
 
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
-  MapReader map(node, "the defaults", quantities.complaints());
+  MapReader map(node, "the defaults", quantities.diagnostics());
   if (const YamlNode* margin = map.optional("margin")) {
     defaults.margin = quantities.length(*margin, "the margin", kNotNegative).value_or(0.0);
   }
@@ -186,17 +203,18 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
 
 ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                         const Quantities& quantities, ShapeReader& shapes) {
-  Diagnostics& complaints = quantities.complaints();
+  Diagnostics& diagnostics = quantities.diagnostics();
   ObjectList list;
   ObjectReader reader(defaults, quantities, shapes);
-  const std::vector<YamlNode>& items = read_list(node, "objects", complaints);
+  const std::vector<YamlNode>& items = read_list(node, "objects", diagnostics);
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
-    complaints.add(node, "found an empty list; expected at least one object");
+    diagnostics.add(node, "found an empty list; expected at least one object");
   }
   if (items.size() > kMaxObjects) {
-    complaints.add(items[kMaxObjects],
-                   "found " + std::to_string(items.size()) + " objects; expected at most " +
-                       std::to_string(kMaxObjects) + ", which is what a report can carry");
+    diagnostics.add(
+        items[kMaxObjects],
+        fmt::format("found {} objects; expected at most {}, which is what a report can carry",
+                    items.size(), kMaxObjects));
   }
   std::map<std::string, const YamlNode*> first;
   for (const YamlNode& item : items) {
@@ -204,9 +222,10 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
     const YamlNode& place = name_place(item);
     if (!object.name.empty()) {
       if (const auto [same, is_new] = first.emplace(object.name, &place); !is_new) {
-        complaints.add(place, "found the object name '" + object.name +
-                                  "' again; expected it once (first in line " +
-                                  std::to_string(same->second->line) + ")");
+        diagnostics.add(
+            place,
+            fmt::format("found the object name '{}' again; expected it once (first in line {})",
+                        object.name, same->second->line));
       }
     }
     list.objects.push_back(std::move(object));

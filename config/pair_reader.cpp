@@ -1,5 +1,7 @@
 #include "config/pair_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -9,10 +11,11 @@ namespace {
 
 constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
 
+// Rules first, then exceptions from them; finish() turns what is left into the pairs of the scene.
 class PairReader {
  public:
-  PairReader(const ObjectList& objects, GroupIndex& members, Diagnostics& complaints)
-      : objects_(objects), members_(members), complaints_(complaints) {}
+  PairReader(const ObjectList& objects, GroupIndex& group_index, Diagnostics& diagnostics)
+      : objects_(objects), group_index_(group_index), diagnostics_(diagnostics) {}
 
   void read_rules(const YamlNode& node);
   void read_exceptions(const YamlNode& node);
@@ -33,29 +36,31 @@ class PairReader {
   void refuse_unwatched_objects() const;
 
   const ObjectList& objects_;
-  GroupIndex& members_;
-  Diagnostics& complaints_;
+  GroupIndex& group_index_;
+  Diagnostics& diagnostics_;
   std::vector<Candidate> candidates_;
   bool complete_ = true;
 };
 
+// All pairs of one rule. A rule that cannot be read leaves the list incomplete, and what depends on
+// a complete list is not checked then: its reports would be consequences of the first mistake.
 void PairReader::read_rule(const YamlNode& node) {
-  MapReader map(node, "a rule for pairs", complaints_);
-  const auto between = members_.read_between(map);
+  MapReader map(node, "a rule for pairs", diagnostics_);
+  const auto between = group_index_.read_between(map);
   bool publish = true;
   if (const YamlNode* flag = map.optional("publish")) {
-    publish = read_flag(*flag, complaints_).value_or(true);
+    publish = read_flag(*flag, diagnostics_).value_or(true);
   }
   map.refuse_unknown_keys();
   if (!between) {
     complete_ = false;
     return;
   }
-  const std::vector<PairKey> keys = members_.pairs(*between);
+  const std::vector<PairKey> keys = group_index_.pairs(*between);
   if (keys.empty()) {
-    complaints_.add(node, "found no pair between '" + between->names[0] + "' and '" +
-                              between->names[1] +
-                              "'; expected at least two different objects, one of them moving");
+    diagnostics_.add(node, fmt::format("found no pair between '{}' and '{}'; expected at least two "
+                                       "different objects, one of them moving",
+                                       between->names[0], between->names[1]));
   }
   for (const PairKey key : keys) candidates_.push_back({key, publish, 0});
 }
@@ -63,9 +68,9 @@ void PairReader::read_rule(const YamlNode& node) {
 // The same pair from two rules is one pair, published when either rule says so.
 void PairReader::read_rules(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kSequence && node.items.empty()) {
-    complaints_.add(node, "found an empty list; expected at least one rule: {between: [A, B]}");
+    diagnostics_.add(node, "found an empty list; expected at least one rule: {between: [A, B]}");
   }
-  for (const YamlNode& item : read_list(node, "rules {between: [A, B]}", complaints_))
+  for (const YamlNode& item : read_list(node, "rules {between: [A, B]}", diagnostics_))
     read_rule(item);
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
     return std::pair(a.key, !a.publish) < std::pair(b.key, !b.publish);
@@ -76,6 +81,7 @@ void PairReader::read_rules(const YamlNode& node) {
   if (complete_ && objects_.names_known) refuse_unwatched_objects();
 }
 
+// An object that no rule covers would be a robot link that nobody watches.
 void PairReader::refuse_unwatched_objects() const {
   std::vector<bool> watched(objects_.objects.size(), false);
   for (const Candidate& candidate : candidates_) {
@@ -83,19 +89,21 @@ void PairReader::refuse_unwatched_objects() const {
   }
   for (std::size_t i = 0; i < watched.size(); ++i) {
     if (watched[i]) continue;
-    complaints_.add(*objects_.places[i],
-                    "found the object '" + objects_.objects[i].name +
-                        "', which no rule under 'pairs' covers; expected every object "
-                        "to be watched against some other");
+    diagnostics_.add(*objects_.places[i],
+                     fmt::format("found the object '{}', which no rule under 'pairs' covers; "
+                                 "expected every object to be watched against some other",
+                                 objects_.objects[i].name));
   }
 }
 
+// Candidates are sorted by key.
 PairReader::Candidate* PairReader::find(PairKey key) {
   const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), key,
                                       [](const Candidate& a, PairKey b) { return a.key < b; });
   return found != candidates_.end() && found->key == key ? &*found : nullptr;
 }
 
+// The reason why an exception removes nothing, as the end of a sentence.
 std::string PairReader::why_nothing(const Between& between, const std::vector<PairKey>& keys) {
   if (keys.empty()) {
     const bool itself =
@@ -104,25 +112,25 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
   }
   for (const PairKey key : keys) {
     if (const Candidate* candidate = find(key)) {
-      return "line " + std::to_string(candidate->allowed_line) + " has already allowed it";
+      return fmt::format("line {} has already allowed it", candidate->allowed_line);
     }
   }
   return "no rule under 'pairs' covers it";
 }
 
 void PairReader::read_exception(const YamlNode& node) {
-  MapReader map(node, "an allowed collision", complaints_);
-  const auto between = members_.read_between(map);
+  MapReader map(node, "an allowed collision", diagnostics_);
+  const auto between = group_index_.read_between(map);
   const YamlNode* reason_node = map.required("reason");
   map.refuse_unknown_keys();
   if (reason_node != nullptr) {
-    const auto reason = read_text(*reason_node, "the reason why these may touch", complaints_);
+    const auto reason = read_text(*reason_node, "the reason why these may touch", diagnostics_);
     if (reason && reason->find_first_not_of(" \t\n") == std::string::npos) {
-      complaints_.add(*reason_node, "found an empty reason; expected why these may touch");
+      diagnostics_.add(*reason_node, "found an empty reason; expected why these may touch");
     }
   }
   if (!between) return;
-  const std::vector<PairKey> keys = members_.pairs(*between);
+  const std::vector<PairKey> keys = group_index_.pairs(*between);
   bool removed = false;
   for (const PairKey key : keys) {
     Candidate* candidate = find(key);
@@ -131,16 +139,17 @@ void PairReader::read_exception(const YamlNode& node) {
     removed = true;
   }
   if (!removed && complete_) {
-    complaints_.add(node, "found an exception that changes nothing: '" + between->names[0] +
-                              "' against '" + between->names[1] +
-                              "' is not watched anyway, since " + why_nothing(*between, keys) +
-                              "; expected a watched pair, perhaps misspelt here");
+    diagnostics_.add(
+        node,
+        fmt::format("found an exception that changes nothing: '{}' against '{}' is not watched "
+                    "anyway, since {}; expected a watched pair, perhaps misspelt here",
+                    between->names[0], between->names[1], why_nothing(*between, keys)));
   }
 }
 
 void PairReader::read_exceptions(const YamlNode& node) {
   for (const YamlNode& item :
-       read_list(node, "exceptions {between: [A, B], reason: ...}", complaints_)) {
+       read_list(node, "exceptions {between: [A, B], reason: ...}", diagnostics_)) {
     read_exception(item);
   }
 }
@@ -158,14 +167,14 @@ PairList PairReader::finish(const YamlNode& rules) {
     published += candidate.publish ? 1 : 0;
   }
   if (published > kMaxPublished) {
-    complaints_.add(
-        rules, "found " + std::to_string(published) + " pairs to publish; expected at most " +
-                   std::to_string(kMaxPublished) +
-                   ", which is what a report can carry: put publish: false on some rules (their "
-                   "pairs are watched all the same)");
+    diagnostics_.add(
+        rules, fmt::format(
+                   "found {} pairs to publish; expected at most {}, which is what a report can "
+                   "carry: put publish: false on some rules (their pairs are watched all the same)",
+                   published, kMaxPublished));
   }
   if (list.pairs.empty() && !candidates_.empty()) {
-    complaints_.add(rules, "found every pair allowed to touch; expected at least one to watch");
+    diagnostics_.add(rules, "found every pair allowed to touch; expected at least one to watch");
   }
   return list;
 }
@@ -173,8 +182,8 @@ PairList PairReader::finish(const YamlNode& rules) {
 }  // namespace
 
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
-                    GroupIndex& members, Diagnostics& complaints) {
-  PairReader reader(objects, members, complaints);
+                    GroupIndex& group_index, Diagnostics& diagnostics) {
+  PairReader reader(objects, group_index, diagnostics);
   reader.read_rules(pairs);
   if (allowed != nullptr) reader.read_exceptions(*allowed);
   return reader.finish(pairs);

@@ -15,10 +15,10 @@ struct PairList {
   bool complete = true;           // false: a rule could not be read, and its pairs are missing
 };
 
-// `allowed` may be nullptr. Complains about rules and exceptions that change nothing, about objects
+// `allowed` may be nullptr. Reports rules and exceptions that change nothing, about objects
 // that nothing watches, and about more published pairs than a report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
-                                  const ObjectList& objects, GroupIndex& members,
-                                  Diagnostics& complaints);
+                                  const ObjectList& objects, GroupIndex& group_index,
+                                  Diagnostics& diagnostics);
 
 }  // namespace clearance

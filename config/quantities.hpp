@@ -24,23 +24,23 @@ struct Units {
   AngleUnit angle = AngleUnit::kRadian;
 };
 
-// "m" or "mm"; "rad" or "deg". Nothing after a complaint.
+// "m" or "mm"; "rad" or "deg". Nothing after a diagnostic.
 [[nodiscard]] std::optional<LengthUnit> read_length_unit(const YamlNode& node,
-                                                         Diagnostics& complaints);
+                                                         Diagnostics& diagnostics);
 [[nodiscard]] std::optional<AngleUnit> read_angle_unit(const YamlNode& node,
-                                                       Diagnostics& complaints);
+                                                       Diagnostics& diagnostics);
 
 [[nodiscard]] double metres(double value, LengthUnit unit);
 
-// Every reading function returns nothing after a complaint. `what` says what the quantity is: "the
+// Every reading function returns nothing after a diagnostic. `what` says what the quantity is: "the
 // radius".
 class Quantities {
  public:
-  Quantities(const Units& units, Diagnostics& complaints)
-      : units_(units), complaints_(complaints) {}
+  Quantities(const Units& units, Diagnostics& diagnostics)
+      : units_(units), diagnostics_(diagnostics) {}
 
   [[nodiscard]] const Units& units() const { return units_; }
-  [[nodiscard]] Diagnostics& complaints() const { return complaints_; }
+  [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
 
   // The range is in the unit of the file.
   [[nodiscard]] std::optional<double> length(const YamlNode& node, const std::string& what,
@@ -73,7 +73,7 @@ class Quantities {
   [[nodiscard]] std::optional<Eigen::Quaterniond> quaternion(const YamlNode& node) const;
 
   Units units_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
 };
 
 }  // namespace clearance

@@ -1,7 +1,8 @@
 #include "config/robot_cell.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -9,35 +10,13 @@
 #include <set>
 #include <system_error>
 
+#include "config/yaml_emitter.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 namespace {
 
 constexpr int kCylinderSides = 24;
-
-// The shortest decimal that reads back to the same double.
-std::string text(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value == 0.0 ? 0.0 : value);
-  return {buffer, result.ptr};
-}
-
-std::string text(const Vec3& v) {
-  std::string list = "[";
-  list += text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
-  return list;
-}
-
-// A double-quoted YAML scalar.
-std::string yaml_text(const std::string& value) {
-  std::string result = "\"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + "\"";
-}
 
 bool is_identity(const UrdfOrigin& origin) {
   return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero();
@@ -63,11 +42,12 @@ class RobotCellWriter {
  private:
   void find_fixed_links();
   bool watched(const std::string& link) const;
-  std::string header() const;
-  std::string object(const UrdfLink& link);
-  std::string shape(const UrdfCollision& collision);
-  std::string prism_around(const UrdfCylinder& cylinder) const;
-  std::string exceptions();
+  void emit_head();
+  void emit_object(const UrdfLink& link);
+  void emit_shape(const UrdfCollision& collision);
+  void emit_prism_around(const UrdfCylinder& cylinder);
+  void emit_pairs();
+  void emit_exceptions();
   std::string mesh_path(const std::string& file);
   std::optional<std::filesystem::path> package_directory(const std::string& name) const;
 
@@ -76,6 +56,7 @@ class RobotCellWriter {
   std::vector<SrdfDisabled> disabled_;
   std::string group_;
   std::map<std::string, Pose> fixed_;  // links that never move, in the world
+  YAML::Emitter out_;
   std::vector<std::string> notes_;
   std::string fault_;  // the first thing that cannot be written
 };
@@ -124,9 +105,10 @@ std::string RobotCellWriter::mesh_path(const std::string& file) {
     const auto directory = package_directory(name);
     if (!directory || slash == std::string::npos) {
       if (fault_.empty()) {
-        fault_ = options_.urdf.string() + ":1: found the mesh '" + file +
-                 "', and no directory for the package '" + name + "'; expected --package " + name +
-                 "=DIRECTORY";
+        fault_ = fmt::format(
+            "{}:1: found the mesh '{}', and no directory for the package '{}'; expected --package "
+            "{}=DIRECTORY",
+            options_.urdf.string(), file, name, name);
       }
       return file;
     }
@@ -138,57 +120,87 @@ std::string RobotCellWriter::mesh_path(const std::string& file) {
   }
   path = std::filesystem::absolute(path).lexically_normal();
   if (std::error_code fault; !std::filesystem::is_regular_file(path, fault) && fault_.empty()) {
-    fault_ = options_.urdf.string() + ":1: found the mesh '" + file + "', and no file '" +
-             path.string() + "'";
+    fault_ = fmt::format("{}:1: found the mesh '{}', and no file '{}'", options_.urdf.string(),
+                         file, path.string());
   }
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
   return path.lexically_relative(directory).string();
 }
 
-// Its sides touch the cylinder: the corners are farther out by 1 / cos(pi / sides).
-std::string RobotCellWriter::prism_around(const UrdfCylinder& cylinder) const {
+// A prism whose sides touch the cylinder: its vertices are farther out by 1 / cos(pi / sides).
+void RobotCellWriter::emit_prism_around(const UrdfCylinder& cylinder) {
   // A little more than the exact factor, so that rounding cannot cut into the cylinder.
-  const double corner =
+  const double vertex_radius =
       cylinder.radius / std::cos(std::numbers::pi / kCylinderSides) * (1.0 + 1e-12);
-  std::string base;
+  out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "base" << YAML::Value << YAML::BeginSeq;
   for (int i = 0; i < kCylinderSides; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kCylinderSides;
-    base += std::string(i == 0 ? "" : ", ") + "[" + text(corner * std::cos(angle)) + ", " +
-            text(corner * std::sin(angle)) + "]";
+    emit_list(out_, shortest(vertex_radius * std::cos(angle)),
+              shortest(vertex_radius * std::sin(angle)));
   }
-  return "prism: {base: [" + base + "], z: [" + text(-0.5 * cylinder.length) + ", " +
-         text(0.5 * cylinder.length) + "]}";
+  out_ << YAML::EndSeq << YAML::Key << "z" << YAML::Value;
+  emit_list(out_, shortest(-0.5 * cylinder.length), shortest(0.5 * cylinder.length));
+  out_ << YAML::EndMap;
 }
 
-std::string RobotCellWriter::shape(const UrdfCollision& collision) {
-  if (const auto* mesh = std::get_if<UrdfMesh>(&collision.shape)) {
-    const std::string scale = mesh->scale == Vec3::Ones() ? "" : ", scale: " + text(mesh->scale);
-    return "mesh: {file: " + yaml_text(mesh_path(mesh->file)) + scale + "}";
+// The shape's key and its value, in the map of its part.
+void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
+  if (const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape)) {
+    out_ << YAML::Key << "prism" << YAML::Value;
+    return emit_prism_around(*cylinder);
   }
-  if (const auto* box = std::get_if<UrdfBox>(&collision.shape))
-    return "box: {size: " + text(box->size) + "}";
-  if (const auto* sphere = std::get_if<UrdfSphere>(&collision.shape)) {
-    return "sphere: {radius: " + text(sphere->radius) + "}";
+  const auto* mesh = std::get_if<UrdfMesh>(&collision.shape);
+  const auto* box = std::get_if<UrdfBox>(&collision.shape);
+  out_ << YAML::Key << (mesh != nullptr ? "mesh" : box != nullptr ? "box" : "sphere");
+  out_ << YAML::Value << YAML::Flow << YAML::BeginMap;
+  if (mesh != nullptr) {
+    out_ << YAML::Key << "file" << YAML::Value;
+    emit_text(out_, mesh_path(mesh->file));
+    if (mesh->scale != Vec3::Ones()) {
+      out_ << YAML::Key << "scale" << YAML::Value;
+      emit(out_, mesh->scale);
+    }
+  } else if (box != nullptr) {
+    out_ << YAML::Key << "size" << YAML::Value;
+    emit(out_, box->size);
+  } else {
+    out_ << YAML::Key << "radius" << YAML::Value
+         << shortest(std::get<UrdfSphere>(collision.shape).radius);
   }
-  return prism_around(std::get<UrdfCylinder>(collision.shape));
+  out_ << YAML::EndMap;
 }
 
-std::string RobotCellWriter::object(const UrdfLink& link) {
-  std::string yaml =
-      "  - name: " + yaml_text(link.name) + "\n    groups: [" + yaml_text(group_) + "]\n";
+void RobotCellWriter::emit_object(const UrdfLink& link) {
+  out_ << YAML::BeginMap << YAML::Key << "name" << YAML::Value;
+  emit_text(out_, link.name);
+  out_ << YAML::Key << "groups" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  emit_text(out_, group_);
+  out_ << YAML::EndSeq;
   if (const auto found = fixed_.find(link.name); found != fixed_.end()) {
     const Eigen::Quaterniond& q = found->second.orientation;
-    yaml += "    fixed: true\n    pose: {xyz: " + text(found->second.position) + ", quaternion: [" +
-            text(q.x()) + ", " + text(q.y()) + ", " + text(q.z()) + ", " + text(q.w()) + "]}\n";
+    out_ << YAML::Key << "fixed" << YAML::Value << true;
+    out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
+    out_ << YAML::Key << "xyz" << YAML::Value;
+    emit(out_, found->second.position);
+    out_ << YAML::Key << "quaternion" << YAML::Value;
+    emit_list(out_, shortest(q.x()), shortest(q.y()), shortest(q.z()), shortest(q.w()));
+    out_ << YAML::EndMap;
   }
-  yaml += "    parts:\n";
+  out_ << YAML::Key << "parts" << YAML::Value << YAML::BeginSeq;
   for (const UrdfCollision& collision : link.collisions) {
-    yaml += "      - " + shape(collision) + "\n";
-    if (is_identity(collision.link_from_shape)) continue;
-    yaml += "        pose: {xyz: " + text(collision.link_from_shape.xyz) +
-            ", rpy: " + text(collision.link_from_shape.rpy) + "}\n";
+    out_ << YAML::BeginMap;
+    emit_shape(collision);
+    if (!is_identity(collision.link_from_shape)) {
+      out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
+      out_ << YAML::Key << "xyz" << YAML::Value;
+      emit(out_, collision.link_from_shape.xyz);
+      out_ << YAML::Key << "rpy" << YAML::Value;
+      emit(out_, collision.link_from_shape.rpy);
+      out_ << YAML::EndMap;
+    }
+    out_ << YAML::EndMap;
   }
-  return yaml;
+  out_ << YAML::EndSeq << YAML::EndMap;
 }
 
 bool RobotCellWriter::watched(const std::string& link) const {
@@ -197,56 +209,91 @@ bool RobotCellWriter::watched(const std::string& link) const {
   });
 }
 
-// The SRDF speaks of links without shapes too, and sometimes of a pair twice: neither is an
-// exception of ours.
-std::string RobotCellWriter::exceptions() {
-  std::string yaml;
-  std::set<std::pair<std::string, std::string>> seen;
-  std::size_t left_out = 0;
-  for (const SrdfDisabled& entry : disabled_) {
-    const bool both_fixed = fixed_.contains(entry.link_a) && fixed_.contains(entry.link_b);
-    const bool useful = watched(entry.link_a) && watched(entry.link_b) && !both_fixed &&
-                        entry.link_a != entry.link_b &&
-                        seen.insert(std::minmax(entry.link_a, entry.link_b)).second;
-    if (!useful) {
-      ++left_out;
-      continue;
-    }
-    yaml += "  - {between: [" + yaml_text(entry.link_a) + ", " + yaml_text(entry.link_b) +
-            "], reason: " + yaml_text(entry.reason) + "}\n";
-  }
-  if (left_out > 0) {
-    notes_.push_back(
-        std::to_string(left_out) +
-        " disabled pairs left out: a link without collision shapes, named twice, or both fixed");
-  }
-  return yaml.empty() ? "" : "\nallowed_collisions: # from the SRDF\n" + yaml;
+// [A, B] under "between".
+void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b) {
+  out << YAML::Key << "between" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+  emit_text(out, a);
+  emit_text(out, b);
+  out << YAML::EndSeq;
 }
 
-std::string RobotCellWriter::header() const {
-  std::string yaml = "# Written by clearance-scene from " + options_.urdf.filename().string();
-  if (!options_.srdf.empty()) yaml += " and " + options_.srdf.filename().string();
-  yaml += ".\nname: " + yaml_text(robot_.name) + "\nunits: {length: m, angle: rad}\n\ndefaults:\n";
-  if (options_.max_speed > 0.0) yaml += "  max_speed: " + text(options_.max_speed) + "\n";
-  return yaml + "  age_limit_ms: " + text(options_.age_limit_ms) + "\n\nobjects:\n";
+void RobotCellWriter::emit_pairs() {
+  out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
+  emit_between(out_, group_, group_);
+  out_ << YAML::EndMap << YAML::EndSeq;
+}
+
+// The SRDF speaks of links without shapes too, and sometimes of a pair twice: neither is an
+// exception of ours.
+void RobotCellWriter::emit_exceptions() {
+  std::set<std::pair<std::string, std::string>> seen;
+  std::vector<const SrdfDisabled*> useful;
+  for (const SrdfDisabled& entry : disabled_) {
+    const bool both_fixed = fixed_.contains(entry.link_a) && fixed_.contains(entry.link_b);
+    if (watched(entry.link_a) && watched(entry.link_b) && !both_fixed &&
+        entry.link_a != entry.link_b &&
+        seen.insert(std::minmax(entry.link_a, entry.link_b)).second) {
+      useful.push_back(&entry);
+    }
+  }
+  if (const std::size_t left_out = disabled_.size() - useful.size(); left_out > 0) {
+    notes_.push_back(fmt::format(
+        "{} disabled pairs left out: a link without collision shapes, named twice, or both fixed",
+        left_out));
+  }
+  if (useful.empty()) return;
+  out_ << YAML::Key << "allowed_collisions" << YAML::Value << YAML::Comment("from the SRDF")
+       << YAML::BeginSeq;
+  for (const SrdfDisabled* entry : useful) {
+    out_ << YAML::Flow << YAML::BeginMap;
+    emit_between(out_, entry->link_a, entry->link_b);
+    out_ << YAML::Key << "reason" << YAML::Value;
+    emit_text(out_, entry->reason);
+    out_ << YAML::EndMap;
+  }
+  out_ << YAML::EndSeq;
+}
+
+void RobotCellWriter::emit_head() {
+  const std::string srdf =
+      options_.srdf.empty() ? "" : fmt::format(" and {}", options_.srdf.filename().string());
+  out_ << YAML::Comment(fmt::format("Written by clearance-scene from {}{}.",
+                                    options_.urdf.filename().string(), srdf));
+  out_ << YAML::Key << "name" << YAML::Value;
+  emit_text(out_, robot_.name);
+  out_ << YAML::Key << "units" << YAML::Value << YAML::Flow << YAML::BeginMap;
+  out_ << YAML::Key << "length" << YAML::Value << "m";
+  out_ << YAML::Key << "angle" << YAML::Value << "rad" << YAML::EndMap;
+  out_ << YAML::Key << "defaults" << YAML::Value << YAML::BeginMap;
+  if (options_.max_speed > 0.0) {
+    out_ << YAML::Key << "max_speed" << YAML::Value << shortest(options_.max_speed);
+  }
+  out_ << YAML::Key << "age_limit_ms" << YAML::Value << shortest(options_.age_limit_ms);
+  out_ << YAML::EndMap;
 }
 
 std::variant<RobotCell, UrdfFault> RobotCellWriter::write() {
   find_fixed_links();
-  std::string yaml = header();
   std::string without;
+  out_ << YAML::BeginMap;
+  emit_head();
+  out_ << YAML::Key << "objects" << YAML::Value << YAML::BeginSeq;
   for (const UrdfLink& link : robot_.links) {
     if (link.collisions.empty()) {
-      without += (without.empty() ? "" : ", ") + link.name;
+      without += fmt::format("{}{}", without.empty() ? "" : ", ", link.name);
     } else {
-      yaml += object(link);
+      emit_object(link);
     }
   }
-  if (!without.empty()) notes_.push_back("links without collision shapes left out: " + without);
-  yaml += "\npairs:\n  - {between: [" + yaml_text(group_) + ", " + yaml_text(group_) + "]}\n" +
-          exceptions();
+  out_ << YAML::EndSeq;
+  if (!without.empty()) {
+    notes_.push_back(fmt::format("links without collision shapes left out: {}", without));
+  }
+  emit_pairs();
+  emit_exceptions();
+  out_ << YAML::EndMap << YAML::Newline;
   if (!fault_.empty()) return UrdfFault{fault_};
-  return RobotCell{std::move(yaml), std::move(notes_)};
+  return RobotCell{out_.c_str(), std::move(notes_)};
 }
 
 }  // namespace

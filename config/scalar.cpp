@@ -1,5 +1,7 @@
 #include "config/scalar.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -14,17 +16,20 @@ namespace {
 // The longest name that the wire carries (idl/clearance.idl, ZoneState::name).
 constexpr std::size_t kMaxName = 64;
 
+// A scalar as a number.
 struct Parsed {
   double value = 0.0;
   bool number = false;    // the whole text is one
   bool in_range = false;  // of a double
 };
 
+// The three spellings that YAML 1.2 allows for its special values.
 bool is_special(const std::string& text, const std::string& lower, const std::string& title,
                 const std::string& upper) {
   return text == lower || text == title || text == upper;
 }
 
+// YAML's numbers in decimals. std::from_chars depends on no locale and rounds correctly.
 Parsed parse_number(const std::string& text) {
   std::string unsigned_text = text;
   if (!text.empty() && (text[0] == '+' || text[0] == '-')) unsigned_text.erase(0, 1);
@@ -58,13 +63,14 @@ std::string shown(double value) {
 // Every limit that there is.
 std::string expectation(const std::string& what, const Range& range) {
   const bool limited = std::isfinite(range.most);
-  if (!std::isfinite(range.least)) return what + (limited ? ", at most " + shown(range.most) : "");
+  if (!std::isfinite(range.least))
+    return what + (limited ? fmt::format(", at most {}", shown(range.most)) : "");
   if (range.above_least) {
-    return what + ", more than " + shown(range.least) +
-           (limited ? " and at most " + shown(range.most) : "");
+    return fmt::format("{}, more than {}{}", what, shown(range.least),
+                       limited ? fmt::format(" and at most {}", shown(range.most)) : "");
   }
-  return what + (limited ? ", from " + shown(range.least) + " to " + shown(range.most)
-                         : ", at least " + shown(range.least));
+  return what + (limited ? fmt::format(", from {} to {}", shown(range.least), shown(range.most))
+                         : fmt::format(", at least {}", shown(range.least)));
 }
 
 // "12 mm" is a number and then some: say what to do about it.
@@ -92,22 +98,24 @@ ScalarType scalar_type(const YamlNode& scalar) {
   return parse_number(scalar.text).number ? ScalarType::kNumber : ScalarType::kText;
 }
 
+// Text that is no number, one that is not finite, and one out of range get messages of their own.
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
-                                  Diagnostics& complaints) {
-  const std::string expected = "; expected " + expectation(what, range);
+                                  Diagnostics& diagnostics) {
+  const std::string expected = fmt::format("; expected {}", expectation(what, range));
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
-    complaints.add(node, "found " + describe(node) + expected + number_hint(node));
+    diagnostics.add(node, fmt::format("found {}{}{}", describe(node), expected, number_hint(node)));
     return std::nullopt;
   }
   const Parsed parsed = parse_number(node.text);
   if (!std::isfinite(parsed.value) || !parsed.in_range) {
-    complaints.add(node, "found " + describe(node) + ", which is not a finite number" + expected);
+    diagnostics.add(
+        node, fmt::format("found {}, which is not a finite number{}", describe(node), expected));
     return std::nullopt;
   }
   const bool too_small =
       range.above_least ? parsed.value <= range.least : parsed.value < range.least;
   if (too_small || parsed.value > range.most) {
-    complaints.add(node, "found " + describe(node) + expected);
+    diagnostics.add(node, fmt::format("found {}{}", describe(node), expected));
     return std::nullopt;
   }
   return parsed.value;
@@ -115,53 +123,57 @@ std::optional<double> read_number(const YamlNode& node, const Range& range, cons
 
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
                                          std::int64_t most, const std::string& what,
-                                         Diagnostics& complaints) {
+                                         Diagnostics& diagnostics) {
   std::int64_t value = 0;
   const char* end = node.text.data() + node.text.size();
   const bool scalar = node.kind == YamlNode::Kind::kScalar && !node.quoted;
   const auto result = std::from_chars(node.text.data(), end, value);
   if (!scalar || result.ec != std::errc() || result.ptr != end || value < least || value > most) {
-    complaints.add(node, "found " + describe(node) + "; expected " + what +
-                             ", a whole number from " + std::to_string(least) + " to " +
-                             std::to_string(most));
+    diagnostics.add(node, fmt::format("found {}; expected {}, a whole number from {} to {}",
+                                      describe(node), what, least, most));
     return std::nullopt;
   }
   return value;
 }
 
-std::optional<bool> read_flag(const YamlNode& node, Diagnostics& complaints) {
+std::optional<bool> read_flag(const YamlNode& node, Diagnostics& diagnostics) {
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kFlag) {
-    complaints.add(node, "found " + describe(node) + "; expected true or false");
+    diagnostics.add(node, fmt::format("found {}; expected true or false", describe(node)));
     return std::nullopt;
   }
   return node.text[0] == 't' || node.text[0] == 'T';
 }
 
+// A plain 12 or true is no text: a name that looks like a number is more often a value in the wrong
+// place.
 std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
-                                     Diagnostics& complaints) {
+                                     Diagnostics& diagnostics) {
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kText) {
     const bool quotable = node.kind == YamlNode::Kind::kScalar;
-    complaints.add(
-        node, "found " + describe(node) + "; expected " + what +
-                  (quotable ? " (if it is meant as text, quote it: \"" + node.text + "\")" : ""));
+    diagnostics.add(
+        node,
+        fmt::format(
+            "found {}; expected {}{}", describe(node), what,
+            quotable ? fmt::format(" (if it is meant as text, quote it: \"{}\")", node.text) : ""));
     return std::nullopt;
   }
   return node.text;
 }
 
+// Names appear in CSV files, logs and bounded strings on the wire, so they are short and plain.
 std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
-                                     Diagnostics& complaints) {
-  const auto text = read_text(node, what, complaints);
+                                     Diagnostics& diagnostics) {
+  const auto text = read_text(node, what, diagnostics);
   if (!text) return std::nullopt;
   const bool bad_byte = std::any_of(text->begin(), text->end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
   });
   const bool blank_ends = !text->empty() && (text->front() == ' ' || text->back() == ' ');
   if (text->empty() || text->size() > kMaxName || bad_byte || blank_ends) {
-    complaints.add(node,
-                   "found " + describe(node) + "; expected " + what + ": 1 to " +
-                       std::to_string(kMaxName) +
-                       " bytes without commas, quotes, control characters or blanks at its ends");
+    diagnostics.add(node,
+                    fmt::format("found {}; expected {}: 1 to {} bytes without commas, quotes, "
+                                "control characters or blanks at its ends",
+                                describe(node), what, kMaxName));
     return std::nullopt;
   }
   return text;

@@ -26,19 +26,19 @@ struct Range {
 inline constexpr Range kPositive{.least = 0.0, .above_least = true};
 inline constexpr Range kNotNegative{.least = 0.0};
 
-// Each returns nothing after a complaint. `what` finishes "expected ...": "a length in mm".
+// Each returns nothing after a diagnostic. `what` finishes "expected ...": "a length in mm".
 [[nodiscard]] std::optional<double> read_number(const YamlNode& node, const Range& range,
-                                                const std::string& what, Diagnostics& complaints);
+                                                const std::string& what, Diagnostics& diagnostics);
 [[nodiscard]] std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
                                                        std::int64_t most, const std::string& what,
-                                                       Diagnostics& complaints);
-[[nodiscard]] std::optional<bool> read_flag(const YamlNode& node, Diagnostics& complaints);
+                                                       Diagnostics& diagnostics);
+[[nodiscard]] std::optional<bool> read_flag(const YamlNode& node, Diagnostics& diagnostics);
 [[nodiscard]] std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
-                                                   Diagnostics& complaints);
+                                                   Diagnostics& diagnostics);
 
 // A name that people and CSV files can hold: 1 to 64 bytes, no control characters, commas, quotes,
 // nor blanks at its ends.
 [[nodiscard]] std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
-                                                   Diagnostics& complaints);
+                                                   Diagnostics& diagnostics);
 
 }  // namespace clearance

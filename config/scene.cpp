@@ -1,5 +1,7 @@
 #include "config/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -7,7 +9,7 @@ namespace clearance {
 namespace {
 
 std::string counted(std::size_t count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+  return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -26,11 +28,11 @@ std::string summary(const Scene& scene) {
   }
   const auto published = static_cast<std::size_t>(std::count_if(
       scene.pairs.begin(), scene.pairs.end(), [](const ObjectPair& pair) { return pair.publish; }));
-  return scene.name + ": " + counted(scene.objects.size(), "object") + " (" +
-         std::to_string(scene.objects.size() - fixed) + " moving, " + std::to_string(fixed) +
-         " fixed), " + counted(parts, "part") + ", " + counted(facets, "facet") + ", " +
-         counted(scene.pairs.size(), "pair") + " (" + std::to_string(published) + " published), " +
-         counted(scene.zones.size(), "zone");
+  return fmt::format("{}: {} ({} moving, {} fixed), {}, {}, {} ({} published), {}", scene.name,
+                     counted(scene.objects.size(), "object"), scene.objects.size() - fixed, fixed,
+                     counted(parts, "part"), counted(facets, "facet"),
+                     counted(scene.pairs.size(), "pair"), published,
+                     counted(scene.zones.size(), "zone"));
 }
 
 }  // namespace clearance

@@ -1,5 +1,7 @@
 #include "config/shape_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <variant>
@@ -11,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// Keys of shapes, in the order in which messages list them.
 const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
                                                 "polyhedron", "half_space", "mesh"};
 
@@ -20,13 +23,13 @@ constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 std::string solid_needs(const std::string& kind) {
   if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
   if (kind == "prism") {
-    return "a base of at least three corners, not all in one line, and a lower z below the upper";
+    return "a base of at least three vertices, not all on one line, and a lower z below the upper";
   }
   if (kind == "polyhedron") {
     return "at least four vertices, not all in one plane, or half-spaces with a common interior";
   }
   if (kind == "mesh") return "a mesh with at least four vertices, not all in one plane";
-  return "a " + kind + " of ordinary size";
+  return fmt::format("a {} of ordinary size", kind);
 }
 
 // A mesh's own coordinates to metres.
@@ -44,14 +47,17 @@ std::vector<Vec3> scaled(const std::vector<Vec3>& vertices, const Vec3& scale, L
 
 std::span<const std::string> ShapeReader::kinds() { return kShapeKinds; }
 
+// Exactly one shape key must be there; two would leave one of them out in silence. The shape itself
+// is made by the core, whose reason for refusing it goes into the message.
 std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
   NamedShape found{"", nullptr, {}};
   for (const std::string& kind : kShapeKinds) {
     const YamlNode* node = map.optional(kind);
     if (node == nullptr) continue;
     if (found.node != nullptr) {
-      quantities_.complaints().add(
-          *node, "found '" + kind + "' beside '" + found.kind + "'; expected one shape a part");
+      quantities_.diagnostics().add(
+          *node,
+          fmt::format("found '{}' beside '{}'; expected one shape a part", kind, found.kind));
       return std::nullopt;
     }
     found.kind = kind;
@@ -59,16 +65,17 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   }
   if (found.node == nullptr) {
     if (map.is_map()) {
-      quantities_.complaints().add(at, "found no shape; expected one of " + one_of(kShapeKinds));
+      quantities_.diagnostics().add(
+          at, fmt::format("found no shape; expected one of {}", one_of(kShapeKinds)));
     }
     return std::nullopt;
   }
   std::optional<ShapeResult> result = read_kind(found.kind, *found.node);
   if (!result) return std::nullopt;
   if (const auto* error = std::get_if<ShapeError>(&*result)) {
-    quantities_.complaints().add(*found.node,
-                                 "found a " + found.kind + " that is not a solid convex body (" +
-                                     error->reason + "); expected " + solid_needs(found.kind));
+    quantities_.diagnostics().add(
+        *found.node, fmt::format("found a {} that is not a solid convex body ({}); expected {}",
+                                 found.kind, error->reason, solid_needs(found.kind)));
     return std::nullopt;
   }
   found.shape = std::get<ConvexPolyhedron>(std::move(*result));
@@ -85,8 +92,9 @@ std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const
   return read_mesh(node);
 }
 
+// Whole edge lengths in the file, half ones in the core.
 std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
-  MapReader map(node, "a box", quantities_.complaints());
+  MapReader map(node, "a box", quantities_.diagnostics());
   const YamlNode* size_node = map.required("size");
   map.refuse_unknown_keys();
   if (size_node == nullptr) return std::nullopt;
@@ -95,7 +103,7 @@ std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
 }
 
 std::optional<ShapeResult> ShapeReader::read_sphere(const YamlNode& node) const {
-  MapReader map(node, "a sphere", quantities_.complaints());
+  MapReader map(node, "a sphere", quantities_.diagnostics());
   const YamlNode* radius_node = map.required("radius");
   const YamlNode* centre_node = map.optional("centre");
   map.refuse_unknown_keys();
@@ -107,8 +115,9 @@ std::optional<ShapeResult> ShapeReader::read_sphere(const YamlNode& node) const 
   return point(*centre, *radius);
 }
 
+// The swept sphere of a segment.
 std::optional<ShapeResult> ShapeReader::read_capsule(const YamlNode& node) const {
-  MapReader map(node, "a capsule", quantities_.complaints());
+  MapReader map(node, "a capsule", quantities_.diagnostics());
   const YamlNode* from_node = map.required("from");
   const YamlNode* to_node = map.required("to");
   const YamlNode* radius_node = map.required("radius");
@@ -122,32 +131,34 @@ std::optional<ShapeResult> ShapeReader::read_capsule(const YamlNode& node) const
   return segment(*from, *to, *radius);
 }
 
+// The hull of the base polygon at both heights, which need not be convex as written.
 std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
-  MapReader map(node, "a prism", quantities_.complaints());
+  MapReader map(node, "a prism", quantities_.diagnostics());
   const YamlNode* base_node = map.required("base");
   const YamlNode* z_node = map.required("z");
   map.refuse_unknown_keys();
   if (base_node == nullptr || z_node == nullptr) return std::nullopt;
   std::vector<Eigen::Vector2d> base;
-  const auto& corners = read_list(*base_node, "corners [x, y]", quantities_.complaints());
-  for (const YamlNode& corner : corners) {
-    if (const auto xy = quantities_.lengths_2d(corner, "a corner [x, y]")) base.push_back(*xy);
+  const auto& vertices = read_list(*base_node, "vertices [x, y]", quantities_.diagnostics());
+  for (const YamlNode& vertex : vertices) {
+    if (const auto xy = quantities_.lengths_2d(vertex, "a vertex [x, y]")) base.push_back(*xy);
   }
   const auto z = quantities_.lengths_2d(*z_node, "the prism's lower and upper z");
-  if (!z || base.empty() || base.size() != corners.size()) return std::nullopt;
+  if (!z || base.empty() || base.size() != vertices.size()) return std::nullopt;
   return prism(base, z->x(), z->y());
 }
 
+// A half-space n . x <= d, its plane given by d or by a point.
 std::optional<HalfSpace> ShapeReader::read_row(const YamlNode& node) const {
-  Diagnostics& complaints = quantities_.complaints();
-  MapReader map(node, "a half-space", complaints);
+  Diagnostics& diagnostics = quantities_.diagnostics();
+  MapReader map(node, "a half-space", diagnostics);
   const YamlNode* normal_node = map.required("normal");
   const YamlNode* offset_node = map.optional("offset");
   const YamlNode* through_node = map.optional("through");
   map.refuse_unknown_keys();
   if (map.is_map() && (offset_node == nullptr) == (through_node == nullptr)) {
-    complaints.add(node, std::string("found ") + (offset_node == nullptr ? "neither" : "both") +
-                             " of 'offset' and 'through'; expected one of the two");
+    diagnostics.add(node, fmt::format("found {} of 'offset' and 'through'; expected one of the two",
+                                      offset_node == nullptr ? "neither" : "both"));
     return std::nullopt;
   }
   std::optional<Vec3> normal;
@@ -170,50 +181,56 @@ std::optional<ShapeResult> ShapeReader::read_half_space(const YamlNode& node) co
   return row ? std::optional(polyhedron_from_halfspaces(std::array{*row})) : std::nullopt;
 }
 
+// By its vertices or by its half-spaces; nothing is made of a list with a mistake in it, since a
+// body with one vertex less would be wrong rather than missing.
 std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) const {
-  Diagnostics& complaints = quantities_.complaints();
-  MapReader map(node, "a polyhedron", complaints);
+  Diagnostics& diagnostics = quantities_.diagnostics();
+  MapReader map(node, "a polyhedron", diagnostics);
   const YamlNode* vertices_node = map.optional("vertices");
   const YamlNode* rows_node = map.optional("half_spaces");
   map.refuse_unknown_keys();
   if (map.is_map() && (vertices_node == nullptr) == (rows_node == nullptr)) {
-    complaints.add(node, std::string("found ") + (rows_node == nullptr ? "neither" : "both") +
-                             " of 'vertices' and 'half_spaces'; expected one of the two");
+    diagnostics.add(node,
+                    fmt::format("found {} of 'vertices' and 'half_spaces'; expected one of the two",
+                                rows_node == nullptr ? "neither" : "both"));
     return std::nullopt;
   }
-  const std::size_t before = complaints.count();
+  const std::size_t before = diagnostics.count();
   if (vertices_node != nullptr) {
     std::vector<Vec3> vertices;
-    for (const YamlNode& item : read_list(*vertices_node, "vertices [x, y, z]", complaints)) {
+    for (const YamlNode& item : read_list(*vertices_node, "vertices [x, y, z]", diagnostics)) {
       if (const auto vertex = quantities_.lengths(item, "a vertex")) vertices.push_back(*vertex);
     }
-    if (complaints.count() != before) return std::nullopt;
+    if (diagnostics.count() != before) return std::nullopt;
     return polyhedron_from_vertices(vertices);
   }
   if (rows_node == nullptr) return std::nullopt;
   std::vector<HalfSpace> rows;
-  for (const YamlNode& item : read_list(*rows_node, "half-spaces {normal, offset}", complaints)) {
+  for (const YamlNode& item : read_list(*rows_node, "half-spaces {normal, offset}", diagnostics)) {
     if (const auto row = read_row(item)) rows.push_back(*row);
   }
-  if (complaints.count() != before) return std::nullopt;
+  if (diagnostics.count() != before) return std::nullopt;
   return polyhedron_from_halfspaces(rows);
 }
 
+// One factor, or one for each axis; negative ones mirror.
 Vec3 ShapeReader::read_scale(const YamlNode* node) const {
   if (node == nullptr) return Vec3::Ones();
   if (node->kind != YamlNode::Kind::kSequence) {
     const auto scale =
-        read_number(*node, kScales, "a scale, or a list of 3", quantities_.complaints());
+        read_number(*node, kScales, "a scale, or a list of 3", quantities_.diagnostics());
     return Vec3::Constant(scale.value_or(1.0));
   }
   const Vec3 scale =
       quantities_.direction(*node, "the scale along x, y and z").value_or(Vec3::Ones());
   if ((scale.array() == 0.0).any()) {
-    quantities_.complaints().add(*node, "found a scale of 0; expected no zeros");
+    quantities_.diagnostics().add(*node, "found a scale of 0; expected no zeros");
   }
   return scale;
 }
 
+// Each file is read once, however many parts use it, and its bytes go into the scene's revision:
+// two scenes with different meshes must not pass for one.
 const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std::string& file) {
   const std::filesystem::path path = directory_ / file;
   const auto [entry, is_new] = meshes_.try_emplace(path.string());
@@ -221,17 +238,19 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
   if (is_new) {
     const auto bytes = read_bytes(path.string());
     if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-      quantities_.complaints().add(file_node,
-                                   "found a mesh file that cannot be used: " + fault->reason +
-                                       "; expected a path relative to the cell file");
+      quantities_.diagnostics().add(file_node,
+                                    fmt::format("found a mesh file that cannot be used: {}; "
+                                                "expected a path relative to the cell file",
+                                                fault->reason));
       return nullptr;
     }
     revision_.add(std::get<std::string>(bytes));
     auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
     if (const auto* fault = std::get_if<MeshFault>(&result)) {
-      quantities_.complaints().add(file_node, "found a mesh file that cannot be used: '" +
-                                                  path.string() + "': " + fault->reason +
-                                                  "; expected a mesh with faces, in one file");
+      quantities_.diagnostics().add(file_node,
+                                    fmt::format("found a mesh file that cannot be used: '{}': {}; "
+                                                "expected a mesh with faces, in one file",
+                                                path.string(), fault->reason));
       return nullptr;
     }
     vertices = std::get<std::vector<Vec3>>(std::move(result));
@@ -239,27 +258,28 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
   return vertices ? &*vertices : nullptr;
 }
 
+// The hull of all vertices of a mesh, which contains the mesh.
 std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
-  Diagnostics& complaints = quantities_.complaints();
-  MapReader map(node, "a mesh", complaints);
+  Diagnostics& diagnostics = quantities_.diagnostics();
+  MapReader map(node, "a mesh", diagnostics);
   const YamlNode* file_node = map.required("file");
   const YamlNode* scale_node = map.optional("scale");
   const YamlNode* unit_node = map.optional("unit");
   map.refuse_unknown_keys();
-  const std::size_t before = complaints.count();
+  const std::size_t before = diagnostics.count();
   const Vec3 scale = read_scale(scale_node);
   LengthUnit unit = quantities_.units().length;
-  if (unit_node != nullptr) unit = read_length_unit(*unit_node, complaints).value_or(unit);
+  if (unit_node != nullptr) unit = read_length_unit(*unit_node, diagnostics).value_or(unit);
   if (file_node == nullptr) return std::nullopt;
-  const auto file = read_text(*file_node, "the path of a mesh file", complaints);
+  const auto file = read_text(*file_node, "the path of a mesh file", diagnostics);
   const std::vector<Vec3>* vertices = file ? load(*file_node, *file) : nullptr;
-  if (vertices == nullptr || complaints.count() != before) return std::nullopt;
+  if (vertices == nullptr || diagnostics.count() != before) return std::nullopt;
 
   const std::vector<Vec3> placed = scaled(*vertices, scale, unit);
   for (const Vec3& vertex : placed) {
     if (!(vertex.cwiseAbs().maxCoeff() <= kMaxLength)) {
-      complaints.add(node,
-                     "found a vertex farther than 1000 km away; expected another unit or scale");
+      diagnostics.add(node,
+                      "found a vertex farther than 1000 km away; expected another unit or scale");
       return std::nullopt;
     }
   }

@@ -29,7 +29,7 @@ class ShapeReader {
   // "box", "sphere", ...: the keys of which a part has exactly one.
   [[nodiscard]] static std::span<const std::string> kinds();
 
-  // Reads the one shape among the keys of `map`; complains when there is none, or more, or a bad
+  // Reads the one shape among the keys of `map`; reports when there is none, or more, or a bad
   // one. `at` is the map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 

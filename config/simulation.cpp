@@ -8,11 +8,13 @@
 namespace clearance {
 namespace {
 
+// A value and its derivative.
 struct Motion {
   double value;  // rad or m
   double speed;  // its derivative, per second
 };
 
+// centre + amplitude * sin(2 pi f t + phase), and its derivative.
 Motion swing_at(const Swing& swing, double t_s) {
   const double rate = 2.0 * std::numbers::pi * swing.frequency_hz;
   const double angle = rate * t_s + swing.phase;
@@ -45,6 +47,7 @@ MovingFrame link_frame(const MovingFrame& parent, const SimulatedJoint& joint, d
   return link;
 }
 
+// The twist is the derivative of the pose in closed form, not a difference of two poses.
 PoseAt mover_at(const SimulatedMover& mover, double t_s) {
   const Motion motion = swing_at({0.0, 1.0, mover.frequency_hz, mover.phase}, t_s);
   PoseAt at{mover.object, mover.centre, {motion.speed * mover.amplitude, mover.spin}};

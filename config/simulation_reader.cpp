@@ -1,5 +1,7 @@
 #include "config/simulation_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -16,10 +18,11 @@ namespace {
 const std::array<std::string, 2> kJointKinds = {"revolute", "prismatic"};
 constexpr Range kFrequencies{.least = 0.0, .most = 10'000.0};  // Hz
 
+// Chains and movers. Each moving object may be moved once.
 class SimulationReader {
  public:
   SimulationReader(const ObjectList& list, const Quantities& quantities)
-      : list_(list), quantities_(quantities), complaints_(quantities.complaints()) {}
+      : list_(list), quantities_(quantities), diagnostics_(quantities.diagnostics()) {}
 
   SimulatedChain read_chain(const YamlNode& node);
   SimulatedMover read_mover(const YamlNode& node);
@@ -34,7 +37,7 @@ class SimulationReader {
 
   const ObjectList& list_;
   const Quantities& quantities_;
-  Diagnostics& complaints_;
+  Diagnostics& diagnostics_;
   std::map<std::uint32_t, int> moved_in_line_;
 };
 
@@ -43,41 +46,45 @@ Pose SimulationReader::read_pose(const YamlNode* node) const {
 }
 
 double SimulationReader::read_frequency(const YamlNode& node) const {
-  return read_number(node, kFrequencies, "a frequency in Hz", complaints_).value_or(0.0);
+  return read_number(node, kFrequencies, "a frequency in Hz", diagnostics_).value_or(0.0);
 }
 
 // A moving object that nothing else of the simulation moves.
 std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node) {
-  const auto name = read_name(node, "an object's name", complaints_);
+  const auto name = read_name(node, "an object's name", diagnostics_);
   if (!name) return std::nullopt;
   std::vector<std::string> names;
   for (const Object& object : list_.objects) names.push_back(object.name);
   const auto found = std::find(names.begin(), names.end(), *name);
   if (found == names.end()) {
     if (list_.names_known) {
-      complaints_.add(node, "found the unknown object '" + *name + "'; expected one of the cell's" +
-                                did_you_mean(*name, names));
+      diagnostics_.add(
+          node, fmt::format("found the unknown object '{}'; expected one of the cell's{}", *name,
+                            did_you_mean(*name, names)));
     }
     return std::nullopt;
   }
   const auto index = static_cast<std::uint32_t>(found - names.begin());
   if (list_.objects[index].fixed) {
-    complaints_.add(node, "found the fixed object '" + *name + "'; expected a moving one");
+    diagnostics_.add(node,
+                     fmt::format("found the fixed object '{}'; expected a moving one", *name));
   } else if (const auto [same, is_new] = moved_in_line_.emplace(index, node.line); !is_new) {
-    complaints_.add(node, "found the object '" + *name +
-                              "' again; expected it to be moved once (first in line " +
-                              std::to_string(same->second) + ")");
+    diagnostics_.add(
+        node,
+        fmt::format("found the object '{}' again; expected it to be moved once (first in line {})",
+                    *name, same->second));
   }
   return index;
 }
 
+// Revolute unless the cell says prismatic.
 JointKind SimulationReader::read_kind(MapReader& map) const {
   const YamlNode* node = map.optional("type");
   if (node == nullptr) return JointKind::kRevolute;
-  const auto text = read_text(*node, "revolute or prismatic", complaints_);
+  const auto text = read_text(*node, "revolute or prismatic", diagnostics_);
   if (text && *text != "revolute" && *text != "prismatic") {
-    complaints_.add(*node, "found " + describe(*node) + "; expected revolute or prismatic" +
-                               did_you_mean(*text, kJointKinds));
+    diagnostics_.add(*node, fmt::format("found {}; expected revolute or prismatic{}",
+                                        describe(*node), did_you_mean(*text, kJointKinds)));
   }
   return text == "prismatic" ? JointKind::kPrismatic : JointKind::kRevolute;
 }
@@ -103,11 +110,13 @@ Swing SimulationReader::read_swing(MapReader& map, JointKind kind) const {
   return swing;
 }
 
+// A joint, and the objects that its link carries.
 SimulatedJoint SimulationReader::read_joint(const YamlNode& node) {
   SimulatedJoint joint;
-  MapReader map(node, "a joint", complaints_);
+  MapReader map(node, "a joint", diagnostics_);
   if (const YamlNode* objects = map.optional("objects")) {
-    for (const YamlNode& item : read_list(*objects, "objects that ride on the link", complaints_)) {
+    for (const YamlNode& item :
+         read_list(*objects, "objects that ride on the link", diagnostics_)) {
       if (const auto object = read_object(item)) joint.objects.push_back(*object);
     }
   }
@@ -122,15 +131,16 @@ SimulatedJoint SimulationReader::read_joint(const YamlNode& node) {
   return joint;
 }
 
+// Joints from the base outwards.
 SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
   SimulatedChain chain;
-  MapReader map(node, "a chain", complaints_);
+  MapReader map(node, "a chain", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
-    chain.name = read_name(*name, "a chain's name", complaints_).value_or("");
+    chain.name = read_name(*name, "a chain's name", diagnostics_).value_or("");
   }
   chain.world_from_base = read_pose(map.optional("base"));
   if (const YamlNode* joints = map.required("joints")) {
-    for (const YamlNode& joint : read_list(*joints, "joints", complaints_)) {
+    for (const YamlNode& joint : read_list(*joints, "joints", diagnostics_)) {
       chain.joints.push_back(read_joint(joint));
     }
   }
@@ -138,9 +148,10 @@ SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
   return chain;
 }
 
+// One object that swings about a centre and may spin.
 SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
   SimulatedMover mover;
-  MapReader map(node, "a mover", complaints_);
+  MapReader map(node, "a mover", diagnostics_);
   if (const YamlNode* object = map.required("object"))
     mover.object = read_object(*object).value_or(0);
   mover.centre = read_pose(map.optional("centre"));
@@ -164,17 +175,17 @@ SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
 
 Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
                            const Quantities& quantities) {
-  Diagnostics& complaints = quantities.complaints();
+  Diagnostics& diagnostics = quantities.diagnostics();
   Simulation simulation;
   SimulationReader reader(objects, quantities);
-  MapReader map(node, "the simulation", complaints);
+  MapReader map(node, "the simulation", diagnostics);
   if (const YamlNode* chains = map.optional("chains")) {
-    for (const YamlNode& chain : read_list(*chains, "chains", complaints)) {
+    for (const YamlNode& chain : read_list(*chains, "chains", diagnostics)) {
       simulation.chains.push_back(reader.read_chain(chain));
     }
   }
   if (const YamlNode* movers = map.optional("movers")) {
-    for (const YamlNode& mover : read_list(*movers, "movers", complaints)) {
+    for (const YamlNode& mover : read_list(*movers, "movers", diagnostics)) {
       simulation.movers.push_back(reader.read_mover(mover));
     }
   }

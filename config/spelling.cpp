@@ -1,5 +1,7 @@
 #include "config/spelling.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <vector>
@@ -7,6 +9,7 @@
 namespace clearance {
 namespace {
 
+// Case and punctuation are the mistakes that people make most.
 std::string folded(std::string_view word) {
   std::string result;
   for (const char c : word) {
@@ -37,6 +40,7 @@ std::size_t edit_distance(std::string_view a_word, std::string_view b_word) {
   return last[b.size()];
 }
 
+// Only names within a third of the word's length are suggested: others are no misspellings of it.
 std::string did_you_mean(std::string_view found, std::span<const std::string> known) {
   const std::string* nearest = nullptr;
   std::size_t least = std::max<std::size_t>(1, (found.size() + 1) / 3) + 1;
@@ -46,14 +50,14 @@ std::string did_you_mean(std::string_view found, std::span<const std::string> kn
       nearest = &name;
     }
   }
-  return nearest == nullptr ? "" : "; did you mean '" + *nearest + "'?";
+  return nearest == nullptr ? "" : fmt::format("; did you mean '{}'?", *nearest);
 }
 
 std::string one_of(std::span<const std::string> names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += "'" + names[i] + "'";
+    text += fmt::format("'{}'", names[i]);
   }
   return text;
 }

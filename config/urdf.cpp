@@ -1,5 +1,7 @@
 #include "config/urdf.hpp"
 
+#include <fmt/format.h>
+
 #include <tinyxml2.h>
 
 #include <array>
@@ -22,31 +24,33 @@ struct Refusal : std::exception {
   std::string text;
 };
 
+// An XML file with messages that name its lines. Throws Refusal at the first mistake: XML that is
+// wrong in one place rarely makes sense after it.
 class XmlReader {
  public:
   explicit XmlReader(const std::filesystem::path& file) : file_(file.string()) {
     if (document_.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS) {
-      throw Refusal(file_ + ":" + std::to_string(std::max(1, document_.ErrorLineNum())) +
-                    ": not readable as XML: " + document_.ErrorName() +
-                    "; expected URDF or SRDF, with xacro expanded");
+      throw Refusal(
+          fmt::format("{}:{}: not readable as XML: {}; expected URDF or SRDF, with xacro expanded",
+                      file_, std::max(1, document_.ErrorLineNum()), document_.ErrorName()));
     }
   }
 
   const XMLElement& root(const char* name) const {
     const XMLElement* robot = document_.FirstChildElement(name);
     if (robot == nullptr)
-      throw Refusal(file_ + ":1: found no <" + name + ">; expected it as the root");
+      throw Refusal(fmt::format("{}:1: found no <{}>; expected it as the root", file_, name));
     return *robot;
   }
 
   [[noreturn]] void refuse(const XMLElement& at, const std::string& text) const {
-    throw Refusal(file_ + ":" + std::to_string(at.GetLineNum()) + ": " + text);
+    throw Refusal(fmt::format("{}:{}: {}", file_, at.GetLineNum(), text));
   }
 
   std::string attribute(const XMLElement& element, const char* name) const {
     const char* value = element.Attribute(name);
     if (value == nullptr) {
-      refuse(element, std::string("found <") + element.Name() + "> without '" + name + "'");
+      refuse(element, fmt::format("found <{}> without '{}'", element.Name(), name));
     }
     return value;
   }
@@ -54,7 +58,7 @@ class XmlReader {
   const XMLElement& child(const XMLElement& element, const char* name) const {
     const XMLElement* found = element.FirstChildElement(name);
     if (found == nullptr) {
-      refuse(element, std::string("found <") + element.Name() + "> without <" + name + ">");
+      refuse(element, fmt::format("found <{}> without <{}>", element.Name(), name));
     }
     return *found;
   }
@@ -99,9 +103,8 @@ class XmlReader {
     }
     skip_blanks();
     if (!good || at != end) {
-      refuse(element, std::string("found ") + name + "=\"" + text + "\"; expected " +
-                          std::to_string(values.size()) +
-                          (values.size() == 1 ? " number" : " numbers"));
+      refuse(element, fmt::format("found {}=\"{}\"; expected {}{}", name, text, values.size(),
+                                  values.size() == 1 ? " number" : " numbers"));
     }
   }
 
@@ -109,6 +112,7 @@ class XmlReader {
   tinyxml2::XMLDocument document_;
 };
 
+// One collision shape with its place in the link. Visual geometry is not read.
 UrdfCollision read_collision(const XmlReader& xml, const XMLElement& element) {
   UrdfCollision collision;
   collision.link_from_shape = xml.origin(element);
@@ -131,6 +135,7 @@ UrdfCollision read_collision(const XmlReader& xml, const XMLElement& element) {
   return collision;
 }
 
+// Links and joints; the joints must make a tree, in which every link has at most one parent.
 UrdfRobot read_robot(const std::filesystem::path& file) {
   const XmlReader xml(file);
   const XMLElement& root = xml.root("robot");
@@ -142,7 +147,7 @@ UrdfRobot read_robot(const std::filesystem::path& file) {
        at = at->NextSiblingElement("link")) {
     UrdfLink link{xml.attribute(*at, "name"), {}};
     if (!names.insert(link.name).second)
-      xml.refuse(*at, "found the link '" + link.name + "' again");
+      xml.refuse(*at, fmt::format("found the link '{}' again", link.name));
     for (const XMLElement* part = at->FirstChildElement("collision"); part;
          part = part->NextSiblingElement("collision")) {
       link.collisions.push_back(read_collision(xml, *part));
@@ -160,22 +165,25 @@ UrdfRobot read_robot(const std::filesystem::path& file) {
                           xml.attribute(xml.child(*at, "child"), "link"), xml.origin(*at)};
     for (const std::string& link : {joint.parent, joint.child}) {
       if (!names.contains(link))
-        xml.refuse(*at, "found a joint of the link '" + link + "', which does not exist");
+        xml.refuse(*at, fmt::format("found a joint of the link '{}', which does not exist", link));
     }
     if (!children.insert(joint.child).second) {
-      xml.refuse(*at, "found a second parent of the link '" + joint.child + "'; expected a tree");
+      xml.refuse(
+          *at, fmt::format("found a second parent of the link '{}'; expected a tree", joint.child));
     }
     robot.joints.push_back(joint);
   }
   return robot;
 }
 
+// Only pairs that are disabled one by one. Newer elements that change the default are refused:
+// leaving them out would watch, or not watch, other pairs than the file says.
 std::vector<SrdfDisabled> read_disabled(const std::filesystem::path& file) {
   const XmlReader xml(file);
   const XMLElement& root = xml.root("robot");
   for (const char* newer : {"disable_default_collisions", "enable_collisions"}) {
     if (const XMLElement* found = root.FirstChildElement(newer)) {
-      xml.refuse(*found, std::string("found <") + newer + ">; expected <disable_collisions> only");
+      xml.refuse(*found, fmt::format("found <{}>; expected <disable_collisions> only", newer));
     }
   }
   std::vector<SrdfDisabled> disabled;

@@ -1,5 +1,7 @@
-// The only file that knows yaml-cpp.
+// Reads YAML of any origin with yaml-cpp, whose exceptions end here.
 #include "config/yaml_node.hpp"
+
+#include <fmt/format.h>
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -50,6 +52,7 @@ const std::array<Remedy, 13> kRemedies{{
     {kTooManyCopies, "fewer"},
 }};
 
+// What a person should write instead, by the parser's message.
 std::string remedy_for(const std::string& fault) {
   const auto remedy = std::ranges::find_if(
       kRemedies, [&](const Remedy& known) { return fault.starts_with(known.fault); });
@@ -57,6 +60,7 @@ std::string remedy_for(const std::string& fault) {
                                    : "valid YAML; see also the end of the line before";
 }
 
+// The values in a tree, which every alias to it adds again.
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;
   for (const YamlNode& item : node.items) count += count_nodes(item);
@@ -155,6 +159,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t copies_ = 0;
 };
 
+// yaml-cpp takes bytes that are not UTF-8 and passes them on, to logs and to the wire.
 std::optional<YamlFault> fault_of_encoding(const std::string& text) {
   const std::size_t end = end_of_utf8(text);
   if (end == text.size()) return std::nullopt;
@@ -167,6 +172,7 @@ std::optional<YamlFault> fault_of_encoding(const std::string& text) {
 
 }  // namespace
 
+// Exceptions of the parser end here.
 std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
   if (const auto fault = fault_of_encoding(text)) return *fault;
   try {
@@ -181,9 +187,9 @@ std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {
     }
     return std::move(tree.root);
   } catch (const YAML::Exception& fault) {
-    return YamlFault{
-        std::max(fault.mark.line, 0) + 1, std::max(fault.mark.column, 0) + 1,
-        "found what is not valid YAML (" + fault.msg + "); expected " + remedy_for(fault.msg)};
+    return YamlFault{std::max(fault.mark.line, 0) + 1, std::max(fault.mark.column, 0) + 1,
+                     fmt::format("found what is not valid YAML ({}); expected {}", fault.msg,
+                                 remedy_for(fault.msg))};
   }
 }
 

@@ -1,5 +1,7 @@
 #include "config/zone_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
 
+// The place of a pair in the scene's list, which is sorted by key.
 std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, PairKey key) {
   const auto found = std::lower_bound(
       pairs.begin(), pairs.end(), key,
@@ -19,11 +22,13 @@ std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, Pair
   return static_cast<std::uint32_t>(found - pairs.begin());
 }
 
+// The watched pairs between the two sides of a zone. A pair that is neither watched nor allowed
+// makes the zone wrong: it would never be entered because of it.
 void fill_zone(const YamlNode& node, const Between& between, const ObjectList& objects,
-               const PairList& list, const GroupIndex& members, Diagnostics& complaints,
+               const PairList& list, const GroupIndex& group_index, Diagnostics& diagnostics,
                Zone& zone) {
   std::vector<PairKey> unwatched;
-  for (const PairKey key : members.pairs(between)) {
+  for (const PairKey key : group_index.pairs(between)) {
     if (const auto index = index_of(list.pairs, key)) {
       zone.pairs.push_back(*index);
     } else if (!std::binary_search(list.allowed.begin(), list.allowed.end(), key)) {
@@ -33,50 +38,54 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
   if (!list.complete) return;  // what is missing here has been complained about
   if (!unwatched.empty()) {
     const PairKey key = unwatched.front();
-    complaints.add(
-        node, "found a zone over " + std::to_string(unwatched.size()) +
-                  " pairs that are not watched, such as '" + objects.objects[first_of(key)].name +
-                  "' against '" + objects.objects[second_of(key)].name +
-                  "'; expected every pair of a zone under 'pairs' or 'allowed_collisions'");
+    diagnostics.add(
+        node,
+        fmt::format("found a zone over {} pairs that are not watched, such as '{}' against '{}'; "
+                    "expected every pair of a zone under 'pairs' or 'allowed_collisions'",
+                    unwatched.size(), objects.objects[first_of(key)].name,
+                    objects.objects[second_of(key)].name));
   } else if (zone.pairs.empty()) {
-    complaints.add(node, "found a zone over no pair: none between '" + between.names[0] +
-                             "' and '" + between.names[1] + "' is watched; expected at least one");
+    diagnostics.add(node, fmt::format("found a zone over no pair: none between '{}' and '{}' is "
+                                      "watched; expected at least one",
+                                      between.names[0], between.names[1]));
   }
 }
 
+// Zones one after another; remembers their names, which must differ.
 class ZoneReader {
  public:
-  ZoneReader(const ObjectList& objects, const PairList& pairs, GroupIndex& members,
+  ZoneReader(const ObjectList& objects, const PairList& pairs, GroupIndex& group_index,
              const Quantities& quantities)
-      : objects_(objects), pairs_(pairs), members_(members), quantities_(quantities) {}
+      : objects_(objects), pairs_(pairs), group_index_(group_index), quantities_(quantities) {}
 
   Zone read(const YamlNode& node) {
-    Diagnostics& complaints = quantities_.complaints();
+    Diagnostics& diagnostics = quantities_.diagnostics();
     Zone zone;
-    MapReader map(node, "a zone", complaints);
+    MapReader map(node, "a zone", diagnostics);
     if (const YamlNode* name = map.required("name")) read_zone_name(*name, zone);
-    const auto between = members_.read_between(map);
+    const auto between = group_index_.read_between(map);
     read_thresholds(map, zone);
     map.refuse_unknown_keys();
     if (between) {
       zone.group_a = between->names[0];
       zone.group_b = between->names[1];
-      fill_zone(node, *between, objects_, pairs_, members_, complaints, zone);
+      fill_zone(node, *between, objects_, pairs_, group_index_, diagnostics, zone);
     }
     return zone;
   }
 
  private:
   void read_zone_name(const YamlNode& node, Zone& zone) {
-    zone.name = read_name(node, "a zone's name", quantities_.complaints()).value_or("");
+    zone.name = read_name(node, "a zone's name", quantities_.diagnostics()).value_or("");
     if (zone.name.empty()) return;
     if (const auto [same, is_new] = names_.emplace(zone.name, &node); !is_new) {
-      quantities_.complaints().add(node, "found the zone name '" + zone.name +
-                                             "' again; expected it once " + "(first in line " +
-                                             std::to_string(same->second->line) + ")");
+      quantities_.diagnostics().add(
+          node, fmt::format("found the zone name '{}' again; expected it once (first in line {})",
+                            zone.name, same->second->line));
     }
   }
 
+  // The difference of the two thresholds is the hysteresis, so it must not be negative.
   void read_thresholds(MapReader& map, Zone& zone) const {
     const YamlNode* enter_node = map.required("enter_below");
     const YamlNode* leave_node = map.required("leave_above");
@@ -93,17 +102,16 @@ class ZoneReader {
     zone.enter_below = *enter;
     zone.leave_above = *leave;
     if (*leave < *enter) {
-      quantities_.complaints().add(*leave_node,
-                                   "found leave_above: " + leave_node->text +
-                                       " below enter_below: " + enter_node->text +
-                                       "; expected at least as much (the difference is the "
-                                       "hysteresis)");
+      quantities_.diagnostics().add(
+          *leave_node, fmt::format("found leave_above: {} below enter_below: {}; expected at least "
+                                   "as much (the difference is the hysteresis)",
+                                   leave_node->text, enter_node->text));
     }
   }
 
   const ObjectList& objects_;
   const PairList& pairs_;
-  GroupIndex& members_;
+  GroupIndex& group_index_;
   const Quantities& quantities_;
   std::map<std::string, const YamlNode*> names_;
 };
@@ -111,16 +119,16 @@ class ZoneReader {
 }  // namespace
 
 std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects, const PairList& pairs,
-                             GroupIndex& members, const Quantities& quantities) {
+                             GroupIndex& group_index, const Quantities& quantities) {
   std::vector<Zone> zones;
-  ZoneReader reader(objects, pairs, members, quantities);
-  for (const YamlNode& item : read_list(node, "zones", quantities.complaints())) {
+  ZoneReader reader(objects, pairs, group_index, quantities);
+  for (const YamlNode& item : read_list(node, "zones", quantities.diagnostics())) {
     zones.push_back(reader.read(item));
   }
   if (zones.size() > kMaxZones) {
-    quantities.complaints().add(node.items[kMaxZones], "found " + std::to_string(zones.size()) +
-                                                           " zones; expected at most " +
-                                                           std::to_string(kMaxZones));
+    quantities.diagnostics().add(
+        node.items[kMaxZones],
+        fmt::format("found {} zones; expected at most {}", zones.size(), kMaxZones));
   }
   return zones;
 }

@@ -9,10 +9,10 @@
 
 namespace clearance {
 
-// Complains about a zone that covers a pair which is neither watched nor allowed to touch: it would
+// Reports a zone that covers a pair which is neither watched nor allowed to touch: it would
 // promise what nobody looks at.
 [[nodiscard]] std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects,
-                                           const PairList& pairs, GroupIndex& members,
+                                           const PairList& pairs, GroupIndex& group_index,
                                            const Quantities& quantities);
 
 }  // namespace clearance

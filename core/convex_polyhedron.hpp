@@ -114,30 +114,11 @@ struct FacetLimit {
 // The cosine of a corner's angle beyond which it is sharp: the sine of half of it is 1/3.
 inline constexpr double kSharpCorner = 7.0 / 9.0;
 
-// A direction up to a positive factor: the sum of digits * 2^exponent, exactly. What is opposite
-// has opposite digits, and what is the same, the same.
-struct ExactDirection {
-  struct Part {
-    Vec3 digits;  // integers of up to 53 bits
-    int exponent;
-  };
-  std::vector<Part> parts;
-
-  [[nodiscard]] bool is_opposite_to(const ExactDirection& other) const noexcept {
-    return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
-                      [](const Part& a, const Part& b) {
-                        return a.digits == -b.digits && a.exponent == b.exponent;
-                      });
-  }
-};
-
 // A direction in which the body is unbounded.
 struct Ray {
   Vec3 direction;  // unit, unless exact
   bool exact;  // then `direction` is the exact direction up to a positive factor, not a rounded one
-  Vec3 rest = Vec3::Zero();  // direction + rest is the exact direction up to a factor, to 2^-104
-  ExactDirection exactly{};
-  bool is_line = false;  // its opposite is one as well; made by add_walking_tables()
+  bool is_line = false;  // its opposite, exactly, is one as well
 };
 
 struct ConvexPolyhedron {
@@ -151,9 +132,9 @@ struct ConvexPolyhedron {
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
-  std::vector<ExactDirection> exact_normals;  // of an unbounded body, a facet each
-  // Of an unbounded body, an edge each: the ray along which it goes on, kNone where it ends.
-  std::vector<std::int32_t> edge_rays;
+  // Of an unbounded body, a facet each: its exact outward normal up to a positive factor, zero
+  // where no three doubles are.
+  std::vector<Vec3> exact_normals;
   Opening opening;  // of an unbounded body; made by add_walking_tables()
 
   // The same once more in the order in which the queries walk it; made by add_walking_tables().
@@ -181,13 +162,6 @@ struct ConvexPolyhedron {
   double radius = 0.0;
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
-
-  // Exactly along one of `edges`, in its direction; null: that edge ends.
-  [[nodiscard]] const Ray* ray_along(const Edge& edge) const noexcept {
-    if (edge_rays.empty()) return nullptr;
-    const std::int32_t ray = edge_rays[static_cast<std::size_t>(&edge - edges.data())];
-    return ray == kNone ? nullptr : &rays[static_cast<std::size_t>(ray)];
-  }
 
   // Unit, away from the vertex, along the i-th of its edges.
   [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {

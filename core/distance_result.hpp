@@ -57,6 +57,9 @@ struct DistanceResult {
   std::uint16_t iterations = 0;
 };
 
+// What of a body's boundary is active; kInside: nothing is. kUnknown: no hint.
+enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFacet, kInside, kUnknown = 255 };
+
 // What a pair remembers between calls: the active feature of each body and where the witness lay on
 // it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
 // a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
@@ -65,13 +68,11 @@ struct DistanceResult {
 // its own body's frame: transform(world_from_b, state.b.point) lies on B to the rounding of B's own
 // pose, however far away A is.
 struct alignas(64) TrackingState {
-  static constexpr std::uint8_t kCold = 255;
   struct Side {
-    std::uint8_t dimension =
-        kCold;          // 0 vertex, 1 edge, 2 facet, 3 inside (none active); kCold: no hint
-    bool deep = false;  // of A only: the bodies overlapped
-    std::int32_t feature = kNone;
-    Vec3 point = Vec3::Zero();  // in the body's own frame
+    FeatureKind kind = FeatureKind::kUnknown;
+    bool penetrating = false;      // of A only: the bodies overlapped
+    std::int32_t feature = kNone;  // index into the body's vertices, edges or facets
+    Vec3 point = Vec3::Zero();     // in the body's own frame
   };
   Side a, b;
 };

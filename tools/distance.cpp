@@ -4,8 +4,6 @@
 // It is how anyone checks the core against anything: every figure the core gives is in the answer,
 // and doubles are printed so that they read back as the same doubles.
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -13,8 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/mcap/unreadable.hpp"
+#include "monitor/files/file_error.hpp"
 #include "tools/distance/answerer.hpp"
 #include "tools/distance/exact_check.hpp"
 
@@ -31,7 +32,7 @@ Reads one case a line and writes one answer a line, in the same order. A case is
   a, b         the bodies: {"halfspaces": [[nx, ny, nz, d], ...]} is the set of all x with n.x <= d in every
                row, in the body's own frame; n need not have unit length and the set may be unbounded.
                Without half-spaces {"vertices": [[x, y, z], ...]} is the hull of the points (one: a point,
-               two: a segment). "radius": r adds a ball (a point becomes a sphere). Metres.
+               two: a segment). "radius": r adds a swept sphere (a point becomes a sphere). Metres.
   pose_a, pose_b   [x, y, z, qw, qx, qy, qz]: a point p of the body is at (x, y, z) + R p in the world
   poses        instead of these: [[pose_a, pose_b], ...], a motion; each query starts where the last ended
 An answer has id; distance, lower, upper (0 where the bodies overlap); witness_a, witness_b: closest points, where
@@ -64,12 +65,12 @@ struct Options {
   bool cold = false;
   int repeat = 1;
   bool check = false;
-  double tolerance = 1e-14, gap = 1e-14;
+  double tolerance = 1e-14, gap = 1.25e-14;
 };
 
 void tell(const Options& options, std::size_t line, const std::vector<std::string>& faults) {
   for (const std::string& fault : faults) {
-    std::cerr << options.cases << ':' << line << ": " << fault << '\n';
+    print(stderr, "{}:{}: {}\n", options.cases, line, fault);
   }
 }
 
@@ -101,16 +102,16 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   answerer.print_summary(lines, bad);
   if (options.check) check.print_summary();
   if (in.bad()) {
-    std::cerr << "clearance-distance: cannot read " << options.cases << '\n';
+    print(stderr, "clearance-distance: cannot read {}\n", options.cases);
     return kUsage;
   }
   if (lines == 0) {
-    std::cerr << "clearance-distance: " << options.cases
-              << " holds no case; expected a JSON object a line\n";
+    print(stderr, "clearance-distance: {} holds no case; expected a JSON object a line\n",
+          options.cases);
     return kUsage;
   }
   if (!out) {
-    std::cerr << "clearance-distance: could not write all answers to " << options.out << '\n';
+    print(stderr, "clearance-distance: could not write all answers to {}\n", options.out);
     return kUsage;
   }
   return bad == 0 && (!options.check || check.good()) ? kOk : kFailed;
@@ -123,15 +124,14 @@ int run(const Options& options) {
   if (options.cases != "-") {
     file_in.open(options.cases);
     if (!file_in || std::filesystem::is_directory(options.cases)) {
-      std::cerr << "clearance-distance: " << unreadable(options.cases) << '\n';
+      print(stderr, "clearance-distance: {}\n", cannot_read(options.cases));
       return kUsage;
     }
   }
   if (options.out != "-") {
     file_out.open(options.out);
     if (!file_out) {
-      std::cerr << "clearance-distance: cannot write " << options.out << ": "
-                << std::strerror(errno) << '\n';
+      print(stderr, "clearance-distance: {}\n", cannot_write(options.out));
       return kUsage;
     }
   }
@@ -149,20 +149,21 @@ int main(int argc, char** argv) {
   app.add_option("--cases", options.cases, "File of cases, one a line; - is standard input")
       ->required();
   app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
-  app.add_flag("--cold", options.cold, "Forget the state between the poses of a motion");
-  app.add_option("--repeat", options.repeat, "Ask everything N times, for the time on stderr")
+  app.add_flag("--cold", options.cold, "Reset the tracking state between the poses of a motion");
+  app.add_option("--repeat", options.repeat, "Repeat every query N times, for the time on stderr")
       ->check(CLI::Range(1, 1000000));
   CLI::Option* const check =
-      app.add_flag("--check", options.check, "Hold the answers against exact ones in the cases");
+      app.add_flag("--check", options.check, "Check the answers against exact ones in the cases");
   app.add_option("--tolerance", options.tolerance,
-                 "Of --check, over the larger of a case's scale and distance")
+                 "Largest error that --check accepts, relative to the larger of a case's scale and "
+                 "distance")
       ->needs(check)
       ->check(clearance::number_from_zero())
       ->capture_default_str();
   app.add_option(
          "--gap", options.gap,
-         "Of --check, how far bounds may be apart, over the sum of both bodies' reach and the "
-         "distance of their origins")
+         "Largest gap between bounds that --check accepts, relative to the sum of both bodies' "
+         "bounding radii and the distance of their origins")
       ->needs(check)
       ->check(clearance::number_from_zero())
       ->capture_default_str();

@@ -1,8 +1,10 @@
-// clearance-record: writes what is on Clearance's topics, or a pose log kept as CSV, to an MCAP
+// clearance-record: records Clearance's topics, or converts a pose log kept as CSV, to an MCAP
 // file.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
 #include "monitor/app/program.hpp"
 #include "tools/record/arguments.hpp"
 
@@ -11,8 +13,8 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  the recording is complete
-  1  it is not, or nothing was heard; the message says why. SIGINT and SIGTERM end a recording from DDS in order;
-     --from-csv they stop half way, and nothing is left of it
+  1  the recording is incomplete, or nothing was received; the message says why. SIGINT and SIGTERM end a recording
+     from DDS in order; they interrupt --from-csv, which then removes its output
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
@@ -31,10 +33,12 @@ int run(int argc, char** argv, StopSignal& stop) {
   RecordArguments arguments;
   app.add_option("-o,--output", arguments.out, "The recording to write")->required();
   app.add_option("--cell", arguments.cell,
-                 "The cell file: domain, partition, topic names, objects");
+                 "The cell file, which names domain, partition, topics and objects");
   CLI::Option* const csv =
-      app.add_option("--from-csv", arguments.from_csv, "Make it of this pose log, plain or gzip");
-  app.add_option("--seconds", arguments.seconds, "Stop after this long; otherwise on Ctrl-C")
+      app.add_option("--from-csv", arguments.from_csv,
+                     "Convert this pose log, plain or gzip, instead of recording from DDS");
+  app.add_option("--seconds", arguments.seconds,
+                 "Stop after this many seconds; otherwise on Ctrl-C")
       ->check(positive_number())
       ->excludes(csv);
   add_force(app, arguments.force);
@@ -60,6 +64,7 @@ int run(int argc, char** argv, StopSignal& stop) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-record",
-                                [=](auto& stop) { return clearance::run(argc, argv, stop); });
+  return clearance::run_program(
+      "clearance-record", [=](auto& stop) { return clearance::run(argc, argv, stop); },
+      clearance::dds_exit_code);
 }

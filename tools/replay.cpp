@@ -1,7 +1,9 @@
-// clearance-replay: a recording published again over DDS, or run through the monitor offline.
+// clearance-replay: publishes a recording again over DDS, or runs it through the monitor offline.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "monitor/app/options.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "tools/replay/arguments.hpp"
 
@@ -33,11 +35,12 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("--end", arguments.end_s, "End this many seconds after its first message")
       ->check(number_from_zero());
   app.add_flag("--progress", arguments.progress,
-               "Show progress on stderr even when that is no terminal");
+               "Show progress on stderr even if it is no terminal");
 
   CLI::Option* const offline = app.add_flag(
       "--offline", arguments.offline,
-      "Run the recorded poses through the monitor instead: no DDS, no clock, as fast as it goes");
+      "Run the recorded poses through the monitor instead, without DDS or a clock, as fast as "
+      "possible");
   const char* const kOffline = "Offline";
   app.add_option(
          "--cell", arguments.cell,
@@ -57,8 +60,8 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
       ->group(kOffline);
   CLI::Option* const evaluate_all =
       app.add_flag("--evaluate-all", arguments.evaluate_all,
-                   "Evaluate every pair in every tick, whatever the cell's budget; otherwise rows "
-                   "of pairs that the monitor left alone say 'carried', with true bounds")
+                   "Evaluate every pair in every tick, whatever the cell's budget; otherwise the "
+                   "status of pairs that the tick did not evaluate is 'carried', with true bounds")
           ->needs(offline)
           ->group(kOffline);
   CLI::Option* const compare =
@@ -70,27 +73,29 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
           ->excludes(evaluate_all)
           ->group(kOffline);
   app.add_flag("--compare-bounds", arguments.compare_bounds,
-               "Compare only what is certain: recorded and replayed bounds of a pair overlap")
+               "Compare only certified values: recorded and replayed bounds of a pair must overlap")
       ->needs(offline)
       ->excludes(compare)
       ->group(kOffline);
   CLI::Option* const reference =
-      app.add_option("--reference", arguments.reference,
-                     "Hold every pair's distance against this table (CSV, plain or gzip: "
-                     "t_ns,object_a,object_b,distance in m), and its bounds; 0 is contact or "
-                     "overlap. Evaluates all pairs")
+      app.add_option(
+             "--reference", arguments.reference,
+             "Compare every pair's distance and bounds with this table (CSV, plain or gzip: "
+             "t_ns,object_a,object_b,distance in m), where 0 is contact or penetration. "
+             "Evaluates all pairs")
           ->needs(offline)
           ->excludes(compare)
           ->group(kOffline);
-  app.add_option("--tolerance", arguments.tolerance, "How far off a reference may be, m")
+  app.add_option("--tolerance", arguments.tolerance,
+                 "Largest accepted difference from a reference, m")
       ->needs(reference)
       ->check(number_from_zero())
       ->capture_default_str()
       ->group(kOffline);
   app.add_option(
          "--expect-min-distance", arguments.expect_min_distance,
-         "Every pair is proved to be at least this far apart (m) in every tick, and to have "
-         "been so at every instant since the tick before: nothing passes through in between")
+         "Every pair's distance is certified to be at least this (m) in every tick and at every "
+         "instant since the tick before")
       ->needs(offline)
       ->check(finite_number())
       ->group(kOffline);
@@ -99,12 +104,12 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
       ->needs(offline)
       ->group(kOffline);
 
-  app.add_flag("--force", arguments.force, "Write over files that are there already")
+  app.add_flag("--force", arguments.force, "Overwrite files that exist")
       ->needs(offline)
       ->group(kOffline);
 
   const char* const kDds = "Over DDS";
-  app.add_option("--rate", arguments.rate, "Times as fast as recorded")
+  app.add_option("--rate", arguments.rate, "Speed, in multiples of the recorded one")
       ->check(positive_number())
       ->excludes(offline)
       ->capture_default_str()
@@ -127,15 +132,14 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
 
 int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app(
-      "Publishes a recording over DDS with its original spacing; with --offline runs it through "
-      "the "
-      "monitor and checks what comes out.");
+      "Publishes a recording over DDS with its original timing; with --offline runs it through "
+      "the monitor and checks the result.");
   ReplayArguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   if (arguments.start_s > arguments.end_s) {
-    std::fprintf(stderr, "clearance-replay: --start %g lies after --end %g\n", arguments.start_s,
-                 arguments.end_s);
+    print(stderr, "clearance-replay: --start {:g} lies after --end {:g}\n", arguments.start_s,
+          arguments.end_s);
     return kUsage;
   }
   return arguments.offline ? replay_without_dds(arguments, stop) : replay_over_dds(arguments, stop);
@@ -145,6 +149,7 @@ int run(int argc, char** argv, StopSignal& stop) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-replay",
-                                [=](auto& stop) { return clearance::run(argc, argv, stop); });
+  return clearance::run_program(
+      "clearance-replay", [=](auto& stop) { return clearance::run(argc, argv, stop); },
+      clearance::dds_exit_code);
 }

@@ -1,6 +1,8 @@
 // clearance-robot: a simulated robot. Publishes the poses of everything that moves in a cell, as
 // its `simulation:` section says, at a fixed rate; on request it measures how soon the daemon's
 // answer is back.
+#include <fmt/format.h>
+
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -11,14 +13,17 @@
 
 #include "config/simulation.hpp"
 #include "monitor/app/log.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/daemon/histogram.hpp"
-#include "monitor/daemon/ports.hpp"
-#include "monitor/daemon/realtime.hpp"
-#include "monitor/daemon/summary.hpp"
 #include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
 #include "monitor/dds/participant.hpp"
+#include "monitor/loop/histogram.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "monitor/loop/summary.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -50,7 +55,7 @@ struct Arguments {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
-  app.add_option("--rate", arguments.rate_hz, "Batches a second")
+  app.add_option("--rate", arguments.rate_hz, "Batches per second")
       ->check(finite_number())
       ->check(CLI::Range(0.1, 10000.0))
       ->capture_default_str();
@@ -61,13 +66,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check([](const std::string& name) {
         return !name.empty() && name.size() <= kMaxSourceLength
                    ? std::string()
-                   : "found '" + name + "', " + std::to_string(name.size()) +
-                         " bytes; expected a name of 1 to " + std::to_string(kMaxSourceLength);
+                   : fmt::format("found '{}', {} bytes; expected a name of 1 to {}", name,
+                                 name.size(), kMaxSourceLength);
       })
       ->capture_default_str();
   app.add_flag(
       "--latency", arguments.latency,
-      "Read the reports too, and tell how long after a pose the first report made with it came");
+      "Read the reports too, and print the delay from a pose to the first report that uses it");
   app.add_option("--priority", arguments.priority, "Run under SCHED_FIFO")
       ->check(CLI::Range(1, 99));
   arguments.dds.add_to(app);
@@ -80,8 +85,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
 class LatencyMeter {
  public:
   LatencyMeter(Participant& participant, const std::string& topic)
-      : reader_(participant.reader(topic_descriptor<clearance_msg_Distances>(), topic,
-                                   Delivery::kStream, 64)),
+      : reader_(participant.reader(TopicKind::kDistances, topic)),
         wait_(participant, {reader_}),
         thread_([this] { run(); }) {}
   ~LatencyMeter() {
@@ -91,18 +95,17 @@ class LatencyMeter {
   }
 
   // `where`: the domain that reports were waited for in.
-  void print(const std::string& where) {
+  void tell(const std::string& where) {
     const std::lock_guard lock(mutex_);
     if (all_.count() == 0) {
-      std::printf("latency  not known: no report came on %s; does clearanced run there?\n",
-                  where.c_str());
+      print(stdout, "latency  not known: no report came on {}; does clearanced run there?\n",
+            where);
       return;
     }
-    std::printf("latency  %s  pose sent to report received, %llu poses\n",
-                percentiles(all_).c_str(), static_cast<unsigned long long>(all_.count()));
-    std::printf("         %s  of which: pose sent to tick\n", percentiles(to_tick_).c_str());
-    std::printf("         %s  of which: tick to report received\n",
-                percentiles(from_tick_).c_str());
+    print(stdout, "latency  {}  pose sent to report received, {} poses\n", percentiles(all_),
+          all_.count());
+    print(stdout, "         {}  of which: pose sent to tick\n", percentiles(to_tick_));
+    print(stdout, "         {}  of which: tick to report received\n", percentiles(from_tick_));
   }
 
  private:
@@ -141,9 +144,7 @@ class LatencyMeter {
 class Robot {
  public:
   Robot(const Scene& scene, Participant& participant, const std::string& source)
-      : scene_(scene),
-        writer_(participant.writer(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
-                                   Delivery::kStream, 16)) {
+      : scene_(scene), writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)) {
     poses_at(scene_, 0.0, poses_);
     batch_.source = SourceName(source);
     batch_.scene_revision = scene.revision;
@@ -227,11 +228,10 @@ int run_robot(const Scene& scene, const Arguments& arguments, StopSignal& signal
   }
   stop = true;
   sending.join();
-  std::printf("%llu batches of %zu poses sent, %llu failed\n",
-              static_cast<unsigned long long>(robot.sent()), robot.objects(),
-              static_cast<unsigned long long>(robot.failed()));
-  std::printf("wake-up  %s\n", percentiles(lateness).c_str());
-  if (latency) latency->print(participant.where());
+  print(stdout, "{} batches of {} poses sent, {} failed\n", robot.sent(), robot.objects(),
+        robot.failed());
+  print(stdout, "wake-up  {}\n", percentiles(lateness));
+  if (latency) latency->tell(participant.where());
   return kOk;
 }
 
@@ -244,8 +244,8 @@ int run(int argc, char** argv, StopSignal& signal) {
   const auto scene = scene_or_errors(read_cell(arguments.cell));
   if (!scene) return kBadCell;
   if (scene->simulation.empty()) {
-    std::fprintf(stderr, "%s has no `simulation:` section: nothing says how its objects move\n",
-                 arguments.cell.c_str());
+    print(stderr, "{} has no `simulation:` section: nothing says how its objects move\n",
+          arguments.cell);
     return kBadCell;
   }
   return run_robot(*scene, arguments, signal);
@@ -255,6 +255,7 @@ int run(int argc, char** argv, StopSignal& signal) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-robot",
-                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
+  return clearance::run_program(
+      "clearance-robot", [=](auto& signal) { return clearance::run(argc, argv, signal); },
+      clearance::dds_exit_code);
 }

@@ -1,5 +1,5 @@
-// clearance-scene: makes cell files, from a robot's URDF and SRDF or of a generated warehouse, and
-// tells what models a cell's objects have.
+// clearance-scene: writes cell files, of a robot from its URDF and SRDF or of a generated
+// warehouse, and reports the models of a cell's objects.
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +11,9 @@
 
 #include "config/robot_cell.hpp"
 #include "config/warehouse_cell.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "tools/scene/model_report.hpp"
 
@@ -49,12 +52,12 @@ int write(const std::string& yaml, const std::string& output) {
   stream << yaml;
   stream.close();
   if (!stream) {
-    std::fprintf(stderr, "%s: cannot be written: %s\n", output.c_str(), std::strerror(errno));
+    print(stderr, "{}: cannot be written: {}\n", output, std::strerror(errno));
     return kFailed;
   }
   const auto scene = scene_or_errors(read_cell(output));
   if (!scene) return kBadCell;
-  std::printf("%s: %s\n", output.c_str(), summary(*scene).c_str());
+  print(stdout, "{}: {}\n", output, summary(*scene));
   return kOk;
 }
 
@@ -62,18 +65,18 @@ int make_robot_cell(RobotCellOptions options, const std::string& output) {
   options.directory = std::filesystem::absolute(output).parent_path();
   const auto result = robot_cell(options);
   if (const auto* fault = std::get_if<UrdfFault>(&result)) {
-    std::fprintf(stderr, "%s\n", fault->text.c_str());
+    print(stderr, "{}\n", fault->text);
     return kFailed;
   }
   const RobotCell& cell = std::get<RobotCell>(result);
-  for (const std::string& note : cell.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  for (const std::string& note : cell.notes) print(stderr, "note: {}\n", note);
   return write(cell.yaml, output);
 }
 
 int report(const std::string& cell, bool json) {
   const auto scene = scene_or_errors(read_cell(cell));
   if (!scene) return kBadCell;
-  std::fputs((json ? model_json(*scene) : model_table(*scene)).c_str(), stdout);
+  print(stdout, "{}", json ? model_json(*scene) : model_table(*scene));
   return kOk;
 }
 
@@ -90,32 +93,33 @@ void add_options(CLI::App& app, Arguments& arguments) {
       "Print the models of each object of this cell: facets, certified errors, memory");
   what->require_option(1);
   app.add_option("-o,--output", arguments.output,
-                 "The cell file to write; meshes are named relative to it")
+                 "The cell file to write; mesh paths are relative to it")
       ->excludes(report);
-  app.add_option("--srdf", robot.srdf, "The robot's SRDF: its disabled pairs, with their reasons")
+  app.add_option("--srdf", robot.srdf, "The robot's SRDF, which disables pairs, with reasons")
       ->check(CLI::ExistingFile)
       ->needs(urdf);
   app.add_option("--package", arguments.packages,
-                 "NAME=DIRECTORY of a package:// that is not above the URDF; may be repeated")
+                 "NAME=DIRECTORY of a package:// that is not above the URDF; repeatable")
       ->needs(urdf);
-  app.add_option("--group", robot.group, "The group of all links; else the robot's name")
+  app.add_option("--group", robot.group, "Group of all links; by default the robot's name")
       ->needs(urdf);
-  app.add_option(
-         "--max-speed", robot.max_speed,
-         "m/s that no point of the robot exceeds; bounds go unknown without it when poses are late")
+  app.add_option("--max-speed", robot.max_speed,
+                 "Speed that no point of the robot exceeds, m/s; without it, bounds are unknown "
+                 "while poses "
+                 "are late")
       ->check(number_from_zero())
       ->needs(urdf);
-  app.add_option("--age-limit-ms", robot.age_limit_ms, "How old a pose may be")
+  app.add_option("--age-limit-ms", robot.age_limit_ms, "Maximum age of a pose, ms")
       ->check(positive_number())
       ->capture_default_str()
       ->needs(urdf);
   app.add_flag("--fixed-base", robot.fixed_base,
                "The root link stands at the world's origin, and no pose arrives for it")
       ->needs(urdf);
-  app.add_option("--seed", arguments.warehouse.seed, "Of the warehouse: another seed, another one")
+  app.add_option("--seed", arguments.warehouse.seed, "Random seed of the generated warehouse")
       ->capture_default_str()
       ->needs(warehouse);
-  app.add_flag("--json", arguments.json, "The report as JSON")->needs(report);
+  app.add_flag("--json", arguments.json, "Print the report as JSON")->needs(report);
   add_force(app, arguments.force);
   app.footer(kFooter);
 }
@@ -123,18 +127,19 @@ void add_options(CLI::App& app, Arguments& arguments) {
 int run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{
-      "Makes cell files: of a robot from its URDF (collision shapes) and SRDF (disabled pairs), or "
-      "of a generated warehouse. Tells what models a cell's objects have."};
+      "Writes cell files: of a robot from its URDF (collision shapes) and SRDF (disabled pairs), "
+      "or "
+      "of a generated warehouse. Reports the models of a cell's objects."};
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   for (const std::string& package : arguments.packages) {
     if (add_package(package, arguments.robot)) continue;
-    std::fprintf(stderr, "--package %s: expected NAME=DIRECTORY\n", package.c_str());
+    print(stderr, "--package {}: expected NAME=DIRECTORY\n", package);
     return kUsage;
   }
   if (!arguments.report.empty()) return report(arguments.report, arguments.json);
   if (arguments.output.empty()) {
-    std::fputs("--output is missing: which file is to be written?\n", stderr);
+    print(stderr, "--output is missing: it names the cell file to write\n");
     return kUsage;
   }
   if (!output_is_not_an_input("clearance-scene", arguments.output,

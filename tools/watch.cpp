@@ -1,12 +1,15 @@
-// clearance-watch: what the daemon says, live in a terminal.
+// clearance-watch: shows what the daemon publishes, live in a terminal.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "monitor/app/log.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/daemon/ports.hpp"
 #include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
+#include "monitor/loop/ports.hpp"
 #include "tools/watch/feed.hpp"
 #include "tools/watch/view.hpp"
 
@@ -23,7 +26,7 @@ Exit status:
   1  something else failed
   2  wrong usage
   4  DDS could not be joined
-  5  not one report came
+  5  no report was received
 
 Example:
   clearance-watch --partition lab --seconds 10)";
@@ -38,8 +41,9 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
       ->check(number_from_zero());
-  app.add_flag("--plain", arguments.plain,
-               "One line a second instead of a full screen; so too without a terminal");
+  app.add_flag(
+      "--plain", arguments.plain,
+      "Print one line per second instead of a full screen; the default without a terminal");
   app.add_option("--distances", arguments.topics.distances, "Topic name")->capture_default_str();
   app.add_option("--catalogue", arguments.topics.catalogue, "Topic name")->capture_default_str();
   app.add_option("--health", arguments.topics.health, "Topic name")->capture_default_str();
@@ -62,7 +66,7 @@ class Display {
       screen_->draw(watch::screen_lines(feed, context, screen_->size()));
     } else if (now_ns - shown_ns_ >= kPlainNs) {
       shown_ns_ = now_ns;
-      std::printf("%s\n", watch::plain_line(feed, context).c_str());
+      print(stdout, "{}\n", watch::plain_line(feed, context));
       std::fflush(stdout);
     }
   }
@@ -100,7 +104,7 @@ int run_watch(const Arguments& arguments, StopSignal& signal) {
   } while ((arguments.seconds == 0.0 || seconds < arguments.seconds) && !display.quit() &&
            !signal.wait(kFrameMs));
   display.close();
-  std::fputs(watch::final_summary(feed, seconds).c_str(), stdout);
+  print(stdout, "{}", watch::final_summary(feed, seconds));
   return feed.any() ? kOk : kIncomplete;
 }
 
@@ -117,6 +121,7 @@ int run(int argc, char** argv, StopSignal& signal) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearance-watch",
-                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
+  return clearance::run_program(
+      "clearance-watch", [=](auto& signal) { return clearance::run(argc, argv, signal); },
+      clearance::dds_exit_code);
 }

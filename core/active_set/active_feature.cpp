@@ -47,21 +47,21 @@ void ActiveFeature::place_cold(const Vec3& other) noexcept {
 }
 
 bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
-  if (hint.dimension == 0 && within(hint.feature, body_.vertices.size())) {
+  if (hint.kind == FeatureKind::kVertex && within(hint.feature, body_.vertices.size())) {
     place_at_vertex(hint.feature);
     return true;
   }
   if (!is_a_point(hint.point)) return false;
-  if (hint.dimension == 1 && within(hint.feature, body_.edges.size())) {
+  if (hint.kind == FeatureKind::kEdge && within(hint.feature, body_.edges.size())) {
     place_on_edge(hint.feature, hint.point);
     return true;
   }
-  if (hint.dimension == 2 && within(hint.feature, body_.facets.size())) {
+  if (hint.kind == FeatureKind::kFacet && within(hint.feature, body_.facets.size())) {
     const Facet& f = body_.facets[hint.feature];
     const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
     const double slack = kOnFacet * (body_.bounding_radius + p.norm());
     if (crossed_limit(body_, f, p, slack) != kNone) return false;
-    place(Feature::kFacet, hint.feature, p);
+    place(FeatureKind::kFacet, hint.feature, p);
     return true;
   }
   return false;

@@ -27,8 +27,6 @@ namespace clearance {
 [[nodiscard]] std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
                                        const Vec3& p) noexcept;
 
-enum class Feature : std::uint8_t { kVertex = 0, kEdge = 1, kFacet = 2, kInside = 3 };
-
 class ActiveFeature {
  public:
   // pose: null for the body whose frame is the common one.
@@ -36,7 +34,7 @@ class ActiveFeature {
       : body_(body), pose_(pose) {}
 
   [[nodiscard]] const ConvexPolyhedron& body() const noexcept { return body_; }
-  [[nodiscard]] Feature feature() const noexcept { return feature_; }
+  [[nodiscard]] FeatureKind feature() const noexcept { return feature_; }
   [[nodiscard]] std::int32_t index() const noexcept { return index_; }
   [[nodiscard]] const Vec3& own() const noexcept { return own_; }
   [[nodiscard]] const Vec3& common() const noexcept { return common_; }
@@ -56,27 +54,27 @@ class ActiveFeature {
     return pose_ ? Vec3(pose_->rotation * p + pose_->translation) : p;
   }
 
-  void place(Feature feature, std::int32_t index, const Vec3& own) noexcept {
+  void place(FeatureKind feature, std::int32_t index, const Vec3& own) noexcept {
     feature_ = feature;
     index_ = index;
     own_ = own;
     common_ = point_to_common(own);
   }
   void place_at_vertex(std::int32_t index) noexcept {
-    place(Feature::kVertex, index, body_.vertices[index].position);
+    place(FeatureKind::kVertex, index, body_.vertices[index].position);
   }
   // On an edge, as near to `own` as its ends allow.
   void place_on_edge(std::int32_t index, const Vec3& own) noexcept {
     const Edge& e = body_.edges[index];
     const double s = std::clamp((own - e.point).dot(e.direction), e.begin, e.end);
-    place(Feature::kEdge, index, e.point + s * e.direction);
+    place(FeatureKind::kEdge, index, e.point + s * e.direction);
   }
   // On a facet's plane: a long way along a rounded direction leaves it.
   void place_on_facet(std::int32_t index, const Vec3& own) noexcept {
     const Facet& f = body_.facets[index];
-    place(Feature::kFacet, index, own - (f.normal.dot(own) - f.offset) * f.normal);
+    place(FeatureKind::kFacet, index, own - (f.normal.dot(own) - f.offset) * f.normal);
   }
-  void place_inside(const Vec3& own) noexcept { place(Feature::kInside, kNone, own); }
+  void place_inside(const Vec3& own) noexcept { place(FeatureKind::kInside, kNone, own); }
 
   // Where a query starts that knows nothing: a vertex that is far out towards `other` (common
   // frame); inside, where the body has none.
@@ -87,13 +85,13 @@ class ActiveFeature {
   void place_near(const TrackingState::Side& hint, const ActiveFeature& other,
                   double apart) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
-    return {static_cast<std::uint8_t>(feature_), false, index_, own_};
+    return {feature_, false, index_, own_};
   }
 
  private:
   const ConvexPolyhedron& body_;
   const RelativePose* pose_;
-  Feature feature_ = Feature::kInside;
+  FeatureKind feature_ = FeatureKind::kInside;
   std::int32_t index_ = kNone;
   Vec3 own_ = Vec3::Zero(), common_ = Vec3::Zero();
 };

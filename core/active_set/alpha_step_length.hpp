@@ -61,22 +61,22 @@ inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
 }  // namespace alpha_case
 
 [[nodiscard]] inline Alpha alpha(const ActiveFeature& side, const Vec3& move_in_common) noexcept {
-  if (side.feature() == Feature::kVertex) return {};
+  if (side.feature() == FeatureKind::kVertex) return {};
   const Vec3 move = side.direction_to_own(move_in_common);
-  if (side.feature() == Feature::kEdge) return alpha_case::along_edge(side, move);
-  if (side.feature() == Feature::kFacet) return alpha_case::within_facet(side, move);
+  if (side.feature() == FeatureKind::kEdge) return alpha_case::along_edge(side, move);
+  if (side.feature() == FeatureKind::kFacet) return alpha_case::within_facet(side, move);
   return alpha_case::from_inside(side, move);
 }
 
 // Makes the move and, where it was blocked, the blocking feature the active one.
 inline void advance(ActiveFeature& side, const Vec3& move_in_common, const Alpha& step) noexcept {
-  if (side.feature() == Feature::kVertex) return;
+  if (side.feature() == FeatureKind::kVertex) return;
   const Vec3 to = side.own() + step.fraction * side.direction_to_own(move_in_common);
-  if (side.feature() == Feature::kEdge) {
+  if (side.feature() == FeatureKind::kEdge) {
     if (step.blocking != kNone) return side.place_at_vertex(step.blocking);
     return side.place_on_edge(side.index(), to);
   }
-  if (side.feature() == Feature::kFacet) {
+  if (side.feature() == FeatureKind::kFacet) {
     if (step.blocking != kNone) return side.place_on_edge(step.blocking, to);
     return side.place_on_facet(side.index(), to);
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/active_set/polar_cone.hpp"
 #include "core/active_set/separating_direction.hpp"
+#include "core/active_set/unbounded_separation.hpp"
 #include "core/model/support_function.hpp"
 
 namespace clearance {
@@ -19,8 +19,8 @@ void add_direction(Separators& list, const Vec3& v) noexcept {
 }
 
 void add_facets(Separators& list, const ActiveFeature& a, const ActiveFeature& b) noexcept {
-  if (a.feature() == Feature::kFacet) list.add({a.facet().normal, a.index(), kNone});
-  if (b.feature() == Feature::kFacet) {
+  if (a.feature() == FeatureKind::kFacet) list.add({a.facet().normal, a.index(), kNone});
+  if (b.feature() == FeatureKind::kFacet) {
     list.add({-towards_case::normal_of(b), kNone, b.index()});
   }
 }
@@ -38,26 +38,6 @@ double reach(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
   return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
 }
 
-// How far a body's anchors are from one of them, at most.
-double spread(const ConvexPolyhedron& body, const Vec3& from) noexcept {
-  double out = 0.0;
-  for (const Vec3& anchor : body.anchors) out = std::max(out, (anchor - from).norm());
-  return out;
-}
-
-double separation_of_unbounded(const Separator& s, const ActiveFeature& a,
-                               const ActiveFeature& b) noexcept {
-  const auto [n, off] = PolarCone(a, b).nearest(s);
-  if (!(off < kInfinity)) return -kInfinity;
-  const Vec3& on_a = a.body().anchors[support(a.body(), n).anchor];
-  const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(n)).anchor];
-  const Vec3 between = b.point_to_common(on_b) - on_a;
-  const double origins = b.point_to_common(Vec3::Zero()).norm();
-  const double moved = std::min(between.norm() + spread(a.body(), on_a) + spread(b.body(), on_b),
-                                a.body().bounding_radius + b.body().bounding_radius + origins);
-  return n.dot(between) - off * moved;
-}
-
 }  // namespace
 
 Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
@@ -65,12 +45,12 @@ Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   const Vec3 between = b.common() - a.common();
   add_facets(list, a, b);
   Vec3 direct = between;
-  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
-  if (b.feature() == Feature::kEdge) direct = across(direct, along(b));
-  if (a.feature() == Feature::kEdge) direct = across(direct, along(a));
+  if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
+  if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
+  if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   add_direction(list, direct);
   // Says more only where the points are so near to each other that rounding has a part in `direct`.
-  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
+  if (a.feature() == FeatureKind::kEdge && b.feature() == FeatureKind::kEdge) {
     add_crossing_edges(list, a, b, between);
   }
   return list;

@@ -48,10 +48,10 @@ void release(ActiveFeature& side, const Lambda& l) noexcept {
 // Two edges that all but point away from each other generate the facet between them by digits that
 // rounding takes: then neither leads closer, and yet the facet does.
 bool leave_for_facet(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
-  if (side.feature() != Feature::kVertex) return false;
+  if (side.feature() != FeatureKind::kVertex) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
   const Lambda facet = lambda_case::of_facets_at_vertex(side, towards);
-  if (!(facet.rate > kCertainRate * towards.norm())) return false;
+  if (!(facet.rate > kDerivativeError * towards.norm())) return false;
   release(side, facet);
   return true;
 }
@@ -62,7 +62,7 @@ bool leave_for_facet(ActiveFeature& side, const Vec3& towards_in_common) noexcep
 constexpr double kThin = 0x1p-44;
 
 bool leave_for_inside(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
-  if (side.feature() == Feature::kInside) return false;
+  if (side.feature() == FeatureKind::kInside) return false;
   const ConvexPolyhedron& body = side.body();
   const Vec3 towards = side.direction_to_own(towards_in_common);
   const double thin = kThin * towards.norm();
@@ -94,7 +94,7 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
     }
     const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
     const double best = std::max(of_a.rate, of_b.rate);
-    if (best * best < kCertainRate * kCertainRate * distance2) {
+    if (best * best < kDerivativeError * kDerivativeError * distance2) {
       if (leave_for_facet(a, outcome.towards) || leave_for_facet(b, -outcome.towards)) continue;
       if (leave_for_inside(a, outcome.towards) || leave_for_inside(b, -outcome.towards)) continue;
       return ended(Dqp3End::kOptimal);
@@ -132,14 +132,14 @@ void leave_inside(ActiveFeature& side) noexcept {
 // An upper bound is worth no more than that its points are on the bodies: one that the iteration
 // has left outside its facet's polygon goes to the polygon's nearest side.
 void keep_on_body(ActiveFeature& side) noexcept {
-  if (side.feature() == Feature::kInside) leave_inside(side);
-  if (side.feature() != Feature::kFacet) return;
+  if (side.feature() == FeatureKind::kInside) leave_inside(side);
+  if (side.feature() != FeatureKind::kFacet) return;
   const Facet& facet = side.facet();
   const std::int32_t beyond = crossed_limit(side.body(), facet, side.own());
   if (beyond == kNone) return;
   const std::int32_t index = side.index();
   side.place_on_edge(side.body().facet_edges[facet.first_side + beyond].edge, side.own());
-  side.place(Feature::kFacet, index, side.own());
+  side.place(FeatureKind::kFacet, index, side.own());
 }
 
 }  // namespace

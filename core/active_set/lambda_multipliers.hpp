@@ -13,28 +13,28 @@ struct Lambda {
   // Negative beyond rounding, it proves that the feature is the farthest of its body along
   // `towards`.
   double rate = -kInfinity;
-  Feature to = Feature::kInside;  // the feature that remains
+  FeatureKind to = FeatureKind::kInside;  // the feature that remains
   std::int32_t index = kNone;
 };
 
 namespace lambda_case {
 
 inline Lambda of_facet(const ActiveFeature& side, const Vec3& towards) noexcept {
-  return {-side.facet().normal.dot(towards), Feature::kInside, kNone};
+  return {-side.facet().normal.dot(towards), FeatureKind::kInside, kNone};
 }
 
 inline Lambda of_edge(const ActiveFeature& side, const Vec3& towards) noexcept {
   const Edge& edge = side.edge();
   if (edge.facet[0] == kNone) return {};
   const double left = edge.inward.row(0).dot(towards), right = edge.inward.row(1).dot(towards);
-  return left >= right ? Lambda{left, Feature::kFacet, edge.facet[0]}
-                       : Lambda{right, Feature::kFacet, edge.facet[1]};
+  return left >= right ? Lambda{left, FeatureKind::kFacet, edge.facet[0]}
+                       : Lambda{right, FeatureKind::kFacet, edge.facet[1]};
 }
 
 inline Lambda of_vertex(const ActiveFeature& side, const Vec3& towards) noexcept {
   const SteepestEdge steepest = steepest_edge(side.body(), side.vertex(), towards);
   if (steepest.at == kNone) return {};
-  return {steepest.rate, Feature::kEdge, side.body().vertex_edges[steepest.at].edge};
+  return {steepest.derivative, FeatureKind::kEdge, side.body().vertex_edges[steepest.at].edge};
 }
 
 // The facets between the vertex's edges, one by one: along what is across each of two neighbours.
@@ -50,7 +50,7 @@ inline Lambda of_facets_at_vertex(const ActiveFeature& side, const Vec3& towards
     const EdgeUse& left = body.vertex_edges[vertex.first_edge + (i + 1) % vertex.edges];
     const double rate = std::min(across(right, right.side), across(left, 1 - left.side));
     if (rate > best.rate) {
-      best = {rate, Feature::kFacet, body.edges[right.edge].facet[right.side]};
+      best = {rate, FeatureKind::kFacet, body.edges[right.edge].facet[right.side]};
     }
   }
   return best;
@@ -65,11 +65,11 @@ inline Lambda of_facets_at_vertex(const ActiveFeature& side, const Vec3& towards
 // (3.4.25) is there for.
 [[nodiscard]] inline Lambda lambda(const ActiveFeature& side,
                                    const Vec3& towards_in_common) noexcept {
-  if (side.feature() == Feature::kInside) return {};
+  if (side.feature() == FeatureKind::kInside) return {};
   const Vec3 towards = side.direction_to_own(towards_in_common);
-  if (side.feature() == Feature::kFacet) return lambda_case::of_facet(side, towards);
-  return side.feature() == Feature::kEdge ? lambda_case::of_edge(side, towards)
-                                          : lambda_case::of_vertex(side, towards);
+  if (side.feature() == FeatureKind::kFacet) return lambda_case::of_facet(side, towards);
+  return side.feature() == FeatureKind::kEdge ? lambda_case::of_edge(side, towards)
+                                              : lambda_case::of_vertex(side, towards);
 }
 
 }  // namespace clearance

@@ -54,12 +54,13 @@ inline Towards from_facet(const Vec3& normal, const Vec3& between, bool other_is
 [[nodiscard]] inline Towards towards(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   using namespace towards_case;
   const Vec3 between = b.common() - a.common();
-  const bool a_vertex = a.feature() == Feature::kVertex, b_vertex = b.feature() == Feature::kVertex;
-  if (a.feature() == Feature::kFacet) return from_facet(a.facet().normal, between, b_vertex);
-  if (b.feature() == Feature::kFacet) {
+  const bool a_vertex = a.feature() == FeatureKind::kVertex,
+             b_vertex = b.feature() == FeatureKind::kVertex;
+  if (a.feature() == FeatureKind::kFacet) return from_facet(a.facet().normal, between, b_vertex);
+  if (b.feature() == FeatureKind::kFacet) {
     return from_facet(normal_of(b), between, a_vertex);
   }
-  const bool a_edge = a.feature() == Feature::kEdge, b_edge = b.feature() == Feature::kEdge;
+  const bool a_edge = a.feature() == FeatureKind::kEdge, b_edge = b.feature() == FeatureKind::kEdge;
   if (a_edge && b_edge) return edge_edge(a, b, between);
   if (a_edge && b_vertex) return {across(across(between, along(a)), along(a)), true};
   if (b_edge && a_vertex) return {across(across(between, along(b)), along(b)), true};

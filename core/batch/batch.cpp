@@ -26,9 +26,9 @@ class DistanceBatch::Rounds {
         slots_(of_),
         results_(pairs.size() + 1),
         failed_lanes_(slots_.blocks().size() + 1),
-        loose_(pairs.size() / kBits + 1),
-        tenures_(pairs.size()) {
-    departed_.reserve(pairs.size());
+        unassigned_(pairs.size() / kBits + 1),
+        residences_(pairs.size()) {
+    changed_.reserve(pairs.size());
     order_.reserve(pairs.size());
     forget();
   }
@@ -39,9 +39,9 @@ class DistanceBatch::Rounds {
     poses_ = world_from_body;
     query_ = tracked_query();
     judge_blocks();
-    single_queries_ = loose_pairs_ + departed_.size();
-    ask_loose();
-    ask_departed();
+    single_queries_ = unassigned_pairs_ + changed_.size();
+    ask_unassigned();
+    ask_changed();
     slots_.close_holes();
     return {results_.data(), of_.pairs.size()};
   }
@@ -49,10 +49,10 @@ class DistanceBatch::Rounds {
   void forget() noexcept {
     std::fill(of_.states.begin(), of_.states.end(), TrackingState{});
     slots_.clear();
-    std::fill(tenures_.begin(), tenures_.end(), Tenure{});
-    std::fill(loose_.begin(), loose_.end(), 0);
-    loose_pairs_ = 0;
-    for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) loosen(pair);
+    std::fill(residences_.begin(), residences_.end(), Residence{});
+    std::fill(unassigned_.begin(), unassigned_.end(), 0);
+    unassigned_pairs_ = 0;
+    for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) unassign(pair);
   }
 
   [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept {
@@ -64,24 +64,19 @@ class DistanceBatch::Rounds {
   [[nodiscard]] std::size_t single_queries() const noexcept { return single_queries_; }
 
  private:
-  // A pair that has left its lane, the features that it has been walked to, by their dimensions,
-  // and how far that was.
-  struct Departed {
+  // A pair that has left its lane, the features that it has been moved to, and the transitions to
+  // them.
+  struct Changed {
     std::uint32_t pair;
-    std::uint8_t dimensions;
+    FeaturePair features;
     WalkStart start;
   };
-  static constexpr std::uint8_t kMostDimensions = 8;  // two facets
 
-  static std::uint8_t dimensions_of(const TrackingState& s) noexcept {
-    return static_cast<std::uint8_t>(3 * s.a.dimension + s.b.dimension);
-  }
+  static constexpr std::uint32_t kBits = 64;  // of a word of unassigned_
 
-  static constexpr std::uint32_t kBits = 64;  // of a word of loose_
-
-  [[nodiscard]] std::optional<FeatureKind> kind_of(std::uint32_t pair,
-                                                   const TrackingState& state) const noexcept {
-    return feature_kind(of_.a(pair), of_.b(pair), state);
+  [[nodiscard]] std::optional<FeaturePair> features_of(std::uint32_t pair,
+                                                       const TrackingState& state) const noexcept {
+    return lane_features(of_.a(pair), of_.b(pair), state);
   }
 
   void judge_blocks() noexcept {
@@ -90,28 +85,29 @@ class DistanceBatch::Rounds {
     round.world_from_body = poses_.data();
     round.results = results_.data();
     round.failed = failed_lanes_.data();
-    for (std::size_t i = 0; i < kFeatureKinds; ++i) {
-      const auto blocks = slots_.blocks_of(static_cast<FeatureKind>(i));
+    for (std::size_t i = 0; i < kFeaturePairs; ++i) {
+      const auto blocks = slots_.blocks_of(static_cast<FeaturePair>(i));
       round.lists[i] = {blocks.data(), blocks.size()};
     }
     const std::size_t count = run_batch(round);
-    departed_.clear();
+    changed_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       const FailedLanes& of = failed_lanes_[i];
       const BatchBlock& block = slots_.blocks()[of.block];
       for (std::uint32_t lanes = of.lanes; lanes != 0; lanes &= lanes - 1) {
-        depart_lane(of, block, static_cast<std::size_t>(std::countr_zero(lanes)));
+        leave_lane(of, block, static_cast<std::size_t>(std::countr_zero(lanes)));
       }
     }
   }
 
   // All leave their lanes before any comes to a new one.
-  void depart_lane(const FailedLanes& of, const BatchBlock& block, std::size_t lane) noexcept {
+  void leave_lane(const FailedLanes& of, const BatchBlock& block, std::size_t lane) noexcept {
     const std::uint32_t pair = block.pair[lane];
     slots_.leave(pair);
     TrackingState& state = of_.states[pair];
-    const WalkStart start = depart(block.kind, of_.a(pair), of_.b(pair), of, lane, state);
-    departed_.push_back({pair, dimensions_of(state), start});
+    const WalkStart start =
+        to_next_feature(block.features, of_.a(pair), of_.b(pair), of, lane, state);
+    changed_.push_back({pair, feature_pair(state), start});
   }
 
   void ask(std::uint32_t pair, WalkStart start = {}) noexcept {
@@ -122,72 +118,74 @@ class DistanceBatch::Rounds {
   }
 
   // Sorted by where they are now: the processor foresees what it has just done.
-  void ask_departed() noexcept {
-    std::array<std::uint32_t, kMostDimensions + 2> ends{};
-    for (const Departed& d : departed_) ++ends[d.dimensions + 1U];
+  void ask_changed() noexcept {
+    std::array<std::uint32_t, kFeaturePairs + 1> ends{};
+    for (const Changed& c : changed_) ++ends[static_cast<std::size_t>(c.features) + 1U];
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
-    order_.resize(departed_.size());
-    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[ends[departed_[i].dimensions]++] = i;
-    for (const std::uint32_t i : order_) ask_departed(departed_[i]);
+    order_.resize(changed_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+      order_[ends[static_cast<std::size_t>(changed_[i].features)]++] = i;
+    }
+    for (const std::uint32_t i : order_) ask_changed(changed_[i]);
   }
 
-  void loosen(std::uint32_t pair) noexcept {
-    loose_[pair / kBits] |= std::uint64_t{1} << (pair % kBits);
-    ++loose_pairs_;
+  void unassign(std::uint32_t pair) noexcept {
+    unassigned_[pair / kBits] |= std::uint64_t{1} << (pair % kBits);
+    ++unassigned_pairs_;
   }
-  void tie(std::uint32_t pair, FeatureKind kind) noexcept {
-    loose_[pair / kBits] &= ~(std::uint64_t{1} << (pair % kBits));
-    --loose_pairs_;
-    slots_.enter(pair, kind);
+  void assign(std::uint32_t pair, FeaturePair features) noexcept {
+    unassigned_[pair / kBits] &= ~(std::uint64_t{1} << (pair % kBits));
+    --unassigned_pairs_;
+    slots_.enter(pair, features);
   }
 
-  // In the order of the pairs. More than one step, and the features are others, or the pair is none
-  // for vector code.
-  void ask_loose() noexcept {
-    for (std::uint32_t word = 0; word < loose_.size(); ++word) {
-      for (std::uint64_t bits = loose_[word]; bits != 0; bits &= bits - 1) {
+  // In the order of the pairs. After more than one transition the features are others, or the pair
+  // is not for vector code.
+  void ask_unassigned() noexcept {
+    for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
+      for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {
         const auto pair = word * kBits + static_cast<std::uint32_t>(std::countr_zero(bits));
         ask(pair);
-        Tenure& tenure = tenures_[pair];
-        tenure.add(rounds_, results_[pair].iterations != 1);
-        if (!tenure.settled(rounds_)) continue;
-        if (const auto kind = kind_of(pair, of_.states[pair])) {
-          tie(pair, *kind);
+        Residence& residence = residences_[pair];
+        residence.add(rounds_, results_[pair].iterations != 1);
+        if (!residence.settled(rounds_)) continue;
+        if (const auto features = features_of(pair, of_.states[pair])) {
+          assign(pair, *features);
         } else {
-          tenure.wait(Tenure::kNotAtAll);
+          residence.wait(Residence::kNotAtAll);
         }
       }
     }
   }
 
-  void ask_departed(const Departed& d) noexcept {
-    const std::uint32_t pair = d.pair;
-    ask(pair, d.start);
-    Tenure& tenure = tenures_[pair];
-    tenure.add(rounds_, true);
-    const auto kind = kind_of(pair, of_.states[pair]);
+  void ask_changed(const Changed& of) noexcept {
+    const std::uint32_t pair = of.pair;
+    ask(pair, of.start);
+    Residence& residence = residences_[pair];
+    residence.add(rounds_, true);
+    const auto features = features_of(pair, of_.states[pair]);
     if (results_[pair].iterations == 1) {
-      tenure.wait(Tenure::kRetry);
-    } else if (!kind) {
-      tenure.wait(Tenure::kNotAtAll);
-    } else if (tenure.settled(rounds_)) {
-      slots_.enter(pair, *kind);
+      residence.wait(Residence::kRetry);
+    } else if (!features) {
+      residence.wait(Residence::kNotAtAll);
+    } else if (residence.settled(rounds_)) {
+      slots_.enter(pair, *features);
       return;
     }
-    loosen(pair);
+    unassign(pair);
   }
 
   BatchPairs of_;
   BatchSlots slots_;
   std::vector<DistanceResult> results_;    // [pair], and one for lanes that are not in use
   std::vector<FailedLanes> failed_lanes_;  // of this round, at the front
-  std::vector<Departed> departed_;         // of this round
+  std::vector<Changed> changed_;           // of this round
   std::vector<std::uint32_t> order_;       // of these, sorted
   std::span<const Pose> poses_;
   TrackedQuery query_ = nullptr;
-  std::vector<std::uint64_t> loose_;  // a bit a pair: it is in no block
-  std::vector<Tenure> tenures_;       // [pair]
-  std::size_t loose_pairs_ = 0, single_queries_ = 0;
+  std::vector<std::uint64_t> unassigned_;  // a bit a pair: it is in no block
+  std::vector<Residence> residences_;      // [pair]
+  std::size_t unassigned_pairs_ = 0, single_queries_ = 0;
   std::uint32_t rounds_ = 0;
 };
 

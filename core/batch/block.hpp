@@ -1,9 +1,9 @@
 // What a batch remembers of eight pairs, in the order in which vector code reads it.
 //
-// A row holds one number of eight pairs and is a cache line; vectors of 2, 4 or 8 lanes read the
-// same rows. All pairs of a block are closest in the same kind of features, so that one
-// straight line of code decides whether they still are, without gathering anything: the features'
-// own numbers are in the rows, written when the pair came to these features.
+// A row holds one number of eight tracked pairs and is a cache line; vectors of 2, 4 or 8 lanes
+// read the same rows. All of a block have the same pair of features (FeaturePair), so that
+// straight-line code decides whether these are still closest, without gathering anything: the
+// features' own numbers are in the rows, written when a tracked pair came to them.
 #pragma once
 
 #include <array>
@@ -11,35 +11,16 @@
 #include <cstdint>
 
 #include "core/distance_result.hpp"
+#include "core/feature_walk/feature_pair.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 
 inline constexpr std::size_t kBlockLanes = 8;
 
-// Which features of A and B; the first named is A's.
-enum class FeatureKind : std::uint8_t {
-  kVertexVertex,
-  kVertexEdge,
-  kEdgeVertex,
-  kVertexFacet,
-  kFacetVertex,
-  kEdgeEdge,
-  kEdgeFacet,
-  kFacetEdge,
-  kFacetFacet,
-};
-inline constexpr std::size_t kFeatureKinds = 9;
-
 // There the witness point stays at the vertex: fill_lane() writes it, the vector code does not.
-constexpr bool at_vertex_of_a(FeatureKind kind) {
-  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kVertexEdge ||
-         kind == FeatureKind::kVertexFacet;
-}
-constexpr bool at_vertex_of_b(FeatureKind kind) {
-  return kind == FeatureKind::kVertexVertex || kind == FeatureKind::kEdgeVertex ||
-         kind == FeatureKind::kFacetVertex;
-}
+constexpr bool at_vertex_of_a(FeaturePair pair) { return kind_on_a(pair) == FeatureKind::kVertex; }
+constexpr bool at_vertex_of_b(FeaturePair pair) { return kind_on_b(pair) == FeatureKind::kVertex; }
 
 // Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
 // first of them up to the points are not read of a plain block, nor kept.
@@ -95,7 +76,7 @@ struct alignas(64) BatchBlock {
   std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
   std::uint8_t taken = 0;  // bit i: a pair is in lane i
   bool plain = true;       // no body in it has been unbounded, a point, a segment, or with a radius
-  FeatureKind kind = FeatureKind::kVertexVertex;
+  FeaturePair features = FeaturePair::kVertexVertex;
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
 };
 
@@ -115,7 +96,7 @@ enum NextFeature : std::int32_t {
 struct alignas(64) FailedLanes {
   std::uint32_t block, lanes;
   alignas(64) std::array<double, kBlockLanes> next;  // NextFeature
-  std::array<double, kBlockLanes> rate;  // of two vertices: how fast that edge approaches
+  std::array<double, kBlockLanes> derivative;        // of two vertices: along that edge
 };
 
 // One round of the vector code over all blocks.
@@ -128,11 +109,11 @@ struct BatchRound {
     const std::uint32_t* blocks = nullptr;
     std::size_t count = 0;
   };
-  std::array<List, kFeatureKinds> lists;
+  std::array<List, kFeaturePairs> lists;
 };
 
-// Judges every lane: where the features of the last query are the closest still and the bounds are
-// tight, writes what distance() would, bit for bit; the others are listed as failed, in so many
+// Judges every lane: where the features of the last query are the closest still and the distance is
+// certified, writes what distance() would, bit for bit; the others are listed as failed, in so many
 // blocks. Picks the widest vectors that the machine has; the results do not depend on it.
 [[nodiscard]] std::size_t run_batch(const BatchRound& round) noexcept;
 

@@ -10,6 +10,8 @@
 // Keep this order: foreach_target first.
 #include <hwy/highway.h>
 
+#include <utility>
+
 #include "core/batch/block.hpp"
 #include "core/batch/parallel_steps-inl.hpp"
 #include "core/batch/steps-inl.hpp"
@@ -19,42 +21,36 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-struct Slack {
-  Lanes slack, tight;
+// What of Precision a certificate takes, m.
+struct Precisions {
+  Lanes error_bound, gap_tolerance;
 };
 
 // precision() of core/model/error_bounds.hpp.
-HWY_INLINE Slack precisions(const double* rows, bool plain, const RelativePoses& pose,
-                            Lanes farthest) {
+HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativePoses& pose,
+                                 Lanes farthest) {
   const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
   const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
-  Lanes reach_a = radius_a, reach_b = radius_b, tight = all(kTightUlps[0]);
-  Lanes on_features = hn::Add(row(kSlackA), row(kSlackB));
+  Lanes reach_a = radius_a, reach_b = radius_b, ulps = all(kTightUlps[0]);
+  Lanes on_features = row(kSlackA) + row(kSlackB);
   if (!plain) {
     const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
-    const auto far = [&](Lanes of_other)
-                         HWY_ATTR { return hn::Add(hn::Add(of_other, apart), farthest); };
-    const auto add = [&](Lanes at, double ulps, Lanes reach) HWY_ATTR {
-      on_features = hn::Add(on_features, hn::Mul(at, hn::Mul(all(kUlp * ulps), reach)));
-    };
-    reach_a = hn::Max(radius_a, hn::Mul(at_a, far(radius_b)));
-    reach_b = hn::Max(radius_b, hn::Mul(at_b, far(radius_a)));
-    add(at_a, kUlpsOnA, reach_a);
-    add(at_b, kUlpsOnB, reach_b);
-    tight = hn::IfThenElse(hn::Gt(hn::Add(at_a, at_b), all(0.0)), all(kTightUlps[1]), tight);
+    reach_a = hn::Max(radius_a, at_a * ((radius_b + apart) + farthest));
+    reach_b = hn::Max(radius_b, at_b * ((radius_a + apart) + farthest));
+    on_features = on_features + at_a * (all(kUlp * kUlpsOnA) * reach_a);
+    on_features = on_features + at_b * (all(kUlp * kUlpsOnB) * reach_b);
+    ulps = hn::IfThenElse(hn::Gt(at_a + at_b, all(0.0)), all(kTightUlps[1]), ulps);
   }
-  const Lanes size = hn::Add(hn::Add(reach_a, reach_b), apart);
-  const Lanes stretched = hn::Mul(all(kStretched), farthest);
-  const Lanes turned = hn::Min(reach_b, hn::Add(hn::Add(reach_a, apart), stretched));
-  const Lanes between = hn::Add(hn::Mul(all(kUlp * kUlpsBetween), apart), pose.translation_error);
-  const Lanes slack = hn::Add(hn::Add(on_features, between), hn::Mul(pose.rotation_error, turned));
-  return {slack, hn::Mul(hn::Mul(tight, all(kUlp)), size)};
+  const Lanes size = (reach_a + reach_b) + apart;
+  const Lanes turned = hn::Min(reach_b, (reach_a + apart) + all(kStretched) * farthest);
+  const Lanes between = all(kUlp * kUlpsBetween) * apart + pose.translation_error;
+  return {(on_features + between) + pose.rotation_error * turned, (ulps * all(kUlp)) * size};
 }
 
 struct Answers {
   Lanes distance, lower, upper;
   Points normal, point_a, point_b;
-  LaneMask good;  // tight and positive: distance() would have said the same
+  LaneMask good;  // certified: distance() would have said the same
 };
 
 // `kept` where `where`, else `v`.
@@ -63,31 +59,32 @@ HWY_INLINE Points unless(LaneMask where, const Points& kept, const Points& v) {
           hn::IfThenElse(where, kept.z, v.z)};
 }
 
-// From the polyhedra's surfaces to the rounded bodies'.
+// From the polyhedra's surfaces to those of the swept-sphere bodies.
 HWY_INLINE void add_radii(const double* rows, Answers& r) {
   const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
   const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
-  const Lanes sum = hn::Add(radius_a, radius_b);
+  const Lanes sum = radius_a + radius_b;
   const LaneMask bare = hn::Eq(sum, all(0.0));  // whose zeros keep their signs
-  const Lanes rounding = hn::IfThenElse(
-      bare, sum, hn::Mul(all(kRadiusRounding), hn::Add(sum, hn::Abs(hn::Sub(r.upper, sum)))));
-  r.distance = hn::Sub(r.distance, sum);
-  r.lower = hn::Sub(r.lower, hn::Add(sum, rounding));
-  r.upper = hn::Sub(r.upper, hn::Sub(sum, rounding));
-  r.point_a = unless(bare, r.point_a, r.point_a + times(radius_a, r.normal));
-  r.point_b = unless(bare, r.point_b, r.point_b - times(radius_b, r.normal));
+  const Lanes rounding =
+      hn::IfThenElse(bare, sum, all(kRadiusRounding) * (sum + hn::Abs(r.upper - sum)));
+  r.distance = r.distance - sum;
+  r.lower = r.lower - (sum + rounding);
+  r.upper = r.upper - (sum - rounding);
+  r.point_a = unless(bare, r.point_a, r.point_a + radius_a * r.normal);
+  r.point_b = unless(bare, r.point_b, r.point_b - radius_b * r.normal);
   r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
 }
 
-HWY_INLINE Answers conclude(const Closest& c, const Slack& p) {
-  const LaneMask tight = hn::Le(hn::Sub(c.apart, c.proved), p.tight);
+// certify() of core/feature_walk/steps-inl.hpp.
+HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
+  const LaneMask narrow = hn::Le(c.apart - c.certified, p.gap_tolerance);
   Answers r{c.apart,
-            hn::Sub(c.proved, p.slack),
-            hn::Add(c.apart, p.slack),
+            c.certified - p.error_bound,
+            c.apart + p.error_bound,
             c.normal,
             c.point_a,
             c.point_b,
-            hn::And(c.holds, hn::And(hn::Gt(c.proved, p.slack), tight))};
+            hn::And(c.closest, hn::And(hn::Gt(c.certified, p.error_bound), narrow))};
   return r;
 }
 
@@ -109,43 +106,43 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
   store_columns({{r.point_a.z, r.point_b.x, r.point_b.y, r.point_b.z}}, to, 8);
 }
 
-template <FeatureKind kKind>
+template <FeaturePair kPair>
 HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
-  if constexpr (kKind == FeatureKind::kVertexVertex) return vertex_vertex(at, pose);
-  if constexpr (kKind == FeatureKind::kVertexEdge) return edge_vertex<true>(at, pose);
-  if constexpr (kKind == FeatureKind::kEdgeVertex) return edge_vertex<false>(at, pose);
-  if constexpr (kKind == FeatureKind::kVertexFacet) return facet_vertex<true>(at, pose);
-  if constexpr (kKind == FeatureKind::kFacetVertex) return facet_vertex<false>(at, pose);
-  if constexpr (kKind == FeatureKind::kEdgeEdge) return edge_edge(at, pose);
-  if constexpr (kKind == FeatureKind::kEdgeFacet) return edge_facet<true>(at, pose);
-  if constexpr (kKind == FeatureKind::kFacetEdge) return edge_facet<false>(at, pose);
-  if constexpr (kKind == FeatureKind::kFacetFacet) return facet_facet(at, pose);
+  if constexpr (kPair == FeaturePair::kVertexVertex) return vertex_vertex(at, pose);
+  if constexpr (kPair == FeaturePair::kVertexEdge) return edge_vertex<true>(at, pose);
+  if constexpr (kPair == FeaturePair::kVertexFacet) return facet_vertex<true>(at, pose);
+  if constexpr (kPair == FeaturePair::kEdgeVertex) return edge_vertex<false>(at, pose);
+  if constexpr (kPair == FeaturePair::kEdgeEdge) return edge_edge(at, pose);
+  if constexpr (kPair == FeaturePair::kEdgeFacet) return edge_facet<true>(at, pose);
+  if constexpr (kPair == FeaturePair::kFacetVertex) return facet_vertex<false>(at, pose);
+  if constexpr (kPair == FeaturePair::kFacetEdge) return edge_facet<false>(at, pose);
+  if constexpr (kPair == FeaturePair::kFacetFacet) return facet_facet(at, pose);
 }
 
 // Lanes [first, first + kWidth) of a block; bit i: lane first + i is good.
-template <FeatureKind kKind>
+template <FeaturePair kPair>
 HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRound& round,
                              FailedLanes& failed) {
   double* rows = block.rows[0].data() + first;
   const Pose* poses = round.world_from_body;
   const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
                                             load_poses(poses, &block.body_b[first]));
-  const Closest c = closest<kKind>({rows + kFeatureRows * kBlockLanes, block}, pose);
-  Answers r = conclude(c, precisions(rows, block.plain, pose, c.apart));
+  const Closest c = closest<kPair>({rows + kFeatureRows * kBlockLanes, block}, pose);
+  Answers r = certify(c, precisions(rows, block.plain, pose, c.apart));
   if (HWY_LIKELY(block.plain)) {
     write(r, block, first, round.results);
   } else {
     add_radii(rows, r);
     write(r, block, first, round.results);
   }
-  hn::Store(hn::IfThenElse(c.holds, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
-  if constexpr (kKind == FeatureKind::kVertexVertex) {
-    hn::Store(c.rate, Tag(), &failed.rate[first]);
+  hn::Store(hn::IfThenElse(c.closest, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
+  if constexpr (kPair == FeaturePair::kVertexVertex) {
+    hn::Store(c.derivative, Tag(), &failed.derivative[first]);
   }
-  if constexpr (!at_vertex_of_a(kKind)) {
+  if constexpr (!at_vertex_of_a(kPair)) {
     store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
   }
-  if constexpr (!at_vertex_of_b(kKind)) {
+  if constexpr (!at_vertex_of_b(kPair)) {
     store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
   }
   std::uint8_t bits[8] = {};
@@ -154,15 +151,15 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
 }
 
 // Lists what has failed behind the first `count`; how much there is then.
-template <FeatureKind kKind>
+template <FeaturePair kPair>
 std::size_t judge_list(const BatchRound& round, std::size_t count) {
-  const BatchRound::List& list = round.lists[static_cast<std::size_t>(kKind)];
+  const BatchRound::List& list = round.lists[static_cast<std::size_t>(kPair)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
     FailedLanes& failed = round.failed[count];
     std::size_t good = 0;
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {
-      good |= judge<kKind>(block, first, round, failed) << first;
+      good |= judge<kPair>(block, first, round, failed) << first;
     }
     failed.block = list.blocks[k];
     failed.lanes = static_cast<std::uint32_t>(block.taken & ~good);
@@ -171,16 +168,15 @@ std::size_t judge_list(const BatchRound& round, std::size_t count) {
   return count;
 }
 
+template <std::size_t... kPairs>
+HWY_INLINE std::size_t judge_lists(const BatchRound& round, std::index_sequence<kPairs...>) {
+  std::size_t count = 0;
+  ((count = judge_list<static_cast<FeaturePair>(kPairs)>(round, count)), ...);
+  return count;
+}
+
 std::size_t judge_all(const BatchRound& round) {
-  std::size_t count = judge_list<FeatureKind::kVertexVertex>(round, 0);
-  count = judge_list<FeatureKind::kVertexEdge>(round, count);
-  count = judge_list<FeatureKind::kEdgeVertex>(round, count);
-  count = judge_list<FeatureKind::kVertexFacet>(round, count);
-  count = judge_list<FeatureKind::kFacetVertex>(round, count);
-  count = judge_list<FeatureKind::kEdgeEdge>(round, count);
-  count = judge_list<FeatureKind::kEdgeFacet>(round, count);
-  count = judge_list<FeatureKind::kFacetEdge>(round, count);
-  return judge_list<FeatureKind::kFacetFacet>(round, count);
+  return judge_lists(round, std::make_index_sequence<kFeaturePairs>());
 }
 
 const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }

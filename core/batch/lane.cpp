@@ -1,6 +1,8 @@
 #include "core/batch/lane.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace clearance {
 namespace {
@@ -32,23 +34,23 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
 
 // How often what repeats of the feature does.
 std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
-  if (side.dimension == 0) return body.vertices[side.feature].edges;
-  return side.dimension == 2 ? body.facets[side.feature].limits : 0;
+  if (side.kind == FeatureKind::kVertex) return body.vertices[side.feature].edges;
+  return side.kind == FeatureKind::kFacet ? body.facets[side.feature].limits : 0;
 }
 
 // A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
 // witness point is where it is, as after any query but those that touch: lanes do not write it.
 bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
-  if (side.dimension > 2 || !few(repeats(body, side))) return false;
-  return side.dimension > 0 || side.point == body.vertices[side.feature].position;
+  if (side.kind > FeatureKind::kFacet || !few(repeats(body, side))) return false;
+  return side.kind != FeatureKind::kVertex || side.point == body.vertices[side.feature].position;
 }
 
-// Vertices, edges and facets as LaneWriters and loops see them, by their dimension.
-template <int kDimension>
+// Vertices, edges and facets as LaneWriters and loops see them.
+template <FeatureKind kKind>
 struct LaneFeature;
 
 template <>
-struct LaneFeature<0> {
+struct LaneFeature<FeatureKind::kVertex> {
   static constexpr std::size_t kStride = kDirectionRows;
   const Vertex& vertex;
   const VectorRows& table;
@@ -61,7 +63,7 @@ struct LaneFeature<0> {
 };
 
 template <>
-struct LaneFeature<1> {
+struct LaneFeature<FeatureKind::kEdge> {
   static constexpr std::size_t kStride = 0;
   const Edge& edge;
 
@@ -78,7 +80,7 @@ struct LaneFeature<1> {
 };
 
 template <>
-struct LaneFeature<2> {
+struct LaneFeature<FeatureKind::kFacet> {
   static constexpr std::size_t kStride = kSideRows;
   const Facet& facet;
   const VectorRows& table;
@@ -103,10 +105,10 @@ void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t 
 }
 
 // What repeats of one body's feature in a lane, from `row` on.
-template <int kDimension>
-void put_row(BatchBlock& block, std::size_t lane, std::size_t row,
-             const LaneFeature<kDimension>& of, std::size_t most) noexcept {
-  constexpr std::size_t kStride = LaneFeature<kDimension>::kStride;
+template <FeatureKind kKind>
+void put_row(BatchBlock& block, std::size_t lane, std::size_t row, const LaneFeature<kKind>& of,
+             std::size_t most) noexcept {
+  constexpr std::size_t kStride = LaneFeature<kKind>::kStride;
   const auto count = static_cast<std::size_t>(of.repeats());
   const double* const from = of.row();
   LaneWriter to(block, lane, row);
@@ -117,13 +119,13 @@ void put_row(BatchBlock& block, std::size_t lane, std::size_t row,
 }
 
 // Every lane has as many as any needs.
-template <int kDimension>
-void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row,
-                 const LaneFeature<kDimension>& of, std::uint8_t& most) noexcept {
+template <FeatureKind kKind>
+void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const LaneFeature<kKind>& of,
+                 std::uint8_t& most) noexcept {
   const auto count = static_cast<std::uint8_t>(of.repeats());
   if (count > most) {
     for (std::size_t other = 0; other < block.lanes; ++other) {
-      lengthen(block, other, kFeatureRows + row, LaneFeature<kDimension>::kStride, most, count);
+      lengthen(block, other, kFeatureRows + row, LaneFeature<kKind>::kStride, most, count);
     }
     most = count;
   }
@@ -131,25 +133,24 @@ void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row,
 }
 
 // What repeats of both features, of A's first; the edge's neighbours are among its own numbers.
-template <int kOfA, int kOfB>
+template <FeatureKind kOfA, FeatureKind kOfB>
 void put_repeats(BatchBlock& block, std::size_t lane, const LaneFeature<kOfA>& a,
                  const LaneFeature<kOfB>& b) noexcept {
   constexpr bool kAlike = kOfA == kOfB;
-  constexpr std::size_t kAtVertex = kOfA + kOfB == 1 ? kDirectionsAtEdge : kDirectionsAtFacet;
-  constexpr std::size_t kAtFacet = kOfA + kOfB == 3 ? kSidesAtEdge : kSides;
-  constexpr std::size_t kRow[] = {kAlike ? kDirectionsOfA : kAtVertex, 0,
-                                  kAlike ? kSidesOfA : kAtFacet};
-  constexpr std::size_t kRowOfB[] = {kAlike ? kDirectionsOfB : kAtVertex, 0,
-                                     kAlike ? kSidesOfB : kAtFacet};
-  if constexpr (kOfA != 1) {
-    put_repeats(block, lane, kRow[kOfA], a, block.most_a);
-  }
-  if constexpr (kOfB != 1) {
-    put_repeats(block, lane, kRowOfB[kOfB], b, block.most_b);
-  }
+  constexpr bool kWithEdge = kOfA == FeatureKind::kEdge || kOfB == FeatureKind::kEdge;
+  constexpr std::size_t kAtVertex = kWithEdge ? kDirectionsAtEdge : kDirectionsAtFacet;
+  constexpr std::size_t kAtFacet = kWithEdge ? kSidesAtEdge : kSides;
+  constexpr bool kVertexOfA = kOfA == FeatureKind::kVertex,
+                 kVertexOfB = kOfB == FeatureKind::kVertex;
+  constexpr std::size_t kRowOfA =
+      kVertexOfA ? (kAlike ? kDirectionsOfA : kAtVertex) : (kAlike ? kSidesOfA : kAtFacet);
+  constexpr std::size_t kRowOfB =
+      kVertexOfB ? (kAlike ? kDirectionsOfB : kAtVertex) : (kAlike ? kSidesOfB : kAtFacet);
+  if constexpr (kOfA != FeatureKind::kEdge) put_repeats(block, lane, kRowOfA, a, block.most_a);
+  if constexpr (kOfB != FeatureKind::kEdge) put_repeats(block, lane, kRowOfB, b, block.most_b);
 }
 
-template <int kOfA, int kOfB>
+template <FeatureKind kOfA, FeatureKind kOfB>
 void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                   const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   const LaneFeature<kOfA> of_a(a, state.a);
@@ -165,17 +166,24 @@ void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a
   put_repeats(block, lane, of_a, of_b);
 }
 
-constexpr std::array kPutFeatures = {put_features<0, 0>, put_features<0, 1>, put_features<1, 0>,
-                                     put_features<0, 2>, put_features<2, 0>, put_features<1, 1>,
-                                     put_features<1, 2>, put_features<2, 1>, put_features<2, 2>};
-static_assert(kPutFeatures.size() == kFeatureKinds);
+using PutFeatures = void (*)(BatchBlock&, std::size_t, const ConvexPolyhedron&,
+                             const ConvexPolyhedron&, const TrackingState&) noexcept;
+
+// [feature pair]
+template <std::size_t... kPairs>
+constexpr std::array<PutFeatures, kFeaturePairs> put_features_table(
+    std::index_sequence<kPairs...>) noexcept {
+  return {put_features<kind_on_a(static_cast<FeaturePair>(kPairs)),
+                       kind_on_b(static_cast<FeaturePair>(kPairs))>...};
+}
+constexpr auto kPutFeatures = put_features_table(std::make_index_sequence<kFeaturePairs>());
 
 bool point_or_segment(const ConvexPolyhedron& body) noexcept {
   return body.facets.empty() && !body.vertices.empty();
 }
 
 bool bare(const ConvexPolyhedron& body, const Side& side) noexcept {
-  return point_or_segment(body) && (side.dimension == 1 || body.edges.empty());
+  return point_or_segment(body) && (side.kind == FeatureKind::kEdge || body.edges.empty());
 }
 
 bool plain(const ConvexPolyhedron& body) noexcept {
@@ -210,41 +218,25 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 
 }  // namespace
 
-std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                        const TrackingState& state) noexcept {
-  if (state.a.deep || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return {};
+std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const TrackingState& state) noexcept {
+  if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return {};
+  const bool edge_of_a = state.a.kind == FeatureKind::kEdge,
+             edge_of_b = state.b.kind == FeatureKind::kEdge;
+  const bool facet_of_a = state.a.kind == FeatureKind::kFacet,
+             facet_of_b = state.b.kind == FeatureKind::kFacet;
   if (!a.bounded() && !b.bounded()) return {};
-  switch (state.a.dimension * 3 + state.b.dimension) {
-    case 0:
-      return FeatureKind::kVertexVertex;
-    case 1:
-      return FeatureKind::kVertexEdge;
-    case 2:
-      return FeatureKind::kVertexFacet;
-    case 3:
-      return FeatureKind::kEdgeVertex;
-    case 4:
-      if (!a.bounded() || !b.bounded()) return {};
-      return FeatureKind::kEdgeEdge;
-    case 5:
-      if (!a.bounded()) return {};
-      return FeatureKind::kEdgeFacet;
-    case 6:
-      return FeatureKind::kFacetVertex;
-    case 7:
-      if (!b.bounded()) return {};
-      return FeatureKind::kFacetEdge;
-    case 8:
-      if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
-      if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};
-      return FeatureKind::kFacetFacet;
-    default:
-      return {};
+  if (edge_of_a && (edge_of_b || facet_of_b) && !a.bounded()) return {};
+  if (edge_of_b && (edge_of_a || facet_of_a) && !b.bounded()) return {};
+  if (facet_of_a && facet_of_b &&
+      (!few(repeats(a, state.a), kMostSidesOfTwo) || !few(repeats(b, state.b), kMostSidesOfTwo))) {
+    return {};
   }
+  return feature_pair(state);
 }
 
-void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noexcept {
-  block.kind = kind;
+void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept {
+  block.features = features;
   block.pair.fill(no_pair);
   block.lanes = block.taken = block.most_a = block.most_b = 0;
   block.plain = true;
@@ -253,7 +245,7 @@ void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noex
 void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   put_common(block, lane, a, b, state);
-  kPutFeatures[static_cast<std::size_t>(block.kind)](block, lane, a, b, state);
+  kPutFeatures[static_cast<std::size_t>(block.features)](block, lane, a, b, state);
 }
 
 void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& state) noexcept {

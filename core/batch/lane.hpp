@@ -7,16 +7,16 @@
 
 namespace clearance {
 
-// Which kind the features of `state` are; none where only distance() can judge them: overlapping,
-// two unbounded bodies, an edge without end on an edge or facet, too many neighbours.
-[[nodiscard]] std::optional<FeatureKind> feature_kind(const ConvexPolyhedron& a,
-                                                      const ConvexPolyhedron& b,
-                                                      const TrackingState& state) noexcept;
+// The features of `state`; none where only distance() can judge them: penetrating bodies, two
+// unbounded bodies, an unbounded body's edge with an edge or facet, too many neighbours.
+[[nodiscard]] std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a,
+                                                       const ConvexPolyhedron& b,
+                                                       const TrackingState& state) noexcept;
 
-// Without pairs, for those of one kind. no_pair: one past the last.
-void open_block(BatchBlock& block, FeatureKind kind, std::uint32_t no_pair) noexcept;
+// Without tracked pairs, for those of one pair of features. no_pair: one past the last.
+void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept;
 
-// Writes the rows of a lane in use. `state` is of the block's kind.
+// Writes the rows of a lane in use. `state` has the block's features.
 void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                const ConvexPolyhedron& b, const TrackingState& state) noexcept;
 

@@ -49,7 +49,7 @@ HWY_INLINE Points operator-(const Points& a, const Points& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
 HWY_INLINE Points operator-(const Points& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
-HWY_INLINE Points times(Lanes s, const Points& a) {
+HWY_INLINE Points operator*(Lanes s, const Points& a) {
   return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
 }
 HWY_INLINE Points over(const Points& a, Lanes s) {

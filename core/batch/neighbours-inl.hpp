@@ -1,6 +1,6 @@
-// What lies beside the features of as many pairs as a vector has lanes: does it fall away, and if
-// not, which neighbour takes over, as the steps of core/feature_walk/steps-inl.hpp have it?
-// Compiled once an instruction set.
+// What lies beside the features of as many pairs as a vector has lanes: the least or greatest of
+// its directional derivatives, and by which number the neighbour that takes over is known
+// (NextFeature). Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
 #undef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
@@ -32,23 +32,24 @@ struct FeatureRows {
   [[nodiscard]] HWY_INLINE Points common_points(CommonRow row) const {
     return load_points(rows - (kFeatureRows - row) * kBlockLanes);
   }
-  // A rate at which what lies beside a feature falls away; where nothing does, `of_nothing`.
-  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes rate, double of_nothing) const {
-    if (HWY_LIKELY(block.plain)) return rate;
-    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), rate, all(of_nothing));
+  // A directional derivative of what lies beside a feature; where nothing does, `of_nothing`.
+  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes derivative,
+                                             double of_nothing) const {
+    if (HWY_LIKELY(block.plain)) return derivative;
+    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), derivative, all(of_nothing));
   }
 };
 
 // The least or greatest of some numbers, and the first that is.
 struct Extreme {
-  Lanes rate, which;
+  Lanes derivative, which;
 
-  HWY_INLINE void lower(Lanes number, Lanes i) { take(hn::Lt(number, rate), number, i); }
-  HWY_INLINE void raise(Lanes number, Lanes i) { take(hn::Gt(number, rate), number, i); }
+  HWY_INLINE void lower(Lanes number, Lanes i) { take(hn::Lt(number, derivative), number, i); }
+  HWY_INLINE void raise(Lanes number, Lanes i) { take(hn::Gt(number, derivative), number, i); }
 
  private:
   HWY_INLINE void take(LaneMask where, Lanes number, Lanes i) {
-    rate = hn::IfThenElse(where, number, rate);
+    derivative = hn::IfThenElse(where, number, derivative);
     which = hn::IfThenElse(where, i, which);
   }
 };
@@ -57,8 +58,8 @@ HWY_INLINE Lanes after(Lanes number) { return hn::Add(number, all(1.0)); }
 
 // Neighbours by their numbers, NextFeature.
 HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, all(from)); }
-HWY_INLINE Lanes if_certain(LaneMask certain, Lanes next) {
-  return hn::IfThenElse(certain, next, all(kNextUnknown));
+HWY_INLINE Lanes next_if(LaneMask beyond_rounding, Lanes next) {
+  return hn::IfThenElse(beyond_rounding, next, all(kNextUnknown));
 }
 // Where s is beyond an end of an edge, the vertex there comes first: `at_begin` or the next number.
 HWY_INLINE Lanes unless_beyond(Lanes begin, Lanes end, Lanes s, NextFeature at_begin, Lanes next) {
@@ -73,40 +74,40 @@ struct Beside {
   std::size_t row;
   static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
 
-  [[nodiscard]] HWY_INLINE Extreme least_rate(const Points& g) const {
-    Extreme least{all(kInfinity), all(0.0)};
+  [[nodiscard]] HWY_INLINE Extreme least(const Points& g) const {
+    Extreme lowest{all(kInfinity), all(0.0)};
     Lanes number = all(0.0);
     for (std::size_t i = 0; i < edges(); ++i, number = after(number))
-      least.lower(rate(i, g), number);
-    least.rate = at.unless_bare(kBare, least.rate, kInfinity);
-    return least;
+      lowest.lower(along(i, g), number);
+    lowest.derivative = at.unless_bare(kBare, lowest.derivative, kInfinity);
+    return lowest;
   }
-  [[nodiscard]] HWY_INLINE Extreme greatest_rate(const Points& g) const {
-    Extreme greatest{all(-kInfinity), all(0.0)};
+  [[nodiscard]] HWY_INLINE Extreme greatest(const Points& g) const {
+    Extreme highest{all(-kInfinity), all(0.0)};
     Lanes number = all(0.0);
     for (std::size_t i = 0; i < edges(); ++i, number = after(number))
-      greatest.raise(rate(i, g), number);
-    greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
-    return greatest;
+      highest.raise(along(i, g), number);
+    highest.derivative = at.unless_bare(kBare, highest.derivative, -kInfinity);
+    return highest;
   }
   [[nodiscard]] HWY_INLINE Extreme least_of_two(const Points& g) const {
-    Extreme least{rate(0, g), all(0.0)};
-    least.lower(rate(1, g), all(1.0));
-    least.rate = at.unless_bare(kBare, least.rate, kInfinity);
-    return least;
+    Extreme lowest{along(0, g), all(0.0)};
+    lowest.lower(along(1, g), all(1.0));
+    lowest.derivative = at.unless_bare(kBare, lowest.derivative, kInfinity);
+    return lowest;
   }
   [[nodiscard]] HWY_INLINE Extreme greatest_of_two(const Points& g) const {
-    Extreme greatest{rate(0, g), all(0.0)};
-    greatest.raise(rate(1, g), all(1.0));
-    greatest.rate = at.unless_bare(kBare, greatest.rate, -kInfinity);
-    return greatest;
+    Extreme highest{along(0, g), all(0.0)};
+    highest.raise(along(1, g), all(1.0));
+    highest.derivative = at.unless_bare(kBare, highest.derivative, -kInfinity);
+    return highest;
   }
 
  private:
   [[nodiscard]] HWY_INLINE std::size_t edges() const {
     return kOfB ? at.block.most_b : at.block.most_a;
   }
-  [[nodiscard]] HWY_INLINE Lanes rate(std::size_t i, const Points& g) const {
+  [[nodiscard]] HWY_INLINE Lanes along(std::size_t i, const Points& g) const {
     return dot(at.points(row + kDirectionRows * i), g);
   }
 };

@@ -13,14 +13,14 @@ struct Features {
   Side& on_other;
 };
 
-constexpr WalkStart kOneStep{.steps = 1};
+constexpr WalkStart kOneTransition{.transitions = 1};
 
 // Where an edge ends: it need not.
-WalkStart go(Side& side, std::uint8_t dimension, std::int32_t feature) noexcept {
+WalkStart go(Side& side, FeatureKind kind, std::int32_t feature) noexcept {
   if (feature == kNone) return {};
-  side.dimension = dimension;
+  side.kind = kind;
   side.feature = feature;
-  return kOneStep;
+  return kOneTransition;
 }
 
 const EdgeUse& edge_of_vertex(const ConvexPolyhedron& body, const Side& side,
@@ -30,41 +30,42 @@ const EdgeUse& edge_of_vertex(const ConvexPolyhedron& body, const Side& side,
 
 // Onto the vertex's edge, or past it to its far end.
 WalkStart along_edge(const ConvexPolyhedron& body, Side& side, std::int32_t i,
-                     double rate) noexcept {
+                     double derivative) noexcept {
   const EdgeUse& use = edge_of_vertex(body, side, i);
   const Edge& edge = body.edges[use.edge];
   const std::int32_t far = edge.vertex[1 - use.side];
-  return rate >= edge.end && far != kNone ? go(side, 0, far) : go(side, 1, use.edge);
+  return derivative >= edge.end && far != kNone ? go(side, FeatureKind::kVertex, far)
+                                                : go(side, FeatureKind::kEdge, use.edge);
 }
 
 WalkStart leave_edge(const ConvexPolyhedron& body, Side& side, std::int32_t next) noexcept {
   const Edge& edge = body.edges[side.feature];
-  return next < kNextEnd ? go(side, 2, edge.facet[next - kNextBeside])
-                         : go(side, 0, edge.vertex[next - kNextEnd]);
+  return next < kNextEnd ? go(side, FeatureKind::kFacet, edge.facet[next - kNextBeside])
+                         : go(side, FeatureKind::kVertex, edge.vertex[next - kNextEnd]);
 }
 
 WalkStart from_edge_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextBeside) return leave_edge(f.owner, f.on_owner, next);
-  return go(f.on_other, 1, edge_of_vertex(f.other, f.on_other, next).edge);
+  return go(f.on_other, FeatureKind::kEdge, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
 WalkStart from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);
-    return go(f.on_other, 0, f.other.edges[use.edge].vertex[1 - use.side]);
+    return go(f.on_other, FeatureKind::kVertex, f.other.edges[use.edge].vertex[1 - use.side]);
   }
   const Facet& facet = f.owner.facets[f.on_owner.feature];
-  return go(f.on_owner, 1, f.owner.facet_edges[facet.first_side + next].edge);
+  return go(f.on_owner, FeatureKind::kEdge, f.owner.facet_edges[facet.first_side + next].edge);
 }
 
-// Of what rises beside crossing edges, or is level.
+// Of what does not recede beside crossing edges.
 WalkStart to_facets_beside(const Features& f, std::int32_t next) noexcept {
   const std::int32_t of_a = next % kNextBesideB, of_b = next / kNextBesideB;
   const Edge& first = f.owner.edges[f.on_owner.feature];
   const Edge& second = f.other.edges[f.on_other.feature];
-  if (of_a > 0) (void)go(f.on_owner, 2, first.facet[of_a - 1]);
-  if (of_b > 0) (void)go(f.on_other, 2, second.facet[of_b - 1]);
-  return {.steps = 1, .levels = 1};
+  if (of_a > 0) (void)go(f.on_owner, FeatureKind::kFacet, first.facet[of_a - 1]);
+  if (of_b > 0) (void)go(f.on_other, FeatureKind::kFacet, second.facet[of_b - 1]);
+  return {.transitions = 1, .parallel_transitions = 1};
 }
 
 WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
@@ -75,28 +76,29 @@ WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
 
 }  // namespace
 
-WalkStart depart(FeatureKind kind, const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                 const FailedLanes& of, std::size_t lane, TrackingState& state) noexcept {
+WalkStart to_next_feature(FeaturePair features, const ConvexPolyhedron& a,
+                          const ConvexPolyhedron& b, const FailedLanes& of, std::size_t lane,
+                          TrackingState& state) noexcept {
   const auto next = static_cast<std::int32_t>(of.next[lane]);
   if (next == kNextUnknown) return {};
   const Features from_a{a, b, state.a, state.b}, from_b{b, a, state.b, state.a};
-  switch (kind) {
-    case FeatureKind::kVertexVertex:
-      if (next < kNextOfOther) return along_edge(a, state.a, next, of.rate[lane]);
-      return along_edge(b, state.b, next - kNextOfOther, of.rate[lane]);
-    case FeatureKind::kVertexEdge:
+  switch (features) {
+    case FeaturePair::kVertexVertex:
+      if (next < kNextOfOther) return along_edge(a, state.a, next, of.derivative[lane]);
+      return along_edge(b, state.b, next - kNextOfOther, of.derivative[lane]);
+    case FeaturePair::kVertexEdge:
       return from_edge_and_vertex(from_b, next);
-    case FeatureKind::kEdgeVertex:
+    case FeaturePair::kEdgeVertex:
       return from_edge_and_vertex(from_a, next);
-    case FeatureKind::kVertexFacet:
+    case FeaturePair::kVertexFacet:
       return from_facet_and_vertex(from_b, next);
-    case FeatureKind::kFacetVertex:
+    case FeaturePair::kFacetVertex:
       return from_facet_and_vertex(from_a, next);
-    case FeatureKind::kEdgeEdge:
+    case FeaturePair::kEdgeEdge:
       return from_edges(from_a, next);
-    case FeatureKind::kEdgeFacet:
-    case FeatureKind::kFacetEdge:
-    case FeatureKind::kFacetFacet:
+    case FeaturePair::kEdgeFacet:
+    case FeaturePair::kFacetEdge:
+    case FeaturePair::kFacetFacet:
       break;
   }
   return {};

@@ -1,5 +1,5 @@
 // A pair whose features are the closest no longer goes on from what its lane has found out: which
-// neighbour takes over, as a step of core/feature_walk/steps-inl.hpp would have said.
+// neighbour takes over, as transition() of core/feature_walk/steps-inl.hpp would have said.
 #pragma once
 
 #include "core/batch/block.hpp"
@@ -8,10 +8,10 @@
 
 namespace clearance {
 
-// The step from the features of `state`, of the given kind, to the neighbour that a lane names. No
-// step: the lane could not tell, and they are for distance().
-[[nodiscard]] WalkStart depart(FeatureKind kind, const ConvexPolyhedron& a,
-                               const ConvexPolyhedron& b, const FailedLanes& of, std::size_t lane,
-                               TrackingState& state) noexcept;
+// The transition from the features of `state` to the neighbour that a lane names. None: the lane
+// could not tell, and the features are left to distance().
+[[nodiscard]] WalkStart to_next_feature(FeaturePair features, const ConvexPolyhedron& a,
+                                        const ConvexPolyhedron& b, const FailedLanes& of,
+                                        std::size_t lane, TrackingState& state) noexcept;
 
 }  // namespace clearance

@@ -1,6 +1,6 @@
-// The straight-line part of core/feature_walk/parallel_steps-inl.hpp, operation for operation, for
-// as many pairs as a vector has lanes: features of which more than a point is closest, as far as
-// rounding can tell. Compiled once an instruction set.
+// The straight-line part of core/feature_walk/parallel_steps-inl.hpp for as many pairs as a vector
+// has lanes: features of which more than a point is closest, within tolerance. Compiled once an
+// instruction set.
 #if defined(CLEARANCE_BATCH_LEVEL_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_LEVEL_INL_HPP_
 #undef CLEARANCE_BATCH_LEVEL_INL_HPP_
@@ -23,7 +23,7 @@ HWY_INLINE Lanes least_reach(const FeatureRows& at) {
   return hn::Min(reach(kUnboundedA, kReachA), reach(kUnboundedB, kReachB));
 }
 
-HWY_INLINE Lanes lost_by_tilt(const FeatureRows& at, Lanes tilt) {
+HWY_INLINE Lanes tilt_error(const FeatureRows& at, Lanes tilt) {
   return hn::Mul(hn::Mul(all(2.0), least_reach(at)), hn::Add(tilt, all(kTiltError)));
 }
 
@@ -59,30 +59,31 @@ HWY_INLINE Lanes clamp(Lanes value, Lanes low, Lanes high) {
   return hn::IfThenElse(hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
 }
 
-// kOfB: the facet is B's, the edge A's, along which nothing rises or falls.
+// kOfB: the facet is B's, the edge A's, no side of which approaches or recedes.
 template <bool kOfB>
 HWY_INLINE Closest edge_facet(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
-  const Ground<kOfB> facet(at, pose);
+  const FacetPlanes<kOfB> plane(pose, at.points(0), at.lanes(3));
+  const auto& frame = plane.frame;
   constexpr std::size_t kEdge = kFacetRows;
   const Points start = at.points(kEdge), e = at.points(kEdge + 3);
   const Spans span =
-      within_sides<kOfB>(at, kSidesAtEdge, facet.point_in(start), facet.direction_in(e),
+      within_sides<kOfB>(at, kSidesAtEdge, frame.point_in(start), frame.direction_in(e),
                          at.lanes(kEdge + 6), at.lanes(kEdge + 7));
-  const Points up = CommonFrame<!kOfB>{pose}.direction_to_own(facet.n);
-  const Lanes rise = hn::Abs(dot(e, up));
-  const Lanes away = Beside<!kOfB>{at, kEdge + kInwardRow}.least_of_two(up).rate;
+  const Points up = frame.opposite().direction_to_own(plane.n);
+  const Lanes tilt = hn::Abs(dot(e, up));
+  const Lanes away = Beside<!kOfB>{at, kEdge + kInwardRow}.least_of_two(up).derivative;
   const Points mine = at.common_points(kOfB ? kPointA : kPointB);
-  const Points theirs = facet.point_out(at.common_points(kOfB ? kPointB : kPointA));
-  const Lanes halfway = dot(mine + times(all(0.5), theirs - mine) - start, e);
-  const Points own = start + times(clamp(halfway, span.from, span.to), e);
-  const Points above = facet.point_in(own);
-  c.apart = facet.height(own, above);
-  c.proved = hn::Sub(c.apart, lost_by_tilt(at, rise));
-  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Gt(away, all(kCertainRate))),
-                    hn::And(hn::Le(rise, all(kCertainRate)), hn::Lt(span.from, span.to)));
+  const Points theirs = frame.point_out(at.common_points(kOfB ? kPointB : kPointA));
+  const Lanes halfway = dot(mine + all(0.5) * (theirs - mine) - start, e);
+  const Points own = start + clamp(halfway, span.from, span.to) * e;
+  const Points above = frame.point_in(own);
+  c.apart = plane.height(own, above);
+  c.certified = hn::Sub(c.apart, tilt_error(at, tilt));
+  c.closest = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Gt(away, all(kDerivativeError))),
+                      hn::And(hn::Le(tilt, all(kDerivativeError)), hn::Lt(span.from, span.to)));
   c.next = all(kNextUnknown);
-  facet.place_above(own, above, c);
+  plane.place_witnesses(c, own, above);
   return c;
 }
 
@@ -90,26 +91,26 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   Closest c;
   const Points n = at.points(0), m = at.points(kFacetRows);
   const Lanes offset_a = at.lanes(3), offset_b = at.lanes(kFacetRows + 3);
-  const Points tilt = rotate_back(pose.rotation, n) + m;
+  const Points tilt = direction_to_b(pose, n) + m;
   const Lanes tilt2 = dot(tilt, tilt);
-  const Points last_a = at.common_points(kPointA), mine = at.common_points(kPointB);
-  const Points theirs = rotate_back(pose.rotation, last_a - pose.translation);
-  const Points middle = mine + times(all(0.5), theirs - mine);
+  const Points mine = at.common_points(kPointB);
+  const Points theirs = point_to_b(pose, at.common_points(kPointA));
+  const Points middle = mine + all(0.5) * (theirs - mine);
   const Lanes height = hn::Sub(dot(m, middle), offset_b);
-  c.own_b = middle - times(height, m);
-  c.point_b = rotate(pose.rotation, c.own_b) + pose.translation;
+  c.own_b = middle - height * m;
+  c.point_b = point_to_a(pose, c.own_b);
   c.apart = hn::Sub(dot(n, c.point_b), offset_a);
-  c.point_a = c.point_b - times(c.apart, n);
+  c.point_a = c.point_b - c.apart * n;
   c.normal = n;
-  c.proved = hn::Sub(c.apart, lost_by_tilt(at, hn::Sqrt(tilt2)));
-  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b).rate,
-                               least_within<true>(at, kSidesOfB, c.own_b).rate);
+  c.certified = hn::Sub(c.apart, tilt_error(at, hn::Sqrt(tilt2)));
+  const Lanes within = hn::Min(least_within<false>(at, kSidesOfA, c.point_b).derivative,
+                               least_within<true>(at, kSidesOfB, c.own_b).derivative);
   c.next = all(kNextUnknown);
   const Lanes size =
       hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
   const LaneMask on_facet = hn::Le(hn::Abs(height), hn::Mul(all(2.0), size));
-  c.holds = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
-                    hn::And(hn::Le(tilt2, all(kLevelTilt * kLevelTilt)), on_facet));
+  c.closest = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
+                      hn::And(hn::Le(tilt2, all(kParallelTilt * kParallelTilt)), on_facet));
   return c;
 }
 

@@ -1,5 +1,5 @@
-// relative_pose(), operation for operation, for as many pairs as a vector has
-// lanes. Compiled once an instruction set.
+// relative_pose() for as many pairs as a vector has lanes, with its roundings in its order.
+// Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_POSE_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_POSE_INL_HPP_
 #undef CLEARANCE_BATCH_POSE_INL_HPP_
@@ -34,14 +34,21 @@ struct RelativePoses {
 };
 
 // As the sums of Diagonals: each row's begins at the diagonal.
-HWY_INLINE Points rotate(const Rotations& r, const Points& p) {
+HWY_INLINE Points direction_to_a(const RelativePoses& a_from_b, const Points& p) {
+  const Rotations& r = a_from_b.rotation;
   return {dot({r.x.x, r.x.y, r.x.z}, {p.x, p.y, p.z}), dot({r.y.y, r.y.z, r.y.x}, {p.y, p.z, p.x}),
           dot({r.z.z, r.z.x, r.z.y}, {p.z, p.x, p.y})};
 }
-
-HWY_INLINE Points rotate_back(const Rotations& r, const Points& p) {
+HWY_INLINE Points direction_to_b(const RelativePoses& a_from_b, const Points& p) {
+  const Rotations& r = a_from_b.rotation;
   return {dot({r.x.x, r.y.x, r.z.x}, {p.x, p.y, p.z}), dot({r.y.y, r.z.y, r.x.y}, {p.y, p.z, p.x}),
           dot({r.z.z, r.x.z, r.y.z}, {p.z, p.x, p.y})};
+}
+HWY_INLINE Points point_to_a(const RelativePoses& a_from_b, const Points& p) {
+  return direction_to_a(a_from_b, p) + a_from_b.translation;
+}
+HWY_INLINE Points point_to_b(const RelativePoses& a_from_b, const Points& p) {
+  return direction_to_b(a_from_b, p - a_from_b.translation);
 }
 
 // A pose is eight numbers: position, one that means nothing, x, y, z, w.
@@ -97,10 +104,11 @@ HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
           {difference(xz, wy), sum(yz, wx), diagonal(xx, yy)}};
 }
 
+// R(q/|q|)^T v by two cross products.
 HWY_INLINE Points turn_back(const Quaternions& q, const Points& v) {
   const Points u{q.x, q.y, q.z};
   const Points c = cross(u, v);
-  return v + times(two_over_square(q), cross(u, c) - times(q.w, c));
+  return v + two_over_square(q) * (cross(u, c) - q.w * c);
 }
 
 HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b) {

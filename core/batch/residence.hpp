@@ -1,4 +1,4 @@
-// How long a pair of a batch keeps its features, and so whether it is worth a lane.
+// How long a tracked pair of a batch keeps its features, and so whether it is worth a lane.
 //
 // A pair in a lane costs a third of a single query; one that has to leave its lane, one and a half
 // of them more. So a pair that changes its features in more than about a quarter of the rounds is
@@ -10,11 +10,11 @@
 
 namespace clearance {
 
-class Tenure {
+class Residence {
  public:
   // Features that vector code could not tell of are tried there again after so many rounds.
   static constexpr std::uint16_t kRetry = 64;
-  // Of features that vector code does not judge: nearly for ever.
+  // Of features that vector code does not judge: nearly unlimited.
   static constexpr std::uint16_t kNotAtAll = 0xffff;
 
   // The pair was asked in round `now`, which wraps around: did it come to other features?
@@ -24,20 +24,21 @@ class Tenure {
     const std::int32_t mean = mean_ + (stay - mean_) / kMemory;
     mean_ = static_cast<std::uint16_t>(changed ? mean : mean_);
     since_ = changed ? now : since_;
-    wait_ = changed ? (mean < kRestless ? kCalm : std::uint16_t{0}) : wait_;
+    wait_ = changed ? (mean < kTooShort ? kSettlingRounds : std::uint16_t{0}) : wait_;
   }
-  // After add(): may it enter a lane? One that was restless has to keep its features for a while.
+  // After add(): may it enter a lane? One that changed too often has to keep its features for a
+  // while.
   [[nodiscard]] bool settled(std::uint32_t now) const noexcept { return now - since_ >= wait_; }
   // Not before so many rounds, unless it comes to other features.
   void wait(std::uint16_t rounds) noexcept { wait_ = rounds; }
 
  private:
   // Rounds at the same features: the mean of the last sixteen times or so, none counted as more
-  // than kLongest, in 64ths. Restless pairs stay less than three and a half; they are calm again
-  // after twelve.
+  // than kLongest, in 64ths. Below three and a half a pair changes too often for a lane; after
+  // twelve rounds at the same features it has settled.
   static constexpr std::int32_t kFraction = 64, kMemory = 16, kLongest = 31;
-  static constexpr std::int32_t kRestless = 7 * kFraction / 2;
-  static constexpr std::uint16_t kCalm = 12;
+  static constexpr std::int32_t kTooShort = 7 * kFraction / 2;
+  static constexpr std::uint16_t kSettlingRounds = 12;
 
   std::uint32_t since_ = 0;
   std::uint16_t mean_ = kLongest * kFraction;

@@ -9,7 +9,7 @@ namespace clearance {
 BatchSlots::BatchSlots(BatchPairs& of)
     : of_(of),
       slots_(of.pairs.size()),
-      blocks_((of.pairs.size() + kFeatureKinds * kMostHoles) / kBlockLanes + 2 * kFeatureKinds) {
+      blocks_((of.pairs.size() + kFeaturePairs * kMostHoles) / kBlockLanes + 2 * kFeaturePairs) {
   free_.reserve(blocks_.size());
   for (Settled& s : settled_) {
     s.blocks.reserve(blocks_.size());
@@ -28,14 +28,14 @@ void BatchSlots::clear() noexcept {
   for (std::size_t i = blocks_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void BatchSlots::enter(std::uint32_t pair, FeatureKind kind) noexcept {
-  std::vector<Slot>& holes = settled_[static_cast<std::size_t>(kind)].holes;
+void BatchSlots::enter(std::uint32_t pair, FeaturePair features) noexcept {
+  std::vector<Slot>& holes = settled_[static_cast<std::size_t>(features)].holes;
   Slot slot;
   while (slot.block == kNowhere && !holes.empty()) {
-    if (is_hole(holes.back(), kind)) slot = holes.back();
+    if (is_hole(holes.back(), features)) slot = holes.back();
     holes.pop_back();
   }
-  place(pair, slot.block == kNowhere ? append(kind) : slot);
+  place(pair, slot.block == kNowhere ? append(features) : slot);
   fill(pair);
 }
 
@@ -46,7 +46,7 @@ void BatchSlots::leave(std::uint32_t pair) noexcept {
   from.pair[slot.lane] = of_.no_pair();
   from.taken &= static_cast<std::uint8_t>(~(1U << slot.lane));
   slots_[pair] = {};
-  settled_[static_cast<std::size_t>(from.kind)].holes.push_back(slot);
+  settled_[static_cast<std::size_t>(from.features)].holes.push_back(slot);
 }
 
 void BatchSlots::fill(std::uint32_t pair) noexcept {
@@ -64,18 +64,18 @@ void BatchSlots::place(std::uint32_t pair, Slot slot) noexcept {
 }
 
 // Still: it may have been filled or given up since.
-bool BatchSlots::is_hole(Slot slot, FeatureKind kind) const noexcept {
+bool BatchSlots::is_hole(Slot slot, FeaturePair features) const noexcept {
   const BatchBlock& of = blocks_[slot.block];
-  return of.kind == kind && slot.lane < of.lanes && of.pair[slot.lane] == of_.no_pair();
+  return of.features == features && slot.lane < of.lanes && of.pair[slot.lane] == of_.no_pair();
 }
 
 // A new lane at the end.
-BatchSlots::Slot BatchSlots::append(FeatureKind kind) noexcept {
-  // With no holes left, every kind has one block at most that is not full.
+BatchSlots::Slot BatchSlots::append(FeaturePair features) noexcept {
+  // With no holes left, every pair of features has one block at most that is not full.
   if (free_.empty()) close_holes(0);
-  std::vector<std::uint32_t>& blocks = settled_[static_cast<std::size_t>(kind)].blocks;
+  std::vector<std::uint32_t>& blocks = settled_[static_cast<std::size_t>(features)].blocks;
   if (blocks.empty() || blocks_[blocks.back()].lanes == kBlockLanes) {
-    open_block(blocks_[free_.back()], kind, of_.no_pair());
+    open_block(blocks_[free_.back()], features, of_.no_pair());
     blocks.push_back(free_.back());
     free_.pop_back();
   }
@@ -83,13 +83,13 @@ BatchSlots::Slot BatchSlots::append(FeatureKind kind) noexcept {
 }
 
 void BatchSlots::close_holes(std::size_t most) noexcept {
-  for (std::size_t kind = 0; kind < kFeatureKinds; ++kind) {
-    Settled& of = settled_[kind];
+  for (std::size_t features = 0; features < kFeaturePairs; ++features) {
+    Settled& of = settled_[features];
     while (of.holes.size() > most) {
       const Slot slot = of.holes.back();
       of.holes.pop_back();
       close_last(of);
-      if (!is_hole(slot, static_cast<FeatureKind>(kind))) continue;
+      if (!is_hole(slot, static_cast<FeaturePair>(features))) continue;
       const std::uint32_t pair = take_last(of);
       place(pair, slot);
       fill(pair);
@@ -107,7 +107,7 @@ void BatchSlots::close_last(Settled& of) noexcept {
   }
 }
 
-// Gives up the last lane of a kind; the pair that was in it.
+// Gives up the last lane of a pair of features; the pair that was in it.
 std::uint32_t BatchSlots::take_last(Settled& of) noexcept {
   BatchBlock& end = blocks_[of.blocks.back()];
   const std::size_t lane = --end.lanes;

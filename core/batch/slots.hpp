@@ -28,7 +28,7 @@ struct BatchPairs {
   }
 };
 
-// Gives a pair a lane in a block of its kind, numbers of its features included.
+// Gives a pair a lane in a block of its features, numbers of its features included.
 class BatchSlots {
  public:
   struct Slot {
@@ -46,13 +46,13 @@ class BatchSlots {
     return blocks_[slots_[pair].block];
   }
   [[nodiscard]] std::span<BatchBlock> blocks() noexcept { return blocks_; }
-  // The blocks of one kind.
-  [[nodiscard]] std::span<const std::uint32_t> blocks_of(FeatureKind kind) const noexcept {
-    return settled_[static_cast<std::size_t>(kind)].blocks;
+  // The blocks of one pair of features.
+  [[nodiscard]] std::span<const std::uint32_t> blocks_of(FeaturePair features) const noexcept {
+    return settled_[static_cast<std::size_t>(features)].blocks;
   }
 
-  // The pair has none: its state's features are of this kind.
-  void enter(std::uint32_t pair, FeatureKind kind) noexcept;
+  // The pair has none: these are its state's features.
+  void enter(std::uint32_t pair, FeaturePair features) noexcept;
   // Takes the points of its last query along, to its state.
   void leave(std::uint32_t pair) noexcept;
   // Moves pairs into lanes that others have left; a few of those stay, for what comes next.
@@ -60,9 +60,9 @@ class BatchSlots {
 
  private:
   static constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
-  static constexpr std::size_t kMostHoles = 4;  // lanes of a kind
+  static constexpr std::size_t kMostHoles = 4;  // lanes of a pair of features
 
-  // The pairs of one kind.
+  // The tracked pairs with the same pair of features.
   struct Settled {
     std::vector<std::uint32_t> blocks;  // all but the last full, but for
     std::vector<Slot> holes;            // lanes that their pair has left, and some that were
@@ -70,8 +70,8 @@ class BatchSlots {
 
   void fill(std::uint32_t pair) noexcept;
   void place(std::uint32_t pair, Slot slot) noexcept;
-  [[nodiscard]] bool is_hole(Slot slot, FeatureKind kind) const noexcept;
-  [[nodiscard]] Slot append(FeatureKind kind) noexcept;
+  [[nodiscard]] bool is_hole(Slot slot, FeaturePair features) const noexcept;
+  [[nodiscard]] Slot append(FeaturePair features) noexcept;
   void close_holes(std::size_t most) noexcept;
   void close_last(Settled& of) noexcept;
   std::uint32_t take_last(Settled& of) noexcept;
@@ -79,7 +79,7 @@ class BatchSlots {
   BatchPairs& of_;
   std::vector<Slot> slots_;  // [pair]
   std::vector<BatchBlock> blocks_;
-  std::array<Settled, kFeatureKinds> settled_;
+  std::array<Settled, kFeaturePairs> settled_;
   std::vector<std::uint32_t> free_;  // blocks
 };
 

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/numerics/long_sum.hpp"
-
 namespace clearance::exact {
 namespace {
 
@@ -97,22 +95,6 @@ Vec3 unit(const Integer3& direction) {
   return result;
 }
 
-namespace {
-
-RoundedDirection rounded_unit(const Integer3& direction) {
-  const UnitQuotients quotients = unit_quotients(direction);
-  RoundedDirection result{unit(direction), false};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    mpq_class component(quotients.numerators[i], quotients.denominator);
-    component.canonicalize();
-    result.rest[axis] = mpq_class(component - mpq_class(result.vector[axis])).get_d();
-  }
-  return result;
-}
-
-}  // namespace
-
 RoundedDirection nearest_direction(const Integer3& direction) {
   Integer3 shortest = direction;
   reduce(shortest);
@@ -125,7 +107,7 @@ RoundedDirection nearest_direction(const Integer3& direction) {
     exact = exact && bits(component) - trailing <= kDoubleBits;
     lowest = std::min(lowest, trailing);
   }
-  if (!exact || 1 - longest + lowest < kLeastExponent) return rounded_unit(direction);
+  if (!exact || 1 - longest + lowest < kLeastExponent) return {unit(direction), false};
   Vec3 vector;
   for (std::size_t i = 0; i < 3; ++i) {
     long exponent = 0;
@@ -134,41 +116,6 @@ RoundedDirection nearest_direction(const Integer3& direction) {
         std::ldexp(significand, static_cast<int>(exponent + 1 - longest));
   }
   return {vector, true};
-}
-
-namespace {
-
-// What LongSum<3> holds, in the middle of it if that is enough.
-constexpr long kBelow = 3300, kAbove = 3000;
-static_assert(-kBelow >= LongSum<3>::kLowest && kAbove <= LongSum<3>::kHighest);
-
-long longest_of(const Integer3& v) { return std::max({bits(v[0]), bits(v[1]), bits(v[2])}); }
-
-}  // namespace
-
-bool has_exact_direction(const Integer3& direction) {
-  Integer3 shortest = direction;
-  reduce(shortest);
-  return longest_of(shortest) <= kBelow + kAbove;
-}
-
-ExactDirection exact_direction(const Integer3& direction) {
-  Integer3 rest = direction;
-  reduce(rest);
-  const auto longest = [&] { return longest_of(rest); };
-  const long down = std::min(longest(), kBelow);
-  ExactDirection out;
-  while (!is_zero(rest)) {
-    const long drop = std::max(longest() - kDoubleBits, 0L);
-    Vec3 digits;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Integer kept = shifted(rest[i], -drop);
-      digits[static_cast<Eigen::Index>(i)] = kept.get_d();
-      rest[i] -= shifted(kept, drop);
-    }
-    out.parts.push_back({digits, static_cast<int>(drop - down)});
-  }
-  return out;
 }
 
 }  // namespace clearance::exact

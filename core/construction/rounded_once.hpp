@@ -23,20 +23,11 @@ struct Rounded {
 [[nodiscard]] Vec3 unit(const Integer3& direction);
 
 // A positive multiple of `direction` that is exactly three doubles, if one is: `exact` says so, and
-// otherwise the vector is unit(direction), and `rest` what it leaves of direction / |direction|, to
-// 2^-104. Largest component in [1, 2) when exact.
+// otherwise the vector is unit(direction). Largest component in [1, 2) when exact.
 struct RoundedDirection {
   Vec3 vector;
   bool exact;
-  Vec3 rest = Vec3::Zero();
 };
 [[nodiscard]] RoundedDirection nearest_direction(const Integer3& direction);
-
-// Is the direction, by its shortest integers, no longer than exact_direction() has room for? Sums
-// of products of up to three doubles are: their integers have 3 * 2098 + 2 bits.
-[[nodiscard]] bool has_exact_direction(const Integer3& direction);
-
-// Of one that has_exact_direction().
-[[nodiscard]] ExactDirection exact_direction(const Integer3& direction);
 
 }  // namespace clearance::exact

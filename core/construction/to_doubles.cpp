@@ -228,23 +228,18 @@ class Assembler {
   void go_on_for_ever() {
     for (const Integer3& ray : solid_.rays) {
       const RoundedDirection direction = nearest_direction(ray);
-      body_.rays.push_back(
-          {direction.vector, direction.exact, direction.rest, exact_direction(ray)});
+      body_.rays.push_back({direction.vector, direction.exact, is_line(ray)});
     }
     for (const Integer4& plane : solid_.planes) {
-      body_.exact_normals.push_back(exact_direction(head(plane)));
+      const RoundedDirection normal = nearest_direction(head(plane));
+      body_.exact_normals.push_back(normal.exact ? normal.vector : Vec3(Vec3::Zero()));
     }
-    for (const SolidEdge& edge : solid_.edges) body_.edge_rays.push_back(ray_along(edge));
   }
 
-  std::int32_t ray_along(const SolidEdge& edge) {
-    if (!edge.full_line && edge.end != kNone) return kNone;
-    const Integer3 along =
-        cross(head(solid_.planes[at(edge.left)]), head(solid_.planes[at(edge.right)]));
-    const auto found = std::ranges::find_if(solid_.rays, [&](const Integer3& ray) {
-      return squared_norm(cross(ray, along)) == 0 && sgn(dot(ray, along)) > 0;
+  [[nodiscard]] bool is_line(const Integer3& ray) const {
+    return std::ranges::any_of(solid_.rays, [&](const Integer3& other) {
+      return squared_norm(cross(ray, other)) == 0 && sgn(dot(ray, other)) < 0;
     });
-    return static_cast<std::int32_t>(found - solid_.rays.begin());
   }
 
   // The anchor of each facet that is nearest to the origin: it has the smallest rounding error.
@@ -271,21 +266,31 @@ class Assembler {
   Rounder rounder_;
 };
 
-// Of an unbounded one they are kept.
-bool has_exact_directions(const Solid& solid) {
-  return solid.rays.empty() ||
-         (std::all_of(solid.rays.begin(), solid.rays.end(), has_exact_direction) &&
-          std::all_of(solid.planes.begin(), solid.planes.end(),
-                      [](const Integer4& plane) { return has_exact_direction(head(plane)); }));
+// Below this angle, as a sine, two unbounded directions are refused that are not exactly opposite.
+constexpr double kLeastOpening = 0x1p-20;
+
+bool opens_wide_enough(const std::vector<Ray>& rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3 direction = rays[i].direction.normalized();
+    for (std::size_t k = 0; k < i; ++k) {
+      const Vec3 other = rays[k].direction.normalized();
+      const bool opposite = direction.dot(other) < 0.0;
+      if (opposite && rays[i].is_line && rays[k].is_line) continue;
+      if (!(direction.cross(other).norm() >= kLeastOpening)) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
 
 ShapeResult rounded_polyhedron(const Solid& solid) {
-  if (!has_exact_directions(solid)) {
-    return ShapeError{"a direction in which the body goes on for ever takes more than 6300 bits"};
-  }
   ConvexPolyhedron body = Assembler(solid).build();
+  if (!opens_wide_enough(body.rays)) {
+    return ShapeError{
+        "the body is unbounded and opens by less than 1e-6 rad, or by that much less than half a "
+        "turn: accepted are wider openings, half a turn itself, and parallel planes"};
+  }
   double farthest = 0.0;
   for (const Vec3& anchor : body.anchors) {
     if (!(anchor.cwiseAbs().maxCoeff() <= kLargestCoordinate)) {

@@ -10,19 +10,20 @@ namespace clearance::HWY_NAMESPACE {
 
 WalkEnd walk_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                       const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) {
-  const RelativeQuads quads = quads_of(a_from_b);
-  Walk w(a, b, quads, state);
-  const WalkEnd end = walk(w);
-  if (end != WalkEnd::kLost) r = result_of(w);
+  const RelativePose4 pose4 = pose4_of(a_from_b);
+  TrackedPair pair(a, b, pose4, state);
+  const WalkEnd end = walk(pair);
+  if (end != WalkEnd::kUndecided) r = result_of(pair);
   return end;
 }
 
-bool walk_relative_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                           const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) {
-  const RelativeQuads quads = quads_of(a_from_b);
-  Walk w(a, b, quads, state);
-  if (!walk_overlap(w)) return false;
-  r = overlap_result_of(w);
+bool walk_relative_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                               const RelativePose& a_from_b, TrackingState& state,
+                               DistanceResult& r) {
+  const RelativePose4 pose4 = pose4_of(a_from_b);
+  TrackedPair pair(a, b, pose4, state);
+  if (!walk_penetration(pair)) return false;
+  r = penetration_result_of(pair);
   return true;
 }
 
@@ -33,7 +34,7 @@ HWY_AFTER_NAMESPACE();
 namespace clearance {
 
 HWY_EXPORT(walk_relative);
-HWY_EXPORT(walk_relative_overlap);
+HWY_EXPORT(walk_relative_penetration);
 
 WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                       const RelativePose& a_from_b, TrackingState& state,
@@ -41,10 +42,10 @@ WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return HWY_DYNAMIC_DISPATCH(walk_relative)(a, b, a_from_b, state, result);
 }
 
-bool walk_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                  const RelativePose& a_from_b, TrackingState& state,
-                  DistanceResult& result) noexcept {
-  return HWY_DYNAMIC_DISPATCH(walk_relative_overlap)(a, b, a_from_b, state, result);
+bool walk_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                      const RelativePose& a_from_b, TrackingState& state,
+                      DistanceResult& result) noexcept {
+  return HWY_DYNAMIC_DISPATCH(walk_relative_penetration)(a, b, a_from_b, state, result);
 }
 
 }  // namespace clearance

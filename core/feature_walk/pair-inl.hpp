@@ -1,213 +1,338 @@
-// A pair of features and its bodies, as the steps of core/feature_walk/steps-inl.hpp and
-// core/feature_walk/parallel_steps-inl.hpp see them. Compiled once a vector width: see
-// core/numerics/vec4-inl.hpp.
-#if defined(CLEARANCE_CORE_WALKED_PAIR) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_WALKED_PAIR
-#undef CLEARANCE_CORE_WALKED_PAIR
+// A pair of bodies and the features that may be closest: their geometry in straight-line
+// arithmetic, and what a walk keeps of them. What a transition decides from it is in
+// core/feature_walk/steps-inl.hpp. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+//
+// The geometry is written once over the type of vectors: for one pair (Vec4, RelativePose4; a
+// Number is a double) and for as many pairs as a batch's vectors have lanes (Points, RelativePoses;
+// Lanes). Both round in the same order, so that a batch gives the bits of single queries.
+#if defined(CLEARANCE_CORE_TRACKED_PAIR) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_TRACKED_PAIR
+#undef CLEARANCE_CORE_TRACKED_PAIR
 #else
-#define CLEARANCE_CORE_WALKED_PAIR
+#define CLEARANCE_CORE_TRACKED_PAIR
 #endif
 
-#include <algorithm>
+#include <cmath>
+#include <type_traits>
 
-#include "core/distance_result.hpp"
-#include "core/model/edge_scan.hpp"
+#include "core/feature_walk/feature_pair.hpp"
+#include "core/feature_walk/feature_walk.hpp"
 #include "core/model/relative_pose-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// More than from two vertices to two facets.
-inline constexpr int kLevelSteps = 6;
-
-enum class Step { kHolds, kMoved, kLost };
-
-using Side = TrackingState::Side;
-
-// The pair, and what a step that holds finds: the closest points and the direction between them.
-struct Walk {
-  HWY_INLINE Walk(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
-                  const RelativeQuads& pose, TrackingState& state)
-      : a(body_a), b(body_b), a_from_b(pose), on_a(state.a), on_b(state.b) {}
-
-  const ConvexPolyhedron& a;
-  const ConvexPolyhedron& b;
-  const RelativeQuads& a_from_b;
-  Side& on_a;
-  Side& on_b;
-  Quad point_a, point_b;  // frame A
-  Quad own_b;             // point_b in frame B
-  Quad normal;            // unit, from A to B, frame A
-  double apart;           // m: |point_b - point_a|
-  double proved;  // m: how far apart the direction proves the cores, before the slack of Precision
-  double slack;   // m: of Precision
-  int steps = 0;
-  int levels = 0;  // of these, to features that are level
-
-  // Of bodies that overlap (core/feature_walk/penetrating_steps-inl.hpp): `apart` is minus how
-  // deep.
-  bool overlapping = false;
-  double room;    // m: of the edges' crossing, to their ends
-  double beyond;  // m: the bodies may overlap by this less
-
-  // Rounding may have them go in circles.
-  [[nodiscard]] HWY_INLINE Step levelled() {
-    return ++levels > kLevelSteps ? Step::kLost : Step::kMoved;
+template <class Number>
+HWY_INLINE Number number(double value) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return value;
+  } else {
+    return hwy::HWY_NAMESPACE::Set(hwy::HWY_NAMESPACE::DFromV<Number>(), value);
   }
-};
-
-// The features that a step goes on to. Poses that are none lead beyond the ends of edges that have
-// none: to no feature.
-HWY_INLINE Step to_vertex(Side& side, std::int32_t vertex) {
-  side.dimension = vertex == kNone ? TrackingState::kCold : 0;
-  side.feature = vertex;
-  return Step::kMoved;
 }
-HWY_INLINE Step to_edge(Side& side, std::int32_t edge) {
-  side.dimension = 1;
-  side.feature = edge;
-  return Step::kMoved;
-}
-HWY_INLINE Step to_facet(Side& side, std::int32_t facet) {
-  side.dimension = 2;
-  side.feature = facet;
-  return Step::kMoved;
-}
-
-// The first lanes of four, at most.
-HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
-
-// How fast up to four of a row's n vectors, from number i on, rise along g.
-HWY_INLINE Quad rates(const double* row, std::int32_t n, std::int32_t i, const Quad (&g)[3]) {
-  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
-}
-
-// Does a vertex's every edge fall away along g, by more than -limit per unit length?
-HWY_INLINE bool all_fall(const ConvexPolyhedron& body, const Vertex& vertex, Quad g, double limit) {
-  const double* row = body.outgoing.row(vertex.first_edge);
-  const std::int32_t n = vertex.edges;
-  const Quad along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
-  unsigned rise = ~less(rates(row, n, 0, along), spread(limit)) & first_lanes(n);
-  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
-    rise |= ~less(rates(row, n, i, along), spread(limit)) & first_lanes(n - i);
+template <class Number>
+HWY_INLINE Number magnitude(Number value) {
+  if constexpr (std::is_same_v<Number, double>) {
+    return std::abs(value);
+  } else {
+    return hwy::HWY_NAMESPACE::Abs(value);
   }
-  return rise == 0;
-}
-
-// In the order of the sums of Quads, and of a batch's lanes.
-HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
-  return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
-}
-
-inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex,
-                                          const Vec3& g) {
-  const std::int32_t n = vertex.edges;
-  if (HWY_UNLIKELY(n > 4)) return steepest_edge(body, vertex, g);
-  SteepestEdge best;
-  const auto take = [&](double rate, std::int32_t i) HWY_ATTR {
-    if (rate > best.rate) best = {rate, vertex.first_edge + i};
-  };
-  const Quad along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
-  const Quad rise = rates(body.outgoing.row(vertex.first_edge), n, 0, along);
-  if (n > 0) take(lane(rise, 0), 0);
-  if (n > 1) take(lane(rise, 1), 1);
-  if (n > 2) take(lane(rise, 2), 2);
-  if (n > 3) take(lane(rise, 3), 3);
-  return best;
-}
-HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex, Quad g) {
-  return steepest(body, vertex, vec3(g));
-}
-
-// How fast the facets beside an edge, left and right, rise along g; a segment's only edge has none.
-HWY_INLINE Pair side_rates(const Edge& edge, Quad g) {
-  const double* inward = edge.inward.data();
-  return (load2(inward) * pair(lane(g, 0)) + load2(inward + 2) * pair(lane(g, 1))) +
-         load2(inward + 4) * pair(lane(g, 2));
-}
-
-// Do both fall away along g, by more than -limit per unit length?
-HWY_INLINE bool sides_fall(const Edge& edge, Quad g, double limit) {
-  return edge.facet[0] == kNone || both_less(side_rates(edge, g), pair(limit));
 }
 
 // 1/|v| and 1/|v|^2 of what is a unit vector up to some roundings.
-HWY_INLINE double over_norm(Quad v) { return 1.5 - 0.5 * dot(v, v); }
-HWY_INLINE double over_square(Quad v) { return 2.0 - dot(v, v); }
+template <class Vector>
+HWY_INLINE auto over_norm(const Vector& v) {
+  const auto square = dot(v, v);
+  using Number = std::remove_cv_t<decltype(square)>;
+  return number<Number>(1.5) - number<Number>(0.5) * square;
+}
+template <class Vector>
+HWY_INLINE auto over_square(const Vector& v) {
+  const auto square = dot(v, v);
+  return number<std::remove_cv_t<decltype(square)>>(2.0) - square;
+}
 
-// One of the bodies, the owner of an edge or facet, and the other with its vertex. kMoved: the
-// owner is B.
-template <bool kMoved>
-struct Owned {
-  Walk& w;
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& owner() const { return kMoved ? w.b : w.a; }
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other() const { return kMoved ? w.a : w.b; }
-  [[nodiscard]] HWY_INLINE Side& on_owner() const { return kMoved ? w.on_b : w.on_a; }
-  [[nodiscard]] HWY_INLINE Side& on_other() const { return kMoved ? w.on_a : w.on_b; }
-  [[nodiscard]] HWY_INLINE Quad point_in(Quad p) const {
-    return kMoved ? point_to_b(w.a_from_b, p) : point_to_a(w.a_from_b, p);
+// One of the bodies, A or B, with the other. The common frame is A's.
+template <bool kIsB, class Relative>
+struct BodyFrame {
+  const Relative& a_from_b;
+
+  [[nodiscard]] HWY_INLINE BodyFrame<!kIsB, Relative> opposite() const { return {a_from_b}; }
+  // From the other body's frame to this one's, and back.
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector point_in(const Vector& p) const {
+    if constexpr (kIsB) return point_to_b(a_from_b, p);
+    return point_to_a(a_from_b, p);
   }
-  [[nodiscard]] HWY_INLINE Quad point_out(Quad p) const { return opposite().point_in(p); }
-  [[nodiscard]] HWY_INLINE Quad direction_in(Quad v) const { return opposite().direction_out(v); }
-  [[nodiscard]] HWY_INLINE Quad direction_out(Quad v) const {
-    return kMoved ? direction_to_a(w.a_from_b, v) : direction_to_b(w.a_from_b, v);
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector direction_in(const Vector& v) const {
+    if constexpr (kIsB) return direction_to_b(a_from_b, v);
+    return direction_to_a(a_from_b, v);
   }
-  [[nodiscard]] HWY_INLINE Owned<!kMoved> opposite() const { return {w}; }
-  // The owner's in frame A, and what is in frame A in the owner's.
-  [[nodiscard]] HWY_INLINE Quad point_to_common(Quad p) const {
-    return kMoved ? point_to_a(w.a_from_b, p) : p;
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector point_out(const Vector& p) const {
+    return opposite().point_in(p);
   }
-  [[nodiscard]] HWY_INLINE Quad direction_to_common(Quad v) const {
-    return kMoved ? direction_to_a(w.a_from_b, v) : v;
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector direction_out(const Vector& v) const {
+    return opposite().direction_in(v);
   }
-  [[nodiscard]] HWY_INLINE Quad direction_to_own(Quad v) const {
-    return kMoved ? direction_to_b(w.a_from_b, v) : v;
+  // From this body's frame to the common one, and back.
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector point_to_common(const Vector& p) const {
+    if constexpr (kIsB) return point_to_a(a_from_b, p);
+    return p;
   }
-  // How far a point of the other, by itself and in the owner's frame, lies outside the owner's
-  // facet; n: the facet's normal, direction_to_common().
-  [[nodiscard]] HWY_INLINE double height(const Facet& facet, Quad others, Quad own, Quad n) const {
-    if (!kMoved) return dot(n, own) - facet.offset;
-    return over_norm(n) * dot(n, others - w.a_from_b.translation) - facet.offset;
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector direction_to_common(const Vector& v) const {
+    if constexpr (kIsB) return direction_to_a(a_from_b, v);
+    return v;
   }
-  // Witness points: on the owner in its own frame and in A's, and so of the other.
-  HWY_INLINE void place(Quad own, Quad common, Quad others_own, Quad others_common) const {
-    w.point_a = kMoved ? others_common : common;
-    w.own_b = kMoved ? own : others_own;
-    w.point_b = kMoved ? common : others_common;
+  template <class Vector>
+  [[nodiscard]] HWY_INLINE Vector direction_to_own(const Vector& v) const {
+    if constexpr (kIsB) return direction_to_b(a_from_b, v);
+    return v;
   }
-  // The same for such a point, `apart` outside the facet, and the facet; and the normal.
-  HWY_INLINE void place_above(const Facet& facet, double apart, Quad others, Quad own,
-                              Quad n) const {
-    const Quad own_n = load3_of_4(facet.normal);
-    if (kMoved) {
-      const Quad below = own - (dot(own_n, own) - facet.offset) * own_n;
-      place(below, point_to_a(w.a_from_b, below), others, others);
-      w.normal = -over_norm(n) * n;
+
+  // Witness points: on this body in its own frame and in the common one, and so of the other.
+  template <class Found, class Vector>
+  HWY_INLINE void place(Found& found, const Vector& own, const Vector& common,
+                        const Vector& others_own, const Vector& others_common) const {
+    if constexpr (kIsB) {
+      found.point_a = others_common;
+      found.own_b = own;
+      found.point_b = common;
     } else {
-      place(own - apart * n, own - apart * n, others, own);
-      w.normal = n;
+      found.point_a = common;
+      found.own_b = others_own;
+      found.point_b = others_common;
     }
   }
 };
 
-// What limits the facet's polygon, as an edge, beyond which the tip lies farthest; kNone: it lies
-// within.
-HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Quad tip) {
-  const double* row = body.facet_limits.row(facet.first_side);
-  const std::int32_t n = facet.limits;
-  const Quad at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
-  double least = 0.0;
-  std::int32_t beyond = kNone;
-  for (std::int32_t i = 0; i < n; i += 4) {
-    const Quad within = rates(row, n, i, at) - load4(row + 3 * n + i);
-    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
-    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
-      if (!(lane(within, k) < least)) continue;
-      least = lane(within, k);
-      beyond = body.facet_edges[facet.first_side + i + k].edge;
+// The plane of a facet of this body, and what is above it. `others` is a point of the other body by
+// itself, `own` the same in this body's frame.
+template <bool kIsB, class Relative, class Vector, class Number>
+struct FacetPlane {
+  HWY_INLINE FacetPlane(const Relative& pose, const Vector& normal, Number plane_offset)
+      : frame{pose}, own_n(normal), n(frame.direction_to_common(normal)), offset(plane_offset) {}
+
+  // m: how far outside.
+  [[nodiscard]] HWY_INLINE Number height(const Vector& others, const Vector& own) const {
+    if constexpr (kIsB) {
+      return over_norm(n) * dot(n, others - frame.a_from_b.translation) - offset;
+    } else {
+      return dot(n, own) - offset;
     }
   }
-  return beyond;
+  // The witness points, found.apart from each other, and the normal.
+  template <class Found>
+  HWY_INLINE void place_witnesses(Found& found, const Vector& others, const Vector& own) const {
+    if constexpr (kIsB) {
+      const Vector below = own - (dot(own_n, own) - offset) * own_n;
+      frame.place(found, below, point_to_a(frame.a_from_b, below), others, others);
+      found.normal = -(over_norm(n) * n);
+    } else {
+      const Vector below = own - found.apart * n;
+      frame.place(found, below, below, others, own);
+      found.normal = n;
+    }
+  }
+
+  BodyFrame<kIsB, Relative> frame;
+  Vector own_n, n;  // outward, in this body's frame and in the common one
+  Number offset;    // m
+};
+
+// An edge of this body and a vertex of the other, in frame A, where B is what the rotation's
+// doubles make of it: not quite rigid, and so neither are its unit vectors of unit length. Seen
+// from B it would be A that is stretched, however far away.
+template <bool kIsB, class Relative, class Vector, class Number>
+struct EdgeAndVertex {
+  HWY_INLINE EdgeAndVertex(const Relative& pose, const Vector& edge_start, const Vector& direction,
+                           const Vector& vertex)
+      : frame{pose},
+        own_start(edge_start),
+        own_e(direction),
+        own_tip(vertex),
+        tip(frame.opposite().point_to_common(vertex)),
+        start(frame.point_to_common(edge_start)),
+        e(frame.direction_to_common(direction)),
+        from_start(tip - start),
+        s(along_edge()) {}
+
+  // From the edge to the vertex: `way`, as long as `across` and at right angles to it. No
+  // difference of long vectors, whose cancellation would leave something along the edge.
+  HWY_INLINE void find_way() {
+    across = cross(from_start, e);
+    way = cross(e, across);
+    length = norm(across);
+  }
+  // |way|, computed anew where cross products are too coarse: kSlender.
+  [[nodiscard]] HWY_INLINE Number slender_length() const {
+    if constexpr (kIsB) return norm(way) / over_norm(e);
+    return norm(way);
+  }
+  // `of_way`: what `way` is divided by.
+  template <class Found>
+  HWY_INLINE void place_witnesses(Found& found, Number of_way) const {
+    if constexpr (kIsB) {
+      const Number unit = over_norm(e);
+      found.apart = found.certified = unit * length;
+      found.normal = over(-(unit * way), of_way);
+    } else {
+      found.apart = found.certified = length;
+      found.normal = over(way, of_way);
+    }
+    frame.place(found, own_start + s * own_e, start + s * e, own_tip, tip);
+  }
+
+  BodyFrame<kIsB, Relative> frame;
+  Vector own_start, own_e, own_tip, tip, start, e, from_start;
+  Number s;  // m: where along the edge the vertex is
+  Vector across, way;
+  Number length;  // m
+
+ private:
+  [[nodiscard]] HWY_INLINE Number along_edge() const {
+    if constexpr (kIsB) return dot(from_start, e) * over_square(e);
+    return dot(from_start, e);
+  }
+};
+
+// The lines of an edge of A and one of B, in frame A but for own_..., and where they are nearest.
+template <class Relative, class Vector, class Number>
+struct EdgeLines {
+  HWY_INLINE EdgeLines(const Relative& pose, const Vector& start_of_a, const Vector& direction_of_a,
+                       const Vector& start_of_b, const Vector& direction_of_b)
+      : e(direction_of_a),
+        own_f(direction_of_b),
+        start_a(start_of_a),
+        own_start_b(start_of_b),
+        f(direction_to_a(pose, direction_of_b)),
+        start_b(point_to_a(pose, start_of_b)),
+        between(start_b - start_a),
+        n(cross(e, f)),
+        sine2(dot(n, n)) {}
+
+  // s along the first and t along the second: of lines that cross. What lies between them along e
+  // is taken off first, so that its rounding is over the sine, and not over the sine's square.
+  HWY_INLINE void find_nearest() {
+    const Number cosine = dot(e, f), along_e = dot(between, e);
+    t = dot(cross(between, e), n) / sine2;
+    s = along_e + cosine * t;
+  }
+  template <class Found>
+  HWY_INLINE void place_witnesses(Found& found) const {
+    found.point_a = start_a + s * e;
+    found.own_b = own_start_b + t * own_f;
+    found.point_b = start_b + t * f;
+  }
+
+  // m: how much farther along an edge a body may reach, by what rounding tilts the normal. The
+  // radii are those of spheres around the frames' origins.
+  [[nodiscard]] HWY_INLINE Number reach_of_tilt(const Vector& normal, Number radius_a,
+                                                Number radius_b) const {
+    return number<Number>(2.0) *
+           (radius_a * magnitude(dot(normal, e)) + radius_b * magnitude(dot(normal, f)));
+  }
+
+  Vector e, own_f, start_a, own_start_b, f, start_b, between, n;
+  Number sine2;
+  Number s, t;  // m
+};
+
+// Transitions from two vertices to two facets are four at most; more of them go round in circles.
+inline constexpr int kMostParallel = 6;
+
+// What a pair of features comes to.
+enum class Transition {
+  kClosest,    // the KKT conditions are satisfied beyond rounding: these are the closest features
+  kMoved,      // a neighbouring feature takes over
+  kUndecided,  // rounding cannot tell, or this pair is none for straight-line code
+};
+
+using Side = TrackingState::Side;
+
+// The pair, and what the transition that ends at kClosest finds.
+struct TrackedPair {
+  HWY_INLINE TrackedPair(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
+                         const RelativePose4& pose, TrackingState& state, WalkStart at = {})
+      : a(body_a),
+        b(body_b),
+        a_from_b(pose),
+        on_a(state.a),
+        on_b(state.b),
+        transitions(at.transitions),
+        parallel_transitions(at.parallel_transitions) {}
+
+  const ConvexPolyhedron& a;
+  const ConvexPolyhedron& b;
+  const RelativePose4& a_from_b;
+  Side& on_a;
+  Side& on_b;
+  Vec4 point_a, point_b;  // witness points, frame A
+  Vec4 own_b;             // point_b in frame B
+  Vec4 normal;            // unit, from A to B, frame A
+  double apart;           // m: |point_b - point_a|; of penetrating bodies minus the depth
+  double certified;    // m: how far apart the normal certifies the polyhedra, but for error_bound
+  double error_bound;  // m: Precision::slack
+  int transitions;
+  int parallel_transitions;  // of these, to features that are parallel within tolerance
+
+  // Of penetrating bodies (core/feature_walk/penetrating_steps-inl.hpp).
+  bool penetrating = false;
+  double room;    // m: of the edges' crossing, to their ends
+  double beyond;  // m: the bodies may penetrate by this less
+
+  [[nodiscard]] HWY_INLINE FeaturePair features() const {
+    return feature_pair(on_a.kind, on_b.kind);
+  }
+
+  // After a transition to features that are parallel. Rounding may have them go round in circles.
+  [[nodiscard]] HWY_INLINE Transition parallel() {
+    return ++parallel_transitions > kMostParallel ? Transition::kUndecided : Transition::kMoved;
+  }
+};
+
+// The features that take over. Poses that are no poses lead beyond the ends of edges that have
+// none: to no feature.
+HWY_INLINE Transition to_vertex(Side& side, std::int32_t vertex) {
+  side.kind = vertex == kNone ? FeatureKind::kUnknown : FeatureKind::kVertex;
+  side.feature = vertex;
+  return Transition::kMoved;
+}
+HWY_INLINE Transition to_edge(Side& side, std::int32_t edge) {
+  side.kind = FeatureKind::kEdge;
+  side.feature = edge;
+  return Transition::kMoved;
+}
+HWY_INLINE Transition to_facet(Side& side, std::int32_t facet) {
+  side.kind = FeatureKind::kFacet;
+  side.feature = facet;
+  return Transition::kMoved;
+}
+
+// One of the bodies, the owner of an edge or facet, with its frame, and the other with its vertex.
+template <bool kIsB>
+struct Owner : BodyFrame<kIsB, RelativePose4> {
+  HWY_INLINE explicit Owner(TrackedPair& of)
+      : BodyFrame<kIsB, RelativePose4>{of.a_from_b}, pair(of) {}
+
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& body() const { return kIsB ? pair.b : pair.a; }
+  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other_body() const {
+    return kIsB ? pair.a : pair.b;
+  }
+  [[nodiscard]] HWY_INLINE Side& side() const { return kIsB ? pair.on_b : pair.on_a; }
+  [[nodiscard]] HWY_INLINE Side& other_side() const { return kIsB ? pair.on_a : pair.on_b; }
+
+  TrackedPair& pair;
+};
+
+template <bool kIsB>
+HWY_INLINE FacetPlane<kIsB, RelativePose4, Vec4, double> plane_of(
+    const BodyFrame<kIsB, RelativePose4>& frame, const Facet& facet) {
+  return {frame.a_from_b, load3_of_4(facet.normal), facet.offset};
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -1,40 +1,41 @@
-// Steps of the walk for features that are level: whole edges or facets are closest, as far as
-// rounding can tell. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// Transitions of features that are parallel within tolerance: whole edges or facets are closest.
+// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// Any pair of points that face each other would do. Halfway between the last witness points of
-// both bodies is as steady as the bodies' motion, and mostly within both features; where it is not,
-// the nearest point along the side that it has passed. The direction between the features proves
-// less by what it is tilted against them.
-#if defined(CLEARANCE_CORE_LEVEL_WALK) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_LEVEL_WALK
-#undef CLEARANCE_CORE_LEVEL_WALK
+// Any pair of points that face each other would do. The point halfway between the last witness
+// points of both bodies is as steady as the bodies' motion, and mostly within both features; where
+// it is not, the nearest point along the side that it has passed takes its place. The normal
+// certifies less by what it is tilted against the features.
+#if defined(CLEARANCE_CORE_PARALLEL_STEPS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_PARALLEL_STEPS
+#undef CLEARANCE_CORE_PARALLEL_STEPS
 #else
-#define CLEARANCE_CORE_LEVEL_WALK
+#define CLEARANCE_CORE_PARALLEL_STEPS
 #endif
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/feature_walk/pair-inl.hpp"
+#include "core/model/edge_scan-inl.hpp"
 #include "core/numerics/error_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// How much less the direction proves, if by `tilt` it is not at right angles to a feature: either
-// body's extent along it may be another over its whole size, and it is enough that one's is.
-HWY_INLINE double lost_by_tilt(const Walk& w, double tilt) {
-  const double a = w.a.bounded() ? w.a.bounding_radius : kInfinity;
-  const double b = w.b.bounded() ? w.b.bounding_radius : kInfinity;
+// m: how much less the normal certifies, if by `tilt` it is not at right angles to a feature:
+// either body's extent along it may be another over its whole size, and it is enough that one's is.
+HWY_INLINE double tilt_error(const TrackedPair& pair, double tilt) {
+  const double a = pair.a.bounded() ? pair.a.bounding_radius : kInfinity;
+  const double b = pair.b.bounded() ? pair.b.bounding_radius : kInfinity;
   return 2.0 * std::min(a, b) * (tilt + kTiltError);
 }
 
-// From an edge to the facet beside it that rises along g, or is level; false: both fall.
-HWY_INLINE bool rises_beside(const Edge& edge, Quad g, double limit, Side& side) {
+// From an edge to the facet beside it that does not recede along g beyond rounding; false: both do.
+HWY_INLINE bool to_approaching_facet(const Edge& edge, Vec4 g, double limit, Side& side) {
   if (edge.facet[0] == kNone) return false;
-  const Pair rates = side_rates(edge, g);
-  if (rates[0] < limit && rates[1] < limit) return false;
-  to_facet(side, edge.facet[rates[0] >= rates[1] ? 0 : 1]);
+  const Vec2 along = facet_derivatives(edge, g);
+  if (along[0] < limit && along[1] < limit) return false;
+  to_facet(side, edge.facet[along[0] >= along[1] ? 0 : 1]);
   return true;
 }
 
@@ -45,21 +46,21 @@ inline std::int32_t common_facet(const Edge& first, const Edge& second) {
   return kNone;
 }
 
-// From a vertex with no edge that rises for certain to what is level there: an edge, a facet of two
-// level edges, or itself.
-inline HWY_NOINLINE void to_level(const ConvexPolyhedron& body, Side& side, const Vec3& g,
-                                  double limit) {
+// From a vertex no edge of which approaches beyond rounding to what is orthogonal to g there: an
+// edge, the facet of two such edges, or the vertex itself.
+inline HWY_NOINLINE void to_parallel(const ConvexPolyhedron& body, Side& side, const Vec3& g,
+                                     double limit) {
   const Vertex& vertex = body.vertices[side.feature];
-  std::int32_t level = kNone;
+  std::int32_t orthogonal = kNone;
   for (std::int32_t i = 0; i < vertex.edges; ++i) {
     if (!(body.outgoing_of(vertex, i).dot(g) >= limit)) continue;
     const std::int32_t edge = body.vertex_edges[vertex.first_edge + i].edge;
-    if (level == kNone) {
-      level = edge;
+    if (orthogonal == kNone) {
+      orthogonal = edge;
       to_edge(side, edge);
       continue;
     }
-    const std::int32_t facet = common_facet(body.edges[level], body.edges[edge]);
+    const std::int32_t facet = common_facet(body.edges[orthogonal], body.edges[edge]);
     if (facet == kNone) continue;
     to_facet(side, facet);
     return;
@@ -104,99 +105,99 @@ HWY_INLINE double clamped(double s, double from, double to) {
 }
 
 // Of the owner's edge, the part that faces the other's facet (or the other way round).
-template <bool kMoved>
-HWY_INLINE Span facing(const Owned<kMoved>& edge_of, const Edge& edge, std::int32_t facet) {
-  return within(edge_of.other(), facet, vec3(edge_of.point_out(load3_of_4(edge.point))),
+template <bool kIsB>
+HWY_INLINE Span facing(const Owner<kIsB>& edge_of, const Edge& edge, std::int32_t facet) {
+  return within(edge_of.other_body(), facet, vec3(edge_of.point_out(load3_of_4(edge.point))),
                 vec3(edge_of.direction_out(load3_of_4(edge.direction))), {edge.begin, edge.end});
 }
 
 // Halfway between the last witness points, along an edge of the owner.
-template <bool kMoved>
-HWY_INLINE double halfway(const Owned<kMoved>& edge_of, Quad start, Quad direction) {
-  const Quad mine = load3(edge_of.on_owner().point);
-  const Quad theirs = edge_of.point_in(load3(edge_of.on_other().point));
+template <bool kIsB>
+HWY_INLINE double halfway(const Owner<kIsB>& edge_of, Vec4 start, Vec4 direction) {
+  const Vec4 mine = load3(edge_of.side().point);
+  const Vec4 theirs = edge_of.point_in(load3(edge_of.other_side().point));
   return dot(mine + 0.5 * (theirs - mine) - start, direction);
 }
 
 // The owner's edge on the other's facet.
-template <bool kMoved>
-inline HWY_NOINLINE Step edge_facet(const Owned<kMoved>& o) {
-  const Edge& edge = o.owner().edges[o.on_owner().feature];
-  const Facet& facet = o.other().facets[o.on_other().feature];
-  if (!o.owner().bounded()) return Step::kLost;
-  const Span span = facing(o, edge, o.on_other().feature);
-  if (span.empty()) return to_edge(o.on_other(), span.beyond);
-  const auto of_facet = o.opposite();
-  const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction),
-             n = of_facet.direction_to_common(load3_of_4(facet.normal));
-  const Quad down = -o.direction_to_own(n);
-  const double rise = dot(e, down);
-  if (!(std::abs(rise) <= kCertainRate)) {
-    const int end = rise > 0.0 ? 1 : 0;
-    if (span.side[end] != kNone) return to_edge(o.on_other(), span.side[end]);
-    return to_vertex(o.on_owner(), edge.vertex[end]);
+template <bool kIsB>
+inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
+  const Edge& edge = owner.body().edges[owner.side().feature];
+  const Facet& facet = owner.other_body().facets[owner.other_side().feature];
+  if (!owner.body().bounded()) return Transition::kUndecided;
+  const Span span = facing(owner, edge, owner.other_side().feature);
+  if (span.empty()) return to_edge(owner.other_side(), span.beyond);
+  const auto plane = plane_of(owner.opposite(), facet);
+  const Vec4 start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
+  const Vec4 down = -owner.direction_to_own(plane.n);
+  const double along = dot(e, down);
+  if (!(std::abs(along) <= kDerivativeError)) {
+    const int end = along > 0.0 ? 1 : 0;
+    if (span.side[end] != kNone) return to_edge(owner.other_side(), span.side[end]);
+    return to_vertex(owner.side(), edge.vertex[end]);
   }
-  if (rises_beside(edge, down, -kCertainRate, o.on_owner())) return o.w.levelled();
-  const double s = clamped(halfway(o, start, e), span.from, span.to);
-  const Quad own = start + s * e, above = o.point_out(own);
-  const double apart = of_facet.height(facet, own, above, n);
-  if (!(apart > 0.0) && !o.w.overlapping) return Step::kLost;
-  o.w.apart = apart;
-  o.w.proved = apart - lost_by_tilt(o.w, std::abs(rise));
-  of_facet.place_above(facet, apart, own, above, n);
-  return Step::kHolds;
+  if (to_approaching_facet(edge, down, -kDerivativeError, owner.side()))
+    return owner.pair.parallel();
+  const double s = clamped(halfway(owner, start, e), span.from, span.to);
+  const Vec4 own = start + s * e, above = owner.point_out(own);
+  const double apart = plane.height(own, above);
+  if (!(apart > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
+  owner.pair.apart = apart;
+  owner.pair.certified = apart - tilt_error(owner.pair, std::abs(along));
+  plane.place_witnesses(owner.pair, own, above);
+  return Transition::kClosest;
 }
 
-HWY_INLINE Quad onto(const Facet& facet, Quad p) {
-  const Quad n = load3_of_4(facet.normal);
+HWY_INLINE Vec4 onto(const Facet& facet, Vec4 p) {
+  const Vec4 n = load3_of_4(facet.normal);
   return p - (dot(n, p) - facet.offset) * n;
 }
 
 // Halfway between the last witness points, on B's facet, in frame B. False: these were another
 // pair's, far out on a half-space, or of bodies far apart, and so far off the facet's plane that
 // rounding leaves `own` beside it.
-HWY_INLINE bool halfway_on_facet(const Walk& w, const Facet& of_b, Quad& own) {
-  const Quad mine = load3(w.on_b.point), n = load3_of_4(of_b.normal);
-  const Quad theirs = point_to_b(w.a_from_b, load3(w.on_a.point));
-  const Quad middle = mine + 0.5 * (theirs - mine);
+HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& of_b, Vec4& own) {
+  const Vec4 mine = load3(pair.on_b.point), n = load3_of_4(of_b.normal);
+  const Vec4 theirs = point_to_b(pair.a_from_b, load3(pair.on_a.point));
+  const Vec4 middle = mine + 0.5 * (theirs - mine);
   const double height = dot(n, middle) - of_b.offset;
   own = middle - height * n;
-  const double size = (w.a.bounding_radius + w.b.bounding_radius) + w.a_from_b.apart;
+  const double size = (pair.a.bounding_radius + pair.b.bounding_radius) + pair.a_from_b.apart;
   return std::abs(height) <= 2.0 * size && dot(own, own) < kInfinity;
 }
 
 // From a point that has passed the edge of the owner's facet back to it, in the owner's frame.
 // False: no part of the edge faces the other's facet.
-template <bool kMoved>
-inline bool slide_back(const Owned<kMoved>& o, std::int32_t index, Quad& point) {
-  const Edge& edge = o.owner().edges[index];
-  const Span span = facing(o, edge, o.on_other().feature);
+template <bool kIsB>
+inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
+  const Edge& edge = owner.body().edges[index];
+  const Span span = facing(owner, edge, owner.other_side().feature);
   if (span.empty()) {
-    to_edge(o.on_owner(), index);
+    to_edge(owner.side(), index);
     return false;
   }
-  const Quad start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
+  const Vec4 start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
   point = start + clamped(dot(point - start, e), span.from, span.to) * e;
   return true;
 }
 
 // The same for a point on B's facet that has passed an edge of A's, or else of B's.
-inline HWY_NOINLINE bool slide_back(Walk& w, std::int32_t beyond_a, std::int32_t beyond_b,
-                                    Quad& own) {
-  if (beyond_a == kNone) return slide_back(Owned<true>{w}, beyond_b, own);
-  Quad tip = point_to_a(w.a_from_b, own);
-  if (!slide_back(Owned<false>{w}, beyond_a, tip)) return false;
-  own = onto(w.b.facets[w.on_b.feature], point_to_b(w.a_from_b, tip));
+inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t beyond_a, std::int32_t beyond_b,
+                                    Vec4& own) {
+  if (beyond_a == kNone) return slide_back(Owner<true>(pair), beyond_b, own);
+  Vec4 tip = point_to_a(pair.a_from_b, own);
+  if (!slide_back(Owner<false>(pair), beyond_a, tip)) return false;
+  own = onto(pair.b.facets[pair.on_b.feature], point_to_b(pair.a_from_b, tip));
   return true;
 }
 
-// The corner of the owner's facet that is farthest along g, in the owner's frame.
-template <bool kMoved>
-inline Step to_corner(const Owned<kMoved>& o, const Vec3& g) {
-  const ConvexPolyhedron& body = o.owner();
-  const Facet& facet = body.facets[o.on_owner().feature];
+// To the vertex of the owner's facet that is the support point along g, in the owner's frame.
+template <bool kIsB>
+inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
+  const ConvexPolyhedron& body = owner.body();
+  const Facet& facet = body.facets[owner.side().feature];
   double farthest = -kInfinity;
-  std::int32_t corner = kNone;
+  std::int32_t support = kNone;
   for (std::int32_t i = 0; i < facet.sides; ++i) {
     const EdgeUse& use = body.facet_edges[facet.first_side + i];
     for (const std::int32_t vertex : body.edges[use.edge].vertex) {
@@ -204,79 +205,83 @@ inline Step to_corner(const Owned<kMoved>& o, const Vec3& g) {
       const double along = body.vertices[vertex].position.dot(g);
       if (!(along > farthest)) continue;
       farthest = along;
-      corner = vertex;
+      support = vertex;
     }
   }
-  if (corner == kNone) return Step::kLost;
-  return to_vertex(o.on_owner(), corner);
+  if (support == kNone) return Transition::kUndecided;
+  return to_vertex(owner.side(), support);
 }
 
-// Facets that are tilted: one's lowest corner comes first, preferably the smaller body's.
-inline HWY_NOINLINE Step leave_facets(Walk& w, Quad n, Quad m) {
-  if (!w.a.bounded() || (w.b.bounded() && w.b.bounding_radius > w.a.bounding_radius)) {
-    return to_corner(Owned<false>{w}, vec3(-direction_to_a(w.a_from_b, m)));
+// Facets that are tilted against each other: the vertex of one that is lowest above the other takes
+// over, preferably the smaller body's.
+inline HWY_NOINLINE Transition leave_facets(TrackedPair& pair, Vec4 n, Vec4 m) {
+  if (!pair.a.bounded() || (pair.b.bounded() && pair.b.bounding_radius > pair.a.bounding_radius)) {
+    return to_support_vertex(Owner<false>(pair), vec3(-direction_to_a(pair.a_from_b, m)));
   }
-  return to_corner(Owned<true>{w}, vec3(-direction_to_b(w.a_from_b, n)));
+  return to_support_vertex(Owner<true>(pair), vec3(-direction_to_b(pair.a_from_b, n)));
 }
 
-inline HWY_NOINLINE Step facet_facet(Walk& w) {
-  const Facet& of_a = w.a.facets[w.on_a.feature];
-  const Facet& of_b = w.b.facets[w.on_b.feature];
-  const Quad n = load3_of_4(of_a.normal), m = load3_of_4(of_b.normal);
-  const Quad tilt = direction_to_b(w.a_from_b, n) + m;
+inline HWY_NOINLINE Transition facet_facet(TrackedPair& pair) {
+  const Facet& of_a = pair.a.facets[pair.on_a.feature];
+  const Facet& of_b = pair.b.facets[pair.on_b.feature];
+  const Vec4 n = load3_of_4(of_a.normal), m = load3_of_4(of_b.normal);
+  const Vec4 tilt = direction_to_b(pair.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
-  if (HWY_UNLIKELY(!(tilt2 <= kLevelTilt * kLevelTilt))) return leave_facets(w, n, m);
-  Quad own;
-  if (HWY_UNLIKELY(!halfway_on_facet(w, of_b, own))) return Step::kLost;
-  Quad tip = point_to_a(w.a_from_b, own);
-  const std::int32_t beyond_a = side_beyond(w.a, of_a, tip);
-  const std::int32_t beyond_b = beyond_a == kNone ? side_beyond(w.b, of_b, own) : kNone;
+  if (HWY_UNLIKELY(!(tilt2 <= kParallelTilt * kParallelTilt))) return leave_facets(pair, n, m);
+  Vec4 own;
+  if (HWY_UNLIKELY(!halfway_on_facet(pair, of_b, own))) return Transition::kUndecided;
+  Vec4 tip = point_to_a(pair.a_from_b, own);
+  const std::int32_t beyond_a = side_beyond(pair.a, of_a, tip);
+  const std::int32_t beyond_b = beyond_a == kNone ? side_beyond(pair.b, of_b, own) : kNone;
   if (HWY_UNLIKELY(beyond_a != kNone || beyond_b != kNone)) {
-    if (!slide_back(w, beyond_a, beyond_b, own)) return Step::kMoved;
-    tip = point_to_a(w.a_from_b, own);
+    if (!slide_back(pair, beyond_a, beyond_b, own)) return Transition::kMoved;
+    tip = point_to_a(pair.a_from_b, own);
   }
-  w.apart = dot(n, tip) - of_a.offset;
-  if (!(w.apart > 0.0) && !w.overlapping) return Step::kLost;
-  w.own_b = own;
-  w.point_b = tip;
-  w.point_a = tip - w.apart * n;
-  w.normal = n;
-  w.proved = w.apart - lost_by_tilt(w, std::sqrt(tilt2));
-  return Step::kHolds;
+  pair.apart = dot(n, tip) - of_a.offset;
+  if (!(pair.apart > 0.0) && !pair.penetrating) return Transition::kUndecided;
+  pair.own_b = own;
+  pair.point_b = tip;
+  pair.point_a = tip - pair.apart * n;
+  pair.normal = n;
+  pair.certified = pair.apart - tilt_error(pair, std::sqrt(tilt2));
+  return Transition::kClosest;
 }
 
 // Where parallel edges pass each other by, their facing ends are next.
-inline Step to_facing_ends(Walk& w, const Edge& first, const Edge& second, bool after,
-                           bool same_way) {
-  to_vertex(w.on_a, first.vertex[after ? 1 : 0]);
-  to_vertex(w.on_b, second.vertex[after == same_way ? 0 : 1]);
-  return Step::kMoved;
+inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edge& second,
+                                 bool after, bool same_way) {
+  to_vertex(pair.on_a, first.vertex[after ? 1 : 0]);
+  to_vertex(pair.on_b, second.vertex[after == same_way ? 0 : 1]);
+  return Transition::kMoved;
 }
 
 // Of bounded bodies; `start_b` and f are B's edge in frame A.
-inline HWY_NOINLINE Step parallel_edges(Walk& w, const Quad& start_b, const Quad& f) {
-  const Edge& first = w.a.edges[w.on_a.feature];
-  const Edge& second = w.b.edges[w.on_b.feature];
-  const Quad start_a = load3_of_4(first.point), e = load3_of_4(first.direction);
+inline HWY_NOINLINE Transition parallel_edges(TrackedPair& pair, const Vec4& start_b,
+                                              const Vec4& f) {
+  const Edge& first = pair.a.edges[pair.on_a.feature];
+  const Edge& second = pair.b.edges[pair.on_b.feature];
+  const Vec4 start_a = load3_of_4(first.point), e = load3_of_4(first.direction);
   const double cosine = dot(e, f), begin = dot(start_b - start_a, e);
   const double end = begin + cosine * second.end;
   const double from = std::max(0.0, std::min(begin, end));
   const double to = std::min(first.end, std::max(begin, end));
-  if (!(from < to)) return to_facing_ends(w, first, second, !(from < first.end), cosine > 0.0);
-  const double s = clamped(halfway(Owned<false>{w}, start_a, e), from, to);
-  w.point_a = start_a + s * e;
-  w.own_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
-  w.point_b = point_to_a(w.a_from_b, w.own_b);
-  const Quad rough = w.point_b - w.point_a;
-  const Quad g = rough - dot(rough, e) * e;  // what cancellation has left
-  const double apart = norm(g), limit = -kCertainRate * apart;
-  const bool on_a = rises_beside(first, g, limit, w.on_a);
-  const bool on_b = rises_beside(second, -direction_to_b(w.a_from_b, g), limit, w.on_b);
-  if (on_a || on_b) return w.levelled();
-  w.normal = g / spread(apart);
-  w.apart = apart;
-  w.proved = apart - lost_by_tilt(w, std::abs(dot(w.normal, e)) + std::abs(dot(w.normal, f)));
-  return Step::kHolds;
+  if (!(from < to)) return to_facing_ends(pair, first, second, !(from < first.end), cosine > 0.0);
+  const double s = clamped(halfway(Owner<false>(pair), start_a, e), from, to);
+  pair.point_a = start_a + s * e;
+  pair.own_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
+  pair.point_b = point_to_a(pair.a_from_b, pair.own_b);
+  const Vec4 rough = pair.point_b - pair.point_a;
+  const Vec4 g = rough - dot(rough, e) * e;  // what cancellation has left
+  const double apart = norm(g), limit = -kDerivativeError * apart;
+  const bool on_a = to_approaching_facet(first, g, limit, pair.on_a);
+  const bool on_b =
+      to_approaching_facet(second, -direction_to_b(pair.a_from_b, g), limit, pair.on_b);
+  if (on_a || on_b) return pair.parallel();
+  pair.normal = g / spread(apart);
+  pair.apart = apart;
+  pair.certified =
+      apart - tilt_error(pair, std::abs(dot(pair.normal, e)) + std::abs(dot(pair.normal, f)));
+  return Transition::kClosest;
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -1,20 +1,20 @@
-// Overlapping bodies that part soonest between the same features as in the last query. Compiled
+// Penetrating bodies that part soonest between the same features as in the last query. Compiled
 // once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// Features that touch when B has been moved along n bound the depth from above, as separating ones
-// bound the distance from below: with the sign turned, the steps of core/feature_walk/steps-inl.hpp
-// say how far that is. That no other direction is shorter is proved by what the difference body
-// (core/penetration/depth.hpp) is certain to hold: a disc across n, of radius w about the foot h n
-// of the origin, which is the room that the touching point has on its facet; and the difference of
-// the bodies' middles, which lies d beyond the origin and l beside it. Along a direction at an
-// angle f to n the disc reaches h cos f + w sin f, at least h up to tan(f/2) = w/h; the middles -d
-// cos f - l sin f at least, a sinusoid that is lowest at an end of what is left. It is enough that
-// it reaches h where the disc ends.
-#if defined(CLEARANCE_CORE_OVERLAP_WALK) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_OVERLAP_WALK
-#undef CLEARANCE_CORE_OVERLAP_WALK
+// Features that touch when B has been displaced along n bound the penetration depth from above, as
+// separating ones bound the distance from below: with the sign turned, the transitions of
+// core/feature_walk/steps-inl.hpp say how far that is. No other direction is shorter: that is
+// certified by what the Minkowski difference (core/penetration/depth.hpp) contains for certain.
+// That is a disc across n, of radius w about the foot h n of the origin: the room that the touching
+// point has on its facet; and the difference of the bodies' middles, which lies d beyond the origin
+// and l beside it. Along a direction at an angle f to n the disc reaches h cos f + w sin f, at
+// least h up to tan(f/2) = w/h; the middles -d cos f - l sin f at least, a sinusoid that is lowest
+// at an end of what is left. It is enough that it reaches h where the disc ends.
+#if defined(CLEARANCE_CORE_PENETRATING_STEPS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_PENETRATING_STEPS
+#undef CLEARANCE_CORE_PENETRATING_STEPS
 #else
-#define CLEARANCE_CORE_OVERLAP_WALK
+#define CLEARANCE_CORE_PENETRATING_STEPS
 #endif
 
 #include <algorithm>
@@ -25,134 +25,132 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
-// Far more than rounding does to lengths, as a part of the pair's size: what other directions are
-// deeper by need not be known any better.
+// Far more than rounding does to lengths, as a part of the pair's size: by how much other
+// directions are deeper need not be known any better.
 inline constexpr double kAmple = 1e-9;
 
 // How far within its facet a point of its plane lies; negative: outside.
-HWY_INLINE double room_on_facet(const ConvexPolyhedron& body, const Facet& facet, Quad point) {
+HWY_INLINE double room_on_facet(const ConvexPolyhedron& body, const Facet& facet, Vec4 point) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;
-  const Quad at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};
+  const Vec4 at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};
   double least = kInfinity;
   for (std::int32_t i = 0; i < n; i += 4) {
-    const Quad within = rates(row, n, i, at) - load4(row + 3 * n + i);
+    const Vec4 within = derivatives(row, n, i, at) - load4(row + 3 * n + i);
     for (std::int32_t k = 0; k < 4 && i + k < n; ++k) least = std::min(least, lane(within, k));
   }
   return least;
 }
 
-// Of a pair that holds: the disc's radius.
-HWY_INLINE double room_of(const Walk& w) {
-  double room = w.room;
-  if (w.on_a.dimension == 2) {
-    room = std::max(room, room_on_facet(w.a, w.a.facets[w.on_a.feature], w.point_a));
+// Of the features that touch: the disc's radius.
+HWY_INLINE double room_of(const TrackedPair& pair) {
+  double room = pair.room;
+  if (pair.on_a.kind == FeatureKind::kFacet) {
+    room = std::max(room, room_on_facet(pair.a, pair.a.facets[pair.on_a.feature], pair.point_a));
   }
-  if (w.on_b.dimension == 2) {
-    room = std::max(room, room_on_facet(w.b, w.b.facets[w.on_b.feature], w.own_b));
+  if (pair.on_b.kind == FeatureKind::kFacet) {
+    room = std::max(room, room_on_facet(pair.b, pair.b.facets[pair.on_b.feature], pair.own_b));
   }
   return room;
 }
 
 // Edges that cross, each within the other body.
-HWY_INLINE Step overlapping_edges(Walk& w) {
-  if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
-  EdgeLines lines(w);
-  if (!(lines.sine2 > kCrossingSine2)) return Step::kLost;
+HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
+  if (!pair.a.bounded() || !pair.b.bounded()) return Transition::kUndecided;
+  const Edge& first = pair.a.edges[pair.on_a.feature];
+  const Edge& second = pair.b.edges[pair.on_b.feature];
+  auto lines = lines_of(pair, first, second);
+  if (!(lines.sine2 > kCrossingSine2)) return Transition::kUndecided;
   lines.find_nearest();
   const double s = lines.s, t = lines.t;
-  const double to_end =
-      std::min(std::min(s, lines.first.end - s), std::min(t, lines.second.end - t));
-  const double sine = std::sqrt(lines.sine2), limit = -kCertainRate * sine,
+  const double to_end = std::min(std::min(s, first.end - s), std::min(t, second.end - t));
+  const double sine = std::sqrt(lines.sine2), limit = -kDerivativeError * sine,
                across = dot(lines.between, lines.n);
-  const Quad g = with_signs(lines.n, spread(std::copysign(0.0, -across)));
-  const Quad back = -direction_to_b(w.a_from_b, g);
-  if (!(to_end > 0.0) || !sides_fall(lines.first, g, limit) ||
-      !sides_fall(lines.second, back, limit)) {
-    return Step::kLost;
+  const Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, -across)));
+  const Vec4 back = -direction_to_b(pair.a_from_b, g);
+  if (!(to_end > 0.0) || !both_facets_recede(first, g, limit) ||
+      !both_facets_recede(second, back, limit)) {
+    return Transition::kUndecided;
   }
-  w.normal = g / spread(sine);
-  lines.place_witnesses(w);
-  w.apart = -std::abs(across) / sine;
-  w.room = to_end * sine;
+  pair.normal = over(g, sine);
+  lines.place_witnesses(pair);
+  pair.apart = -std::abs(across) / sine;
+  pair.room = to_end * sine;
   // As far as the normal may be tilted, the edges' own plane is nearer, too.
-  const double tilt = lines.reach_of_tilt(w);
-  w.proved = w.apart - tilt;
-  w.beyond = tilt;
-  return Step::kHolds;
+  const double tilt =
+      lines.reach_of_tilt(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
+  pair.certified = pair.apart - tilt;
+  pair.beyond = tilt;
+  return Transition::kClosest;
 }
 
-HWY_INLINE Step overlapping_step(Walk& w) {
-  w.room = w.beyond = 0.0;
-  switch (w.on_a.dimension * 3 + w.on_b.dimension) {
-    case 2:
-      return facet_vertex(Owned<true>{w});
-    case 4:
-      return overlapping_edges(w);
-    case 5:
-      return edge_facet(Owned<false>{w});
-    case 6:
-      return facet_vertex(Owned<false>{w});
-    case 7:
-      return edge_facet(Owned<true>{w});
-    case 8:
-      return facet_facet(w);
+HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
+  pair.room = pair.beyond = 0.0;
+  switch (pair.features()) {
+    case FeaturePair::kVertexVertex:
+    case FeaturePair::kVertexEdge:
+    case FeaturePair::kEdgeVertex:
+      return Transition::kUndecided;  // no plane parts the bodies there
+    case FeaturePair::kEdgeEdge:
+      return penetrating_edges(pair);
     default:
-      return Step::kLost;
+      return transition<Tracking::kFurther>(pair);
   }
 }
 
-// Is every other way out longer?
-HWY_INLINE bool is_shortest(const Walk& w, double size) {
-  const Quad middles = point_to_a(w.a_from_b, load3(w.b.interior)) - load3(w.a.interior);
-  const double along = dot(middles, w.normal), off = kAmple * size;
-  const double height = off - w.apart, radius = room_of(w) - off, d = along - off;
-  const double l = off + norm(middles - along * w.normal), k = height / radius;
+// Is the displacement along every other direction longer?
+HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
+  const Vec4 middles = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
+  const double along = dot(middles, pair.normal), off = kAmple * size;
+  const double height = off - pair.apart, radius = room_of(pair) - off, d = along - off;
+  const double l = off + norm(middles - along * pair.normal), k = height / radius;
   return radius > height && d * (1.0 - k * k) - 2.0 * k * l > height * (1.0 + k * k);
 }
 
-HWY_INLINE bool conclude_overlap(Walk& w) {
-  const RelativeQuads& pose = w.a_from_b;
+HWY_INLINE bool certify_penetration(TrackedPair& pair) {
+  const RelativePose4& pose = pair.a_from_b;
   const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.apart};
-  const Precision p = precision(w.a, w.b, place, std::abs(w.apart));
-  w.slack = p.slack;
-  const bool proved =
-      w.apart > 0.0 ? w.proved > p.slack : w.apart + w.beyond < -p.slack && is_shortest(w, p.size);
-  const double noise = w.apart - w.proved;
-  const double gap = noise + w.beyond + 2.0 * p.slack;
-  if (!proved || !(noise <= p.tight) || !is_as_promised(w.a, w.b, p.size, w.apart, gap)) {
+  const Precision p = precision(pair.a, pair.b, place, std::abs(pair.apart));
+  pair.error_bound = p.slack;
+  const bool certified = pair.apart > 0.0
+                             ? pair.certified > p.slack
+                             : pair.apart + pair.beyond < -p.slack && is_shortest(pair, p.size);
+  const double noise = pair.apart - pair.certified;
+  const double gap = noise + pair.beyond + 2.0 * p.slack;
+  if (!certified || !(noise <= p.tight) ||
+      !is_as_promised(pair.a, pair.b, p.size, pair.apart, gap)) {
     return false;
   }
-  w.on_a.deep = !(w.apart > 0.0);
-  w.on_a.point = vec3(w.point_a);
-  w.on_b.point = vec3(w.own_b);
+  pair.on_a.penetrating = !(pair.apart > 0.0);
+  pair.on_a.point = vec3(pair.point_a);
+  pair.on_b.point = vec3(pair.own_b);
   return true;
 }
 
-// Of bodies that overlapped: is their depth proved, or that they do not any more? If not, the
-// features are those that it began with.
-HWY_INLINE bool walk_overlap(Walk& w) {
-  if (!w.a.bounded() && !w.b.bounded()) return false;
-  if (!exists(w.a, w.on_a) || !exists(w.b, w.on_b)) return false;
-  const Side before_a = w.on_a, before_b = w.on_b;
-  w.overlapping = true;
-  Step result = Step::kMoved;
-  while (result == Step::kMoved && w.steps < kSteps) {
-    ++w.steps;
-    result = overlapping_step(w);
+// Of bodies that penetrated each other: is their depth certified, or that they do not any more? If
+// not, the features are those that it began with.
+HWY_INLINE bool walk_penetration(TrackedPair& pair) {
+  if (!pair.a.bounded() && !pair.b.bounded()) return false;
+  if (!exists(pair.a, pair.on_a) || !exists(pair.b, pair.on_b)) return false;
+  const Side before_a = pair.on_a, before_b = pair.on_b;
+  pair.penetrating = true;
+  Transition result = Transition::kMoved;
+  while (result == Transition::kMoved && pair.transitions < kMostTransitions) {
+    ++pair.transitions;
+    result = penetrating_transition(pair);
   }
-  if (result == Step::kHolds && conclude_overlap(w)) return true;
-  w.on_a = before_a;
-  w.on_b = before_b;
+  if (result == Transition::kClosest && certify_penetration(pair)) return true;
+  pair.on_a = before_a;
+  pair.on_b = before_b;
   return false;
 }
 
-// Of a walk that has proved something.
-HWY_INLINE DistanceResult overlap_result_of(const Walk& w) {
-  DistanceResult r = result_of(w);
+// Of a walk that has certified something.
+HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
+  DistanceResult r = result_of(pair);
   r.path = DistancePath::kOverlap;
-  if (w.apart > 0.0) return r;
-  r.upper = (w.apart + w.beyond) + w.slack;
+  if (pair.apart > 0.0) return r;
+  r.upper = (pair.apart + pair.beyond) + pair.error_bound;
   r.status = DistanceStatus::kOverlapping;
   return r;
 }

@@ -1,136 +1,135 @@
-// The walk of core/feature_walk/feature_walk.hpp, compiled once a vector width: see
-// core/numerics/vec4-inl.hpp.
-#if defined(CLEARANCE_CORE_FEATURE_WALK) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_FEATURE_WALK
-#undef CLEARANCE_CORE_FEATURE_WALK
+// One transition of a pair of features, and the walk that repeats it until the pair is closest.
+// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+#if defined(CLEARANCE_CORE_STEPS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_STEPS
+#undef CLEARANCE_CORE_STEPS
 #else
-#define CLEARANCE_CORE_FEATURE_WALK
+#define CLEARANCE_CORE_STEPS
 #endif
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include "core/feature_walk/feature_walk.hpp"
 #include "core/feature_walk/parallel_steps-inl.hpp"
+#include "core/model/edge_scan-inl.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/numerics/error_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
-// Enough for 99.9 % of the tracked queries of the facet-ball workload; more is the loop's work.
-inline constexpr int kSteps = 24;
 
-// From a vertex along an edge that approaches the other's point: onto the edge, or past it to its
-// far end.
-inline Step leave_vertex(const ConvexPolyhedron& body, Side& side, const SteepestEdge& way) {
-  const EdgeUse& use = body.vertex_edges[way.at];
+// A walk's first transition is a function of its own where it is straight-line code: nothing there
+// needs the pair in memory, so that what it finds stays in registers. As one of the others it costs
+// boxes 3 % more.
+enum class Tracking { kFirst, kFurther };
+
+// Enough for 99.9 % of the tracked queries of the facet-ball workload; more is left to the
+// active-set iteration.
+inline constexpr int kMostTransitions = 24;
+
+// From a vertex along its steepest edge: onto the edge, or past it to its far end.
+inline Transition leave_vertex(const ConvexPolyhedron& body, Side& side,
+                               const SteepestEdge& steepest) {
+  const EdgeUse& use = body.vertex_edges[steepest.at];
   const Edge& edge = body.edges[use.edge];
-  if (way.rate >= edge.end && edge.vertex[1 - use.side] != kNone) {
+  if (steepest.derivative >= edge.end && edge.vertex[1 - use.side] != kNone) {
     return to_vertex(side, edge.vertex[1 - use.side]);
   }
   return to_edge(side, use.edge);
 }
 
-// False: none approaches for certain, and both sides come to what is level.
+// From the vertex whose edge approaches faster. False: none approaches beyond rounding, and both
+// sides come to what is parallel.
 inline HWY_NOINLINE bool leave_either(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                       const Vertex& of_a, const Vertex& of_b, Side& on_a,
-                                      Side& on_b, Quad g, Quad back, double limit) {
+                                      Side& on_b, Vec4 g, Vec4 back, double limit) {
   const SteepestEdge from_a = steepest(a, of_a, g), from_b = steepest(b, of_b, back);
-  if (from_a.rate > -limit && from_a.rate >= from_b.rate) {
-    return leave_vertex(a, on_a, from_a) == Step::kMoved;
+  if (from_a.derivative > -limit && from_a.derivative >= from_b.derivative) {
+    return leave_vertex(a, on_a, from_a) == Transition::kMoved;
   }
-  if (from_b.rate > -limit) return leave_vertex(b, on_b, from_b) == Step::kMoved;
-  to_level(a, on_a, vec3(g), limit);
-  to_level(b, on_b, vec3(back), limit);
+  if (from_b.derivative > -limit) return leave_vertex(b, on_b, from_b) == Transition::kMoved;
+  to_parallel(a, on_a, vec3(g), limit);
+  to_parallel(b, on_b, vec3(back), limit);
   return false;
 }
 
-HWY_INLINE Step vertex_vertex(Walk& w) {
-  const Vertex& of_a = w.a.vertices[w.on_a.feature];
-  const Vertex& of_b = w.b.vertices[w.on_b.feature];
-  w.point_a = load3_alone(of_a.position);
-  w.own_b = load3_alone(of_b.position);
-  w.point_b = point_to_a(w.a_from_b, w.own_b);
-  const Quad g = w.point_b - w.point_a, back = -direction_to_b(w.a_from_b, g);
-  const double apart = norm(g), limit = -kCertainRate * apart;
-  if (!all_fall(w.a, of_a, g, limit) || !all_fall(w.b, of_b, back, limit)) {
-    return leave_either(w.a, w.b, of_a, of_b, w.on_a, w.on_b, g, back, limit) ? Step::kMoved
-                                                                              : w.levelled();
+HWY_INLINE Transition vertex_vertex(TrackedPair& pair) {
+  const Vertex& of_a = pair.a.vertices[pair.on_a.feature];
+  const Vertex& of_b = pair.b.vertices[pair.on_b.feature];
+  pair.point_a = load3_alone(of_a.position);
+  pair.own_b = load3_alone(of_b.position);
+  pair.point_b = point_to_a(pair.a_from_b, pair.own_b);
+  const Vec4 g = pair.point_b - pair.point_a, back = -direction_to_b(pair.a_from_b, g);
+  const double apart = norm(g), limit = -kDerivativeError * apart;
+  if (!all_edges_recede(pair.a, of_a, g, limit) || !all_edges_recede(pair.b, of_b, back, limit)) {
+    return leave_either(pair.a, pair.b, of_a, of_b, pair.on_a, pair.on_b, g, back, limit)
+               ? Transition::kMoved
+               : pair.parallel();
   }
-  w.apart = w.proved = apart;
-  w.normal = g / spread(apart);
-  return Step::kHolds;
+  pair.apart = pair.certified = apart;
+  pair.normal = over(g, apart);
+  return Transition::kClosest;
 }
 
-// In frame A, where B is what the rotation's doubles make of it: not quite rigid, and so neither
-// are its unit vectors of unit length. Seen from B it would be A that is stretched, however far
-// away.
-template <bool kMoved>
-HWY_INLINE Step edge_vertex(const Owned<kMoved>& o) {
-  const Edge& edge = o.owner().edges[o.on_owner().feature];
-  const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad own_tip = load3_alone(vertex.position), own_start = load3_of_4(edge.point),
-             own_e = load3_of_4(edge.direction);
-  const Quad tip = o.opposite().point_to_common(own_tip), start = o.point_to_common(own_start),
-             e = o.direction_to_common(own_e);
-  const Quad from_start = tip - start;
-  const double s = dot(from_start, e) * (kMoved ? over_square(e) : 1.0);
-  if (!(s > edge.begin)) return to_vertex(o.on_owner(), edge.vertex[0]);
-  if (!(s < edge.end)) return to_vertex(o.on_owner(), edge.vertex[1]);
-  // As long as the way from the edge to the vertex, and at right angles to it; then that way. No
-  // difference of long vectors: cancellation leaves nothing along the edge.
-  const Quad across = cross(from_start, e), way = cross(e, across);
-  const double length = norm(across), limit = -kCertainRate * length;
-  const Quad g = o.direction_to_own(way), back = -o.opposite().direction_to_own(way);
-  if (!sides_fall(edge, g, limit)) {
-    rises_beside(edge, g, limit, o.on_owner());
-    const Pair rates = side_rates(edge, g);
-    if (std::max(rates[0], rates[1]) > -limit) return Step::kMoved;
-    to_level(o.other(), o.on_other(), vec3(back), limit);
-    return o.w.levelled();
+template <bool kIsB>
+HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
+  const Edge& edge = owner.body().edges[owner.side().feature];
+  const Vertex& vertex = owner.other_body().vertices[owner.other_side().feature];
+  EdgeAndVertex<kIsB, RelativePose4, Vec4, double> line(owner.a_from_b, load3_of_4(edge.point),
+                                                        load3_of_4(edge.direction),
+                                                        load3_alone(vertex.position));
+  if (!(line.s > edge.begin)) return to_vertex(owner.side(), edge.vertex[0]);
+  if (!(line.s < edge.end)) return to_vertex(owner.side(), edge.vertex[1]);
+  line.find_way();
+  const double limit = -kDerivativeError * line.length;
+  const Vec4 g = owner.direction_to_own(line.way);
+  const Vec4 back = -owner.opposite().direction_to_own(line.way);
+  if (!both_facets_recede(edge, g, limit)) {
+    to_approaching_facet(edge, g, limit, owner.side());
+    const Vec2 derivatives = facet_derivatives(edge, g);
+    if (std::max(derivatives[0], derivatives[1]) > -limit) return Transition::kMoved;
+    to_parallel(owner.other_body(), owner.other_side(), vec3(back), limit);
+    return owner.pair.parallel();
   }
-  if (!all_fall(o.other(), vertex, back, limit)) {
-    const SteepestEdge away = steepest(o.other(), vertex, back);
-    if (!(away.rate > -limit)) {
-      to_level(o.other(), o.on_other(), vec3(back), limit);
-      return o.w.levelled();
+  if (!all_edges_recede(owner.other_body(), vertex, back, limit)) {
+    const SteepestEdge away = steepest(owner.other_body(), vertex, back);
+    if (!(away.derivative > -limit)) {
+      to_parallel(owner.other_body(), owner.other_side(), vec3(back), limit);
+      return owner.pair.parallel();
     }
-    return to_edge(o.on_other(), o.other().vertex_edges[away.at].edge);
+    return to_edge(owner.other_side(), owner.other_body().vertex_edges[away.at].edge);
   }
-  const double unit = kMoved ? over_norm(e) : 1.0;
-  const double of_way = HWY_UNLIKELY(length < kSlender * std::abs(s)) ? norm(way) / unit : length;
-  o.w.apart = o.w.proved = unit * length;
-  o.w.normal = (kMoved ? -unit : 1.0) * way / spread(of_way);
-  o.place(own_start + s * own_e, start + s * e, own_tip, tip);
-  return Step::kHolds;
+  const bool slender = HWY_UNLIKELY(line.length < kSlender * std::abs(line.s));
+  line.place_witnesses(owner.pair, slender ? line.slender_length() : line.length);
+  return Transition::kClosest;
 }
 
-template <bool kMoved>
-HWY_INLINE Step facet_vertex(const Owned<kMoved>& o) {
-  const Facet& facet = o.owner().facets[o.on_owner().feature];
-  const Vertex& vertex = o.other().vertices[o.on_other().feature];
-  const Quad tip = load3_alone(vertex.position), own_tip = o.point_in(tip);
-  const Quad n = o.direction_to_common(load3_of_4(facet.normal));
-  const double apart = o.height(facet, tip, own_tip, n);
-  if (HWY_UNLIKELY(!(apart > 0.0)) && !o.w.overlapping) return Step::kLost;
-  const std::int32_t beyond = side_beyond(o.owner(), facet, own_tip);
-  if (beyond != kNone) return to_edge(o.on_owner(), beyond);
-  const Quad back = -o.opposite().direction_to_own(n);
-  if (!all_fall(o.other(), vertex, back, -kCertainRate)) {
-    const SteepestEdge away = steepest(o.other(), vertex, back);
-    if (!(away.rate > kCertainRate)) {
-      to_level(o.other(), o.on_other(), vec3(back), -kCertainRate);
-      return o.w.levelled();
+template <bool kIsB>
+HWY_INLINE Transition facet_vertex(const Owner<kIsB>& owner) {
+  const Facet& facet = owner.body().facets[owner.side().feature];
+  const Vertex& vertex = owner.other_body().vertices[owner.other_side().feature];
+  const Vec4 tip = load3_alone(vertex.position), own_tip = owner.point_in(tip);
+  const auto plane = plane_of(owner, facet);
+  const double apart = plane.height(tip, own_tip);
+  if (HWY_UNLIKELY(!(apart > 0.0)) && !owner.pair.penetrating) return Transition::kUndecided;
+  const std::int32_t beyond = side_beyond(owner.body(), facet, own_tip);
+  if (beyond != kNone) return to_edge(owner.side(), beyond);
+  const Vec4 back = -owner.opposite().direction_to_own(plane.n);
+  if (!all_edges_recede(owner.other_body(), vertex, back, -kDerivativeError)) {
+    const SteepestEdge away = steepest(owner.other_body(), vertex, back);
+    if (!(away.derivative > kDerivativeError)) {
+      to_parallel(owner.other_body(), owner.other_side(), vec3(back), -kDerivativeError);
+      return owner.pair.parallel();
     }
-    const EdgeUse& use = o.other().vertex_edges[away.at];
-    const std::int32_t next = o.other().edges[use.edge].vertex[1 - use.side];
-    if (next == kNone) return Step::kLost;
-    return to_vertex(o.on_other(), next);
+    const EdgeUse& use = owner.other_body().vertex_edges[away.at];
+    const std::int32_t next = owner.other_body().edges[use.edge].vertex[1 - use.side];
+    if (next == kNone) return Transition::kUndecided;
+    return to_vertex(owner.other_side(), next);
   }
-  o.w.apart = o.w.proved = apart;
-  o.place_above(facet, apart, tip, own_tip, n);
-  return Step::kHolds;
+  owner.pair.apart = owner.pair.certified = apart;
+  plane.place_witnesses(owner.pair, tip, own_tip);
+  return Transition::kClosest;
 }
 
 // Where the line's closest point lies beyond an end of the edge, that end takes over.
@@ -140,104 +139,86 @@ HWY_INLINE bool beyond_end(const Edge& edge, double at, Side& side) {
   return true;
 }
 
-// The lines of two edges, in frame A but for own_..., and where they are nearest.
-struct EdgeLines {
-  HWY_INLINE explicit EdgeLines(const Walk& w)
-      : first(w.a.edges[w.on_a.feature]),
-        second(w.b.edges[w.on_b.feature]),
-        e(load3_of_4(first.direction)),
-        own_f(load3_of_4(second.direction)),
-        start_a(load3_of_4(first.point)),
-        own_start_b(load3_of_4(second.point)),
-        f(direction_to_a(w.a_from_b, own_f)),
-        start_b(point_to_a(w.a_from_b, own_start_b)),
-        between(start_b - start_a),
-        n(cross(e, f)),
-        sine2(dot(n, n)) {}
+HWY_INLINE EdgeLines<RelativePose4, Vec4, double> lines_of(const TrackedPair& pair,
+                                                           const Edge& first, const Edge& second) {
+  return {pair.a_from_b, load3_of_4(first.point), load3_of_4(first.direction),
+          load3_of_4(second.point), load3_of_4(second.direction)};
+}
 
-  // s along the first and t along the second: of lines that cross. What lies between them along e
-  // is taken off first, so that its rounding is over the sine, and not over the sine's square.
-  HWY_INLINE void find_nearest() {
-    const double cosine = dot(e, f), along_e = dot(between, e);
-    t = dot(cross(between, e), n) / sine2;
-    s = along_e + cosine * t;
-  }
-  HWY_INLINE void place_witnesses(Walk& w) const {
-    w.point_a = start_a + s * e;
-    w.own_b = own_start_b + t * own_f;
-    w.point_b = start_b + t * f;
-  }
-
-  // m: how much farther along an edge a body may reach, by what rounding tilts the normal.
-  [[nodiscard]] HWY_INLINE double reach_of_tilt(const Walk& w) const {
-    return 2.0 * (w.a.bounding_radius * std::abs(dot(w.normal, e)) +
-                  w.b.bounding_radius * std::abs(dot(w.normal, f)));
-  }
-
-  const Edge& first;
-  const Edge& second;
-  Quad e, own_f, start_a, own_start_b, f, start_b, between, n;
-  double sine2, s = 0.0, t = 0.0;
-};
-
-template <bool kFirst = false>
-HWY_INLINE Step edge_edge(Walk& w) {
-  if (!w.a.bounded() || !w.b.bounded()) return Step::kLost;
-  EdgeLines lines(w);
+// `kMode` as of transition().
+template <Tracking kMode>
+HWY_INLINE Transition edge_edge(TrackedPair& pair) {
+  if (!pair.a.bounded() || !pair.b.bounded()) return Transition::kUndecided;
+  const Edge& first = pair.a.edges[pair.on_a.feature];
+  const Edge& second = pair.b.edges[pair.on_b.feature];
+  auto lines = lines_of(pair, first, second);
   if (!(lines.sine2 > kCrossingSine2)) {
-    if constexpr (kFirst) {
-      --w.steps;  // it is done once more, with the pair in memory
-      return Step::kMoved;
+    if constexpr (kMode == Tracking::kFirst) {
+      --pair.transitions;  // it is done once more, with the pair in memory
+      return Transition::kMoved;
     }
-    return lines.sine2 <= kLevelTilt * kLevelTilt ? parallel_edges(w, lines.start_b, lines.f)
-                                                  : Step::kLost;
+    return lines.sine2 <= kParallelTilt * kParallelTilt
+               ? parallel_edges(pair, lines.start_b, lines.f)
+               : Transition::kUndecided;
   }
   lines.find_nearest();
-  if (beyond_end(lines.first, lines.s, w.on_a) || beyond_end(lines.second, lines.t, w.on_b))
-    return Step::kMoved;
-  const double sine = std::sqrt(lines.sine2), limit = -kCertainRate * sine,
+  if (beyond_end(first, lines.s, pair.on_a) || beyond_end(second, lines.t, pair.on_b)) {
+    return Transition::kMoved;
+  }
+  const double sine = std::sqrt(lines.sine2), limit = -kDerivativeError * sine,
                apart = dot(lines.between, lines.n);
-  const Quad g = with_signs(lines.n, spread(std::copysign(0.0, apart)));
-  const Quad back = -direction_to_b(w.a_from_b, g);
-  if (HWY_UNLIKELY(!sides_fall(lines.first, g, limit) || !sides_fall(lines.second, back, limit))) {
-    rises_beside(lines.first, g, limit, w.on_a);
-    rises_beside(lines.second, back, limit, w.on_b);
-    return w.levelled();
+  const Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, apart)));
+  const Vec4 back = -direction_to_b(pair.a_from_b, g);
+  if (HWY_UNLIKELY(!both_facets_recede(first, g, limit) ||
+                   !both_facets_recede(second, back, limit))) {
+    to_approaching_facet(first, g, limit, pair.on_a);
+    to_approaching_facet(second, back, limit, pair.on_b);
+    return pair.parallel();
   }
-  w.normal = g / spread(sine);
-  lines.place_witnesses(w);
-  w.apart = norm(w.point_b - w.point_a);
-  w.proved = std::abs(apart) / sine - lines.reach_of_tilt(w);
-  return Step::kHolds;
+  pair.normal = over(g, sine);
+  lines.place_witnesses(pair);
+  pair.apart = norm(pair.point_b - pair.point_a);
+  pair.certified = std::abs(apart) / sine -
+                   lines.reach_of_tilt(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
+  return Transition::kClosest;
 }
 
-HWY_INLINE Step step(Walk& w) {
-  switch (w.on_a.dimension * 3 + w.on_b.dimension) {
-    case 0:
-      return vertex_vertex(w);
-    case 1:
-      return edge_vertex(Owned<true>{w});
-    case 2:
-      return facet_vertex(Owned<true>{w});
-    case 3:
-      return edge_vertex(Owned<false>{w});
-    case 4:
-      return edge_edge(w);
-    case 5:
-      return edge_facet(Owned<false>{w});
-    case 6:
-      return facet_vertex(Owned<false>{w});
-    case 7:
-      return edge_facet(Owned<true>{w});
-    case 8:
-      return facet_facet(w);
+// The one place that branches on the pair of features, for bodies that were apart.
+template <Tracking kMode>
+HWY_INLINE Transition transition(TrackedPair& pair) {
+  switch (pair.features()) {
+    case FeaturePair::kVertexVertex:
+      return vertex_vertex(pair);
+    case FeaturePair::kVertexEdge:
+      return edge_vertex(Owner<true>(pair));
+    case FeaturePair::kVertexFacet:
+      return facet_vertex(Owner<true>(pair));
+    case FeaturePair::kEdgeVertex:
+      return edge_vertex(Owner<false>(pair));
+    case FeaturePair::kEdgeEdge:
+      return edge_edge<kMode>(pair);
     default:
-      return Step::kLost;
+      break;
+  }
+  // All that is_straight() leaves.
+  if constexpr (kMode == Tracking::kFirst) return facet_vertex(Owner<false>(pair));
+  switch (pair.features()) {
+    case FeaturePair::kEdgeFacet:
+      return edge_facet(Owner<false>(pair));
+    case FeaturePair::kFacetVertex:
+      return facet_vertex(Owner<false>(pair));
+    case FeaturePair::kFacetEdge:
+      return edge_facet(Owner<true>(pair));
+    case FeaturePair::kFacetFacet:
+      return facet_facet(pair);
+    default:
+      return Transition::kUndecided;
   }
 }
 
-// A vertex that is far out along `towards`; a body without vertices is one facet, or the loop's.
-HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
+// A vertex that is far out along `towards`; a body without vertices is one facet, or none for a
+// walk.
+HWY_INLINE void start(const ConvexPolyhedron& body, Vec4 towards, Side& side) {
   if (body.vertices.empty()) {
     to_facet(side, 0);
   } else {
@@ -245,56 +226,61 @@ HWY_INLINE void start(const ConvexPolyhedron& body, Quad towards, Side& side) {
   }
 }
 
-HWY_INLINE WalkEnd conclude(Walk& w) {
-  const RelativeQuads& pose = w.a_from_b;
-  const Precision p =
-      precision(w.a, w.b, {pose.rotation_error, pose.translation_error, pose.apart}, w.apart);
-  w.slack = p.slack;
-  w.on_a.point = vec3(w.point_a);
-  w.on_b.point = vec3(w.own_b);
-  const bool proved = w.proved > p.slack && w.apart - w.proved <= p.tight;
-  return proved ? WalkEnd::kProved : WalkEnd::kSettled;
+// Where there are no features from the last query.
+HWY_INLINE void begin(TrackedPair& pair) {
+  if (exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b)) return;
+  const Vec4 towards = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
+  start(pair.a, towards, pair.on_a);
+  start(pair.b, -direction_to_b(pair.a_from_b, towards), pair.on_b);
 }
 
-// From features that there are.
-HWY_INLINE WalkEnd walk_on(Walk& w) {
-  while (w.steps < kSteps) {
-    ++w.steps;
-    const Step result = step(w);
-    if (result == Step::kHolds) return conclude(w);
-    if (result == Step::kLost) return WalkEnd::kLost;
+// The certificate of features that are closest: their distance bounds that of the bodies from
+// above, and from below as far as the normal certifies it, both but for the error bound of
+// Precision.
+HWY_INLINE WalkEnd certify(TrackedPair& pair) {
+  const RelativePose4& pose = pair.a_from_b;
+  const Precision p = precision(
+      pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.apart}, pair.apart);
+  pair.error_bound = p.slack;
+  pair.on_a.point = vec3(pair.point_a);
+  pair.on_b.point = vec3(pair.own_b);
+  const bool certified = pair.certified > p.slack && pair.apart - pair.certified <= p.tight;
+  return certified ? WalkEnd::kCertified : WalkEnd::kUncertified;
+}
+
+// Transitions from features that there are, until they are closest.
+HWY_INLINE WalkEnd walk_on(TrackedPair& pair) {
+  while (pair.transitions < kMostTransitions) {
+    ++pair.transitions;
+    const Transition result = transition<Tracking::kFurther>(pair);
+    if (result == Transition::kClosest) return certify(pair);
+    if (result == Transition::kUndecided) return WalkEnd::kUndecided;
   }
-  return WalkEnd::kLost;
+  return WalkEnd::kUndecided;
 }
 
-HWY_INLINE void begin(Walk& w) {
-  if (exists(w.a, w.on_a) && exists(w.b, w.on_b)) return;
-  const Quad towards = point_to_a(w.a_from_b, load3(w.b.interior)) - load3(w.a.interior);
-  start(w.a, towards, w.on_a);
-  start(w.b, -direction_to_b(w.a_from_b, towards), w.on_b);
+HWY_INLINE WalkEnd walk(TrackedPair& pair) {
+  if (!pair.a.bounded() && !pair.b.bounded()) return WalkEnd::kUndecided;
+  begin(pair);
+  return walk_on(pair);
 }
 
-HWY_INLINE WalkEnd walk(Walk& w) {
-  if (!w.a.bounded() && !w.b.bounded()) return WalkEnd::kLost;
-  begin(w);
-  return walk_on(w);
-}
-
-// Of a walk that is not lost. A result begins with twelve numbers; fours of them are stored one
-// over the other's end, and the status last.
-HWY_INLINE DistanceResult result_of(const Walk& w) {
+// Of a walk that is not undecided. A result begins with twelve numbers; fours of them are stored
+// one over the other's end, and the status last.
+HWY_INLINE DistanceResult result_of(const TrackedPair& pair) {
   static_assert(offsetof(DistanceResult, normal) == 3 * sizeof(double));
   static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
   static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
   DistanceResult r;
   double* numbers = &r.distance;
-  store4(quad(w.apart, w.proved - w.slack, w.apart + w.slack, 0.0), numbers);
-  store4(w.normal, numbers + 3);
-  store4(w.point_a, numbers + 6);
-  store4(w.point_b, numbers + 9);
+  store4(vec4(pair.apart, pair.certified - pair.error_bound, pair.apart + pair.error_bound, 0.0),
+         numbers);
+  store4(pair.normal, numbers + 3);
+  store4(pair.point_a, numbers + 6);
+  store4(pair.point_b, numbers + 9);
   r.status = DistanceStatus::kConverged;
   r.path = DistancePath::kWalk;
-  r.iterations = static_cast<std::uint16_t>(w.steps);
+  r.iterations = static_cast<std::uint16_t>(pair.transitions);
   return r;
 }
 

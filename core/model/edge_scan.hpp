@@ -1,4 +1,4 @@
-// The steepest of the edges that leave a vertex.
+// The edge with the greatest directional derivative of those that leave a vertex.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 namespace clearance {
 
 struct SteepestEdge {
-  double rate = -kInfinity;  // along g, per unit length
-  std::int32_t at = kNone;   // index into vertex_edges and neighbours
+  double derivative = -kInfinity;  // along g, per unit length
+  std::int32_t at = kNone;         // index into vertex_edges and neighbours
 };
 
 // The first of equals; g: in the body's frame. Sums in the order of vector registers' and a batch's
@@ -19,8 +19,8 @@ struct SteepestEdge {
   SteepestEdge best;
   for (std::int32_t i = 0; i < vertex.edges; ++i) {
     const Vec3 along = body.outgoing_of(vertex, i);
-    const double rate = (along.x() * g.x() + along.y() * g.y()) + along.z() * g.z();
-    if (rate > best.rate) best = {rate, vertex.first_edge + i};
+    const double derivative = (along.x() * g.x() + along.y() * g.y()) + along.z() * g.z();
+    if (derivative > best.derivative) best = {derivative, vertex.first_edge + i};
   }
   return best;
 }

@@ -20,10 +20,11 @@ struct Precision {
   double
       tight;  // m: an upper bound this close to the lower one (before slack) is as good as it gets
   double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
+  double promised;          // m: as near to each other are bounds that have converged
 
   // Are bounds, slack included, this near to each other what a converged answer promises?
   [[nodiscard]] bool converged(double gap) const noexcept {
-    return gap <= std::max(tight + 2.0 * slack, kConvergedGap * size);
+    return gap <= std::max(tight + 2.0 * slack, promised);
   }
 };
 
@@ -62,6 +63,7 @@ struct PlacePrecision {
   p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
             b_in_a.rotation_error * turned;
   p.tight = tight * kUlp * p.size;
+  p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kMetGap) * p.size;
   return p;
 }
 

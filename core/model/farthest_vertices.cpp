@@ -22,7 +22,7 @@ bool climb(const ConvexPolyhedron& body, Climber& climber) noexcept {
   const double* row = body.outgoing.row(vertex.first_edge);
   const std::int32_t n = vertex.edges;
   const double x = climber.m.x(), y = climber.m.y(), z = climber.m.z();
-  double most = kCertainRate;
+  double most = kDerivativeError;
   std::int32_t way = kNone;
   for (std::int32_t i = 0; i < n; ++i) {
     const double rate = (x * row[i] + y * row[n + i]) + z * row[2 * n + i];

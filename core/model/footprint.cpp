@@ -12,15 +12,11 @@ std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
 
 std::size_t footprint(const ConvexPolyhedron& body) noexcept {
   const Opening& opening = body.opening;
-  std::size_t bytes =
-      sizeof body +
-      bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
-               body.anchors, body.rays, body.exact_normals, body.edge_rays, opening.rays,
-               opening.leans, opening.relaxed.rays, body.neighbours, body.facets_beside) +
-      body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
-  for (const Ray& ray : body.rays) bytes += bytes_of(ray.exactly.parts);
-  for (const ExactDirection& normal : body.exact_normals) bytes += bytes_of(normal.parts);
-  return bytes;
+  return sizeof body +
+         bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
+                  body.anchors, body.rays, body.exact_normals, opening.rays, body.neighbours,
+                  body.facets_beside) +
+         body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
 }
 
 }  // namespace clearance

@@ -11,8 +11,8 @@ namespace clearance {
 
 struct ConvexPolyhedron;
 
-// Directions: sums of lines, either way along each, and of rays.
-struct Spread {
+// The body's directions are sums of its lines, either way along each, and of its other rays.
+struct Opening {
   // Unit, at right angles; two of them are a whole plane.
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
   std::size_t line_count = 0;
@@ -20,6 +20,9 @@ struct Spread {
   // How much of any of the rays, at least, lies along one direction at right angles to the lines;
   // rounding included. 0 or less: no such direction is known.
   double least = 0.0;
+  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
+  // there is none.
+  Vec3 inwards = Vec3::Zero();
 
   // What of v is at right angles to the lines.
   [[nodiscard]] Vec3 across_lines(Vec3 v) const noexcept {
@@ -28,24 +31,10 @@ struct Spread {
   }
 };
 
-// As a spread: the body's lines, rays that come with their opposite, and its other rays.
-struct Opening : Spread {
-  // Where two rays all but point away from each other, the way in which they lean, at right angles
-  // to one of them: a direction, too, in which the body goes on for ever, of which the rays'
-  // doubles may have lost everything. Unit.
-  std::vector<Vec3> leans;
-  // Two such rays taken for a line: it holds the body's directions and hardly more. Its `least` is
-  // 0 where there are none.
-  Spread relaxed;
-  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
-  // there is none.
-  Vec3 inwards = Vec3::Zero();
-};
-
 // What rounding may hide of a slope: its direction's, its product's and its sum's.
 inline constexpr double kSlopeError = 0x1p-50;
 
-// Sets the body's `opening`, and which of its rays are lines.
+// Sets the body's `opening`.
 void add_opening(ConvexPolyhedron& body);
 
 }  // namespace clearance

@@ -1,9 +1,9 @@
 // RelativePose as the queries use it, compiled once a vector width: see core/numerics/vec4-inl.hpp.
-#if defined(CLEARANCE_CORE_RELATIVE_QUADS) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_RELATIVE_QUADS
-#undef CLEARANCE_CORE_RELATIVE_QUADS
+#if defined(CLEARANCE_CORE_RELATIVE_POSE4) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_RELATIVE_POSE4
+#undef CLEARANCE_CORE_RELATIVE_POSE4
 #else
-#define CLEARANCE_CORE_RELATIVE_QUADS
+#define CLEARANCE_CORE_RELATIVE_POSE4
 #endif
 
 #include <cmath>
@@ -20,40 +20,40 @@ namespace clearance::HWY_NAMESPACE {
 // (i, i + 2), modulo 3. Its product with a vector takes that vector turned by no, one and two
 // places: nothing is spread over a register, and no rows or columns have to be put together.
 struct Diagonals {
-  Quad main, next, last;
+  Vec4 main, next, last;
 };
-HWY_INLINE Quad operator*(const Diagonals& m, Quad v) {
+HWY_INLINE Vec4 operator*(const Diagonals& m, Vec4 v) {
   return (m.main * v + m.next * yzx(v)) + m.last * zxy(v);
 }
 
 // B as seen from A, and the rotation the other way as well.
-struct RelativeQuads {
+struct RelativePose4 {
   Diagonals rotation, transposed;
-  Quad translation;
+  Vec4 translation;
   double rotation_error, translation_error, apart;  // as in RelativePose
 };
 
-HWY_INLINE Quad direction_to_a(const RelativeQuads& r, Quad v) { return r.rotation * v; }
-HWY_INLINE Quad direction_to_b(const RelativeQuads& r, Quad v) { return r.transposed * v; }
-HWY_INLINE Quad point_to_a(const RelativeQuads& r, Quad p) {
+HWY_INLINE Vec4 direction_to_a(const RelativePose4& r, Vec4 v) { return r.rotation * v; }
+HWY_INLINE Vec4 direction_to_b(const RelativePose4& r, Vec4 v) { return r.transposed * v; }
+HWY_INLINE Vec4 point_to_a(const RelativePose4& r, Vec4 p) {
   return direction_to_a(r, p) + r.translation;
 }
-HWY_INLINE Quad point_to_b(const RelativeQuads& r, Quad p) {
+HWY_INLINE Vec4 point_to_b(const RelativePose4& r, Vec4 p) {
   return direction_to_b(r, p - r.translation);
 }
 
 // conj(a) * b: the orientation of B as seen from A. b is spread as it is loaded: permutations of
 // registers are what queries wait for.
-HWY_INLINE Quad relative(Quad a, const double* b) {
-  const Quad by_x = with_signs(pick<3, 2, 1, 0>(a), quad(0.0, -0.0, 0.0, 0.0));
-  const Quad by_y = with_signs(pick<2, 3, 0, 1>(a), quad(0.0, 0.0, -0.0, 0.0));
-  const Quad by_z = with_signs(pick<1, 0, 3, 2>(a), quad(-0.0, 0.0, 0.0, 0.0));
-  const Quad by_w = with_signs(a, quad(-0.0, -0.0, -0.0, 0.0));
+HWY_INLINE Vec4 relative(Vec4 a, const double* b) {
+  const Vec4 by_x = with_signs(pick<3, 2, 1, 0>(a), vec4(0.0, -0.0, 0.0, 0.0));
+  const Vec4 by_y = with_signs(pick<2, 3, 0, 1>(a), vec4(0.0, 0.0, -0.0, 0.0));
+  const Vec4 by_z = with_signs(pick<1, 0, 3, 2>(a), vec4(-0.0, 0.0, 0.0, 0.0));
+  const Vec4 by_w = with_signs(a, vec4(-0.0, -0.0, -0.0, 0.0));
   return (spread(b[0]) * by_x + spread(b[1]) * by_y) + (spread(b[2]) * by_z + spread(b[3]) * by_w);
 }
 
-HWY_INLINE double square_of(Quad q) {
-  const Quad s = q * q;
+HWY_INLINE double square_of(Vec4 q) {
+  const Vec4 s = q * q;
   return (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
 }
 HWY_INLINE bool nearly_unit(double square) {
@@ -62,35 +62,35 @@ HWY_INLINE bool nearly_unit(double square) {
 
 // 2 / |q|^2, of any quaternion in range: what makes rotations of it without a square root. Of unit
 // quaternions to a dozen digits without a division: kMatrixError says why.
-HWY_INLINE double two_over_square(Quad q) {
+HWY_INLINE double two_over_square(Vec4 q) {
   const double square = square_of(q);
   return nearly_unit(square) ? 2.0 * (2.0 - square) : 2.0 / square;
 }
 
 // Do its square or the products made of it overflow or lose digits?
-HWY_INLINE bool is_out_of_range(Quad q) {
+HWY_INLINE bool is_out_of_range(Vec4 q) {
   const double square = square_of(q);
   return !nearly_unit(square) && !is_in_range(square);
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.
-HWY_INLINE void set_rotation(Quad q, RelativeQuads& r) {
-  const Quad s = spread(two_over_square(q)), squares = q * q;
-  const Quad products = q * yzx(q), by_w = zxy(spread(lane(q, 3)) * q);
-  const Quad d = spread(1.0) - s * (yzx(squares) + zxy(squares));  // 00, 11, 22
-  const Quad p = s * (products + by_w);                            // 10, 21, 02
-  const Quad m = s * (products - by_w);                            // 01, 12, 20
+HWY_INLINE void set_rotation(Vec4 q, RelativePose4& r) {
+  const Vec4 s = spread(two_over_square(q)), squares = q * q;
+  const Vec4 products = q * yzx(q), by_w = zxy(spread(lane(q, 3)) * q);
+  const Vec4 d = spread(1.0) - s * (yzx(squares) + zxy(squares));  // 00, 11, 22
+  const Vec4 p = s * (products + by_w);                            // 10, 21, 02
+  const Vec4 m = s * (products - by_w);                            // 01, 12, 20
   r.rotation = {d, m, zxy(p)};
   r.transposed = {d, p, zxy(m)};
 }
 
 // R(q/|q|)^T v by two cross products.
-HWY_INLINE Quad turn_back(Quad q, Quad v) {
-  const Quad c = cross(q, v);
+HWY_INLINE Vec4 turn_back(Vec4 q, Vec4 v) {
+  const Vec4 c = cross(q, v);
   return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
 }
 
-HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativeQuads& r) {
+HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
   const ExactOrientations exact = exact_orientations(a.orientation, b.orientation);
   if (exact.equal) {
     r.rotation = r.transposed = {spread(1.0), spread(0.0), spread(0.0)};
@@ -100,22 +100,22 @@ HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativeQuads& r) {
 }
 
 template <bool kRescaled = false>
-HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b);
+HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b);
 
-inline HWY_NOINLINE RelativeQuads rescaled_quads(const Pose& world_from_a,
+inline HWY_NOINLINE RelativePose4 rescaled_pose4(const Pose& world_from_a,
                                                  const Pose& world_from_b) {
-  return relative_quads<true>(rescaled(world_from_a), rescaled(world_from_b));
+  return relative_pose4<true>(rescaled(world_from_a), rescaled(world_from_b));
 }
 
 template <bool kRescaled>
-HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& world_from_b) {
-  const Quad a = load4(world_from_a.orientation.coeffs().data());
-  const Quad q = relative(a, world_from_b.orientation.coeffs().data());
+HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b) {
+  const Vec4 a = load4(world_from_a.orientation.coeffs().data());
+  const Vec4 q = relative(a, world_from_b.orientation.coeffs().data());
   if (!kRescaled && (is_out_of_range(a) || is_out_of_range(q))) {
-    return rescaled_quads(world_from_a, world_from_b);
+    return rescaled_pose4(world_from_a, world_from_b);
   }
-  const Quad between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
-  RelativeQuads r;
+  const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
+  RelativePose4 r;
   set_rotation(q, r);
   r.translation = turn_back(a, between);
   r.apart = norm(r.translation);
@@ -128,11 +128,11 @@ HWY_INLINE RelativeQuads relative_quads(const Pose& world_from_a, const Pose& wo
   return r;
 }
 
-HWY_INLINE RelativeQuads quads_of(const RelativePose& pose) {
-  RelativeQuads r;
+HWY_INLINE RelativePose4 pose4_of(const RelativePose& pose) {
+  RelativePose4 r;
   const Mat3& m = pose.rotation;
-  const Quad main = quad(m(0, 0), m(1, 1), m(2, 2), 0.0);
-  r.rotation = {main, quad(m(0, 1), m(1, 2), m(2, 0), 0.0), quad(m(0, 2), m(1, 0), m(2, 1), 0.0)};
+  const Vec4 main = vec4(m(0, 0), m(1, 1), m(2, 2), 0.0);
+  r.rotation = {main, vec4(m(0, 1), m(1, 2), m(2, 0), 0.0), vec4(m(0, 2), m(1, 0), m(2, 1), 0.0)};
   r.transposed = {main, yzx(r.rotation.last), zxy(r.rotation.next)};
   r.translation = load3(pose.translation);
   r.rotation_error = pose.rotation_error;
@@ -141,7 +141,7 @@ HWY_INLINE RelativeQuads quads_of(const RelativePose& pose) {
   return r;
 }
 
-HWY_INLINE RelativePose pose_of(const RelativeQuads& r, const Pose& world_from_a,
+HWY_INLINE RelativePose pose_of(const RelativePose4& r, const Pose& world_from_a,
                                 const Pose& world_from_b) {
   RelativePose pose;
   pose.world_from_a = world_from_a.orientation;

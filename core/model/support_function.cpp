@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "core/model/support_function.cpp"
 #include "core/numerics/simd_targets.hpp"
 // That comes first.
-#include "core/feature_walk/pair-inl.hpp"
+#include "core/model/edge_scan-inl.hpp"
 #include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
 
@@ -14,8 +14,8 @@ namespace clearance::HWY_NAMESPACE {
 std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at, bool& certain) {
   for (;;) {
     const SteepestEdge way = steepest(body, body.vertices[at], m);
-    certain = way.rate < -kCertainRate;
-    if (!(way.rate > kCertainRate)) return at;
+    certain = way.derivative < -kDerivativeError;
+    if (!(way.derivative > kDerivativeError)) return at;
     at = body.neighbours[way.at];
   }
 }
@@ -71,38 +71,38 @@ Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3
 }
 
 // How fast a sum of rays that are no lines may rise, at most, along a direction across the lines.
-// Their parts across the lines all have a part of at least Spread::least along one direction, so
+// Their parts across the lines all have a part of at least Opening::least along one direction, so
 // that there are no more of them than the sum is long over that: they count as often as the
 // steepest rises.
-double rise_of_rays(const Spread& spread, const Vec3& across) noexcept {
-  if (!(spread.least > 0.0)) return kInfinity;
+double rise_of_rays(const Opening& opening, const Vec3& across) noexcept {
+  if (!(opening.least > 0.0)) return kInfinity;
   double steepest = 0.0;
-  for (const Vec3& ray : spread.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
-  return steepest / spread.least;
+  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  return steepest / opening.least;
 }
 
 // The same by a direction beside it along which all rays fall for certain: they rise no faster than
 // it is tilted against that one. Where only the steepest ray does not fall, it leads past that.
-double rise_past_steepest(const Spread& spread, const Vec3& across) noexcept {
+double rise_past_steepest(const Opening& opening, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
-  const auto steepest = std::max_element(spread.rays.begin(), spread.rays.end(), steeper);
-  if (steepest == spread.rays.end()) return kInfinity;
-  const Vec3 way = spread.across_lines(*steepest);
+  const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
+  if (steepest == opening.rays.end()) return kInfinity;
+  const Vec3 way = opening.across_lines(*steepest);
   const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
-  const Vec3 past = spread.across_lines(across - step * way);
-  for (const Vec3& ray : spread.rays) {
+  const Vec3 past = opening.across_lines(across - step * way);
+  for (const Vec3& ray : opening.rays) {
     if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
   return (across - past).norm();
 }
 
-// How fast a spread's sums may rise along m, at most: along its lines, and beside them as its rays
-// may along a direction across the lines.
-double rise(const Spread& spread, const Vec3& m,
-            double (*of_rays)(const Spread&, const Vec3&) noexcept) noexcept {
-  const Vec3 across = spread.across_lines(m);
-  const double of_lines = spread.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  return of_rays(spread, across) + of_lines;
+// How fast an opening's sums may rise along m, at most: along its lines, and beside them as its
+// rays may along a direction across the lines.
+double rise(const Opening& opening, const Vec3& m,
+            double (*of_rays)(const Opening&, const Vec3&) noexcept) noexcept {
+  const Vec3 across = opening.across_lines(m);
+  const double of_lines = opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+  return of_rays(opening, across) + of_lines;
 }
 
 // How fast a body may rise along m, at most, by its facets: nothing rises along their normals, and
@@ -141,7 +141,7 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
     if (height > best.reach) best = {height, level[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const Neighbour n = neighbour(body, body.vertex_edges[vertex.first_edge + i], m);
-      if (n.slope > -kCertainRate && !level.add(n.vertex)) return support_by_scan(body, m);
+      if (n.slope > -kDerivativeError && !level.add(n.vertex)) return support_by_scan(body, m);
     }
   }
   return best;
@@ -154,8 +154,7 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
   const Opening& opening = body.opening;
   double rate = rise(opening, m, rise_of_rays);
   if (rate > kSlopeError) {
-    rate = std::min({rate, rise(opening, m, rise_past_steepest),
-                     rise(opening.relaxed, m, rise_of_rays), rise_above_facets(body, m)});
+    rate = std::min({rate, rise(opening, m, rise_past_steepest), rise_above_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }

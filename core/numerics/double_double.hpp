@@ -64,17 +64,7 @@ constexpr void distil(std::array<double, kCount>& parts) noexcept {
   }
 }
 
-// Do these add up to zero for certain?
-template <std::size_t kCount>
-constexpr bool sum_is_zero(std::array<double, kCount> parts) noexcept {
-  distil(parts);
-  for (const double part : parts) {
-    if (part != 0.0) return false;
-  }
-  return true;
-}
-
-// To zero or less?
+// Do these add up to zero or less, for certain?
 template <std::size_t kCount>
 constexpr bool sum_is_not_positive(std::array<double, kCount> parts) noexcept {
   distil(parts);

@@ -57,10 +57,6 @@ inline constexpr double kPermutedTranslationError = 4 * kUlp;
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
 
-// Of a matrix each entry of which is rounded once: in the 2-norm no more ulps than that of its
-// entries' magnitudes, which for a rotation is at most 5/3. All of it may be a stretch.
-inline constexpr double kRoundedRotationError = 1.7 * kUlp / kStretched;
-
 // Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
 // in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
 // in ulps of |a|, |b| and |t|
@@ -82,8 +78,9 @@ inline constexpr double kUnderflow = 1e-150;
 // tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
 inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
 
-// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size.
-inline constexpr double kConvergedGap = 90 * kUlp;
+// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies
+// that overlap or touch, and of two unbounded ones, 1.25e-14.
+inline constexpr double kConvergedGap = 90 * kUlp, kMetGap = 112 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
@@ -92,17 +89,17 @@ inline constexpr double kRadiusRounding = 0x1.1p-53;
 // (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
 inline constexpr double kSlender = 0x1p-20;
 
-// A rate of approach beyond this, per unit length, has the sign that exact arithmetic would give
+// A directional derivative beyond this, per unit length, has the sign that exact arithmetic would give
 // with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of their
-// product all but the last sum, which is exact there or as small as the rate, by 2: 7 of 8.
-inline constexpr double kCertainRate = 0x1p-50;
+// product all but the last sum, which is exact there or as small as the derivative, by 2: 7 of 8.
+inline constexpr double kDerivativeError = 0x1p-50;
 
-// Facets that are level along two edges may be tilted by a little more than either.
-inline constexpr double kLevelTilt = 2.0 * kCertainRate;
+// Facets that are parallel along two edges may be tilted by a little more than either.
+inline constexpr double kParallelTilt = 2.0 * kDerivativeError;
 
 // How far off the tilt of an edge or facet against a direction may be: rotating the direction (4),
 // both directions' own rounding (1 each). What their product adds, 2 over the smaller body's size,
-// is left over of the counts above: a point on a level feature takes 12 and 9 of them.
+// is left over of the counts above: a point on a parallel feature takes 12 and 9 of them.
 inline constexpr double kTiltError = 6 * kUlp;
 
 // Edges nearer to parallel than this (the sine's square) have no direction across both that is

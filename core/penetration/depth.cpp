@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/active_set/polar_cone.hpp"
 #include "core/active_set/separating_direction.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/penetration/normal_search.hpp"
@@ -63,34 +62,10 @@ double certified(const DifferenceBody& body, const DepthSearch::Best& best, cons
   return std::min(by_feature, -separation(s, a, b, p) + p.slack);
 }
 
-// Bodies with one line each, which cross: the direction across both, or its opposite, parts them or
-// none does.
-void bound_across_lines(const PolarCone& cone, const ActiveFeature& a, const ActiveFeature& b,
-                        const Precision& p, Depth& out) noexcept {
-  const auto [n, off] = cone.only_direction();
-  if (!(off < kInfinity)) return;
-  double least = kInfinity;
-  for (const Vec3& m : {n, Vec3(-n)}) {
-    const Vec3& on_a = a.body().anchors[support(a.body(), m).anchor];
-    const Vec3& on_b = b.body().anchors[support(b.body(), -b.direction_to_own(m)).anchor];
-    const Vec3 corner = on_a - b.point_to_common(on_b);
-    const double value = m.dot(corner), rounding = off * p.size + p.slack;
-    const PolarCone::Rise rise = cone.rise_of_others({m, off});
-    if (rise == PolarCone::Rise::kRise) continue;
-    least = std::min(least, value - rounding);
-    if (rise == PolarCone::Rise::kUnknown || !(value + rounding < out.upper)) continue;
-    out.value = value;
-    out.upper = value + rounding;
-    out.normal = m;
-  }
-  if (least < kInfinity) out.lower = std::max(out.lower, least);
-}
-
-// Directions between two unbounded bodies that the search does not say: across lines that all but
-// run along each other; and a facet's, where it took another one for the best that doubles cannot
-// tell from it, but along which one of the bodies goes on for ever.
-void try_further_directions(const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
-                            Depth& out) noexcept {
+// Of two unbounded bodies the search may have taken a direction for the best along which one of
+// them is unbounded: then a facet's may still part them.
+void try_facets(const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
+                Depth& out) noexcept {
   const auto attempt = [&](const Separator& s) {
     const double value = -separation(s, a, b, p);
     if (!(value + p.slack < out.upper)) return;
@@ -98,11 +73,6 @@ void try_further_directions(const ActiveFeature& a, const ActiveFeature& b, cons
     out.upper = value + p.slack;
     out.normal = s.normal;
   };
-  const PolarCone cone(a, b);
-  cone.across_near_parallels(attempt);
-  if (p.converged(out.upper - out.lower)) return;
-  bound_across_lines(cone, a, b, p, out);
-  if (p.converged(out.upper - out.lower)) return;
   const auto count = [](const ActiveFeature& s) {
     return static_cast<std::int32_t>(s.body().facets.size());
   };
@@ -155,6 +125,13 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   const Precision start = precision_of_corners(a.body(), b.body(), a_from_b);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
   const DifferenceBody body(a.body(), b.body(), a_from_b);
+  Depth out;
+  // Of two unbounded bodies the search sees Y's anchors: that bounds the depth from below, and all
+  // directions are X's facets' and arcs', where X has no vertices.
+  if (!body.y().bounded() && !body.x().vertices.empty()) {
+    try_facets(a, b, start, out);
+    return out;
+  }
   DepthSearch search(body, kTight * start.size, a_from_b.rotation_error + 0x1p-50);
   if (guess != nullptr) {
     const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
@@ -170,12 +147,10 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   }
   if (!search.ended_early()) search.run();
 
-  Depth out;
   const DepthSearch::Best& best = search.best();
   if (best.source == Source::kNothing) {
     const double rounding = kOnArc * start.size + start.slack;
     if (search.lower() > rounding) out.lower = search.lower() - rounding;
-    if (!body.y().bounded()) try_further_directions(a, b, start, out);
     return out;
   }
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
@@ -191,7 +166,7 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   } else {
     out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
   }
-  if (!body.y().bounded()) try_further_directions(a, b, p, out);
+  if (!body.y().bounded() && !p.converged(out.upper - out.lower)) try_facets(a, b, p, out);
   return out;
 }
 

@@ -7,7 +7,6 @@
 
 #include "core/convex_polyhedron.hpp"
 #include "core/model/support_function.hpp"
-#include "core/model/wide_rotation.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -23,8 +22,8 @@ struct Placement {
 
 class DifferenceBody {
  public:
-  // X is the body whose edges the search follows: the unbounded one of two, the one without facets
-  // (a segment or a point), or else the one with fewer edges.
+  // X is the body whose edges the search follows: the unbounded one, of two such the one without
+  // vertices, the one without facets (a segment or a point), or else the one with fewer edges.
   DifferenceBody(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                  const RelativePose& a_from_b) noexcept
       : x_is_b_(prefers_second(a, b)),
@@ -38,7 +37,6 @@ class DifferenceBody {
   [[nodiscard]] const ConvexPolyhedron& x() const noexcept { return x_; }
   [[nodiscard]] const ConvexPolyhedron& y() const noexcept { return y_; }
   [[nodiscard]] bool x_is_b() const noexcept { return x_is_b_; }
-  [[nodiscard]] const RelativePose& a_from_b() const noexcept { return a_from_b_; }
 
   [[nodiscard]] Vec3 direction_from_y(const Vec3& v) const noexcept { return x_from_y_ * v; }
   [[nodiscard]] Vec3 direction_to_y(const Vec3& v) const noexcept {
@@ -61,12 +59,6 @@ class DifferenceBody {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation.transpose() * n)) : n;
   }
 
-  // The rotation from Y's frame, for two unbounded bodies.
-  [[nodiscard]] WideRotation wide_x_from_y() const noexcept {
-    const WideRotation rotation = wide_rotation(a_from_b_);
-    return x_is_b_ ? rotation.transposed() : rotation;
-  }
-
   // Of Y, farthest against n: an anchor, and where it is.
   [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
     return support(y_, -direction_to_y(n)).anchor;
@@ -86,6 +78,7 @@ class DifferenceBody {
  private:
   static bool prefers_second(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
     if (a.bounded() != b.bounded()) return a.bounded();
+    if (!a.bounded() && a.vertices.empty() != b.vertices.empty()) return b.vertices.empty();
     if (a.facets.empty() != b.facets.empty()) return b.facets.empty();
     return b.edges.size() < a.edges.size();
   }

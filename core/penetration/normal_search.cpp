@@ -15,8 +15,7 @@ constexpr std::size_t kSamples = 1024;
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   const auto rise = [&](const Vec3& way) { return n.dot(way) > margin * way.norm(); };
-  const std::vector<Vec3>& leans = body.opening.leans;
-  return rise(body.opening.inwards) || std::any_of(leans.begin(), leans.end(), rise) ||
+  return rise(body.opening.inwards) ||
          std::any_of(body.rays.begin(), body.rays.end(),
                      [&](const Ray& ray) { return rise(ray.direction); });
 }
@@ -78,24 +77,10 @@ bool DepthSearch::within(const Arc& arc, const Vec2& at) const noexcept {
   return at.y() > 0.0 && at.x() * end.y() > at.y() * end.x();
 }
 
-bool DepthSearch::goes_on_along(bool is_y, const Vec3& n,
-                                const ExactDirection& normal) const noexcept {
-  const ConvexPolyhedron& body = is_y ? body_.y() : body_.x();
-  if (rises(body, n, level_)) return true;
-  if (!lean_) return false;
-  return std::any_of(body.rays.begin(), body.rays.end(), [&](const Ray& ray) {
-    if (n.dot(ray.direction) < -level_ * ray.direction.norm()) return false;
-    return rises_exactly(ray, is_y, normal);
-  });
-}
-
 void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
   const Facet& facet = body_.x().facets[index];
   const Vec3& n = facet.normal;
-  if (!body_.y().bounded() &&
-      goes_on_along(true, -body_.direction_to_y(n), body_.x().exact_normals[index])) {
-    return;
-  }
+  if (!body_.y().bounded() && rises(body_.y(), -body_.direction_to_y(n), certain_)) return;
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
   corners_[slot] = body_.corner(body_.x().point_of(facet), n);
@@ -108,10 +93,7 @@ void DepthSearch::look_at_facet_of_x(std::int32_t index) noexcept {
 void DepthSearch::look_at_facet_of_y(std::int32_t index) noexcept {
   const Facet& facet = body_.y().facets[index];
   const Vec3 n = -body_.direction_from_y(facet.normal);
-  if (lean_ ? goes_on_along(false, n, body_.y().exact_normals[index])
-            : rises(body_.x(), n, certain_)) {
-    return;
-  }
+  if (rises(body_.x(), n, certain_)) return;
   const std::size_t slot = cell(n);
   if (has_corner_[slot] && corners_[slot].dot(n) >= best_.height) return;
   corners_[slot] = body_.corner_on_x(body_.y().point_of(facet), n);
@@ -140,30 +122,6 @@ DepthSearch::Sample DepthSearch::sample(const Arc& arc, const Vec2& at) noexcept
   const Sample found{at, arc.project(corners_[slot])};
   improve(found.height(), n, Source::kArc, kNone);
   return found;
-}
-
-bool DepthSearch::clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept {
-  ArcEnds level_at{};
-  for (const Ray& ray : body_.y().rays) {
-    const Rise over = rise(arc, ray);
-    const double margin = over.error > 0.0 ? level_ : level_ * over.rate.stableNorm();
-    const auto rises_at = [&](const Vec2& at, std::size_t end) {
-      const double rate = over.rate.dot(at);
-      if (rate > margin || rate < -margin) return rate > margin;
-      return rises_exactly(ray, arc, end, level_at[end]);
-    };
-    const bool l_rises = rises_at(l, 0), r_rises = rises_at(r, 1);
-    if (l_rises && r_rises) return false;
-    if (!l_rises && !r_rises) continue;
-    // Of the two directions across the ray, the one on the arc: less than a quarter turn from its
-    // middle. Where it is known no better than to lie anywhere up to the arc's end, nothing is
-    // gone.
-    const Vec2 level = over.level(middle_of(l, r));
-    if (!((l_rises ? turn(l, level) : turn(level, r)) > 0.0)) continue;
-    (l_rises ? l : r) = level;
-    level_at[l_rises ? 0 : 1] = &ray;
-  }
-  return true;
 }
 
 void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last) noexcept {
@@ -203,8 +161,7 @@ void DepthSearch::split(const Arc& arc, const Sample& first, const Sample& last)
 }
 
 // All directions from l to r, less than half a turn.
-void DepthSearch::settle(const Arc& arc, Vec2 l, Vec2 r) noexcept {
-  if (!body_.y().bounded() && !clip(arc, l, r)) return;
+void DepthSearch::settle(const Arc& arc, const Vec2& l, const Vec2& r) noexcept {
   // Both tests are for the whole arc: c.n at least the smaller one of c.l and c.r.
   const auto settled_by = [&](const Vec2& corner) {
     const double bound = std::min(corner.dot(l), corner.dot(r));

@@ -3,10 +3,8 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
-#include "core/model/lean.hpp"
 #include "core/penetration/deepest_points.hpp"
 #include "core/penetration/deepest_vertices.hpp"
 #include "core/penetration/minkowski_difference.hpp"
@@ -29,12 +27,7 @@ class DepthSearch {
       : body_(body),
         tight_(tight),
         level_(0x1p-46 + direction_error),
-        certain_(0x1p-50 + direction_error) {
-    if (!body.y().bounded()) {
-      wide_ = body.wide_x_from_y();
-      if (wide_.says_all()) lean_.emplace(body.a_from_b(), wide_.of_quaternions);
-    }
-  }
+        certain_(0x1p-50 + direction_error) {}
 
   // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
   // all on the arc of `edge_of_x`, unless that is kNone.
@@ -148,44 +141,15 @@ class DepthSearch {
   [[nodiscard]] bool within(const Arc& arc, const Vec2& at) const noexcept;
 
   [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
-  // How a ray of Y rises over an arc: by rate.dot(at), off by at most `error`.
-  struct Rise {
-    Vec2 rate;
-    double error;
-    // The direction where it is level, on this side; pushed out by what that may be off.
-    [[nodiscard]] Vec2 level(const Vec2& side) const noexcept;
-  };
-  [[nodiscard]] Rise rise(const Arc& arc, const Ray& ray) const noexcept;
-  // Which way a ray of Y leans away from one of X, both in X's frame; about unit, or zero.
-  [[nodiscard]] Vec3 part_across(const Ray& of_x, const Ray& of_y) const noexcept;
-  // Does X, or Y, go on for ever along a facet of the other one, which looks along n in its frame?
-  // For certain. Which of them it is must be told: both may be the same object.
-  [[nodiscard]] bool goes_on_along(bool is_y, const Vec3& n,
-                                   const ExactDirection& normal) const noexcept;
-  // A multiple of what a ray falls by along a facet's normal of the other body.
-  [[nodiscard]] LongSum<10> fall(const Ray& ray, bool of_y,
-                                 const ExactDirection& normal) const noexcept;
-  [[nodiscard]] bool rises_exactly(const Ray& ray, bool of_y,
-                                   const ExactDirection& normal) const noexcept;
-  // What is left of an arc ends where these rays of Y are level; null: at its facet's normal.
-  using ArcEnds = std::array<const Ray*, 2>;
-  // At the first or second end, where `level` is.
-  [[nodiscard]] bool rises_exactly(const Ray& ray, const Arc& arc, std::size_t end,
-                                   const Ray* level) const noexcept;
-  // False: nothing is left of it, because Y is unbounded along all of it. X is unbounded as well,
-  // and all of its edges have facets.
-  [[nodiscard]] bool clip(const Arc& arc, Vec2& l, Vec2& r) const noexcept;
-  void settle(const Arc& arc, Vec2 l, Vec2 r) noexcept;
+  void settle(const Arc& arc, const Vec2& l, const Vec2& r) noexcept;
   void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
 
   const DifferenceBody& body_;
   double tight_;
-  // Rays that rise by less, per unit length, may be level; X's, along a facet of Y, by less than
-  // the smaller one: the facet's normal is off by 5 ulps when turned, the ray by 1, their product
-  // by 3.
+  // Rays that rise by less, per unit length, may be level; along a facet of Y, or of Y, by less
+  // than the smaller one: the facet's normal is off by 5 ulps when turned, the ray by 1, their
+  // product by 3.
   double level_, certain_;
-  WideRotation wide_;         // from Y's frame, where both are unbounded
-  std::optional<Lean> lean_;  // there, where the quaternions say more
   Vec3 held_ = Vec3::Zero();  // the direction guessed
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;

@@ -28,20 +28,20 @@ constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 // say.
 bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const TrackingState& state,
                   Separator& out) noexcept {
-  const auto has = [](const TrackingState::Side& side, int dimension, std::size_t count) {
-    return side.dimension == dimension && side.feature >= 0 &&
-           static_cast<std::size_t>(side.feature) < count;
+  const auto has = [](const TrackingState::Side& side, FeatureKind kind, std::size_t count) {
+    return side.kind == kind && side.feature >= 0 && static_cast<std::size_t>(side.feature) < count;
   };
-  if (has(state.a, 2, a.body().facets.size())) {
+  if (has(state.a, FeatureKind::kFacet, a.body().facets.size())) {
     out = {a.body().facets[state.a.feature].normal, state.a.feature, kNone};
     return true;
   }
-  if (has(state.b, 2, b.body().facets.size())) {
+  if (has(state.b, FeatureKind::kFacet, b.body().facets.size())) {
     const Vec3& normal = b.body().facets[state.b.feature].normal;
     out = {-b.direction_to_common(normal).normalized(), kNone, state.b.feature};
     return true;
   }
-  if (!has(state.a, 1, a.body().edges.size()) || !has(state.b, 1, b.body().edges.size())) {
+  if (!has(state.a, FeatureKind::kEdge, a.body().edges.size()) ||
+      !has(state.b, FeatureKind::kEdge, b.body().edges.size())) {
     return false;
   }
   const Edge& e = a.body().edges[state.a.feature];
@@ -88,88 +88,9 @@ double take_points(const RelativePose& a_from_b, const TrackingState& state,
   return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
 }
 
-// An anchor is as far along a direction as another one, and a ray is level, if they rise by no more
-// than this, per unit length.
-constexpr double kLevelTop = 0x1p-40;
-
-// Where the body reaches farthest along m: of the points between anchors and along level rays,
-// about the nearest.
-Vec3 farthest_near(const ConvexPolyhedron& body, const Vec3& m, const Vec3& point) noexcept {
-  const Vec3& top = body.anchors[support(body, m).anchor];
-  Vec3 at = top;
-  const auto step = [&](const Vec3& way, double most) {
-    const double square = way.squaredNorm();
-    if (!(std::abs(m.dot(way)) <= kLevelTop * std::sqrt(square)) || !(square > 0.0)) return;
-    at += std::clamp((point - at).dot(way) / square, 0.0, most) * way;
-  };
-  for (const Vec3& anchor : body.anchors) {
-    if (m.dot(top - anchor) <= kLevelTop * (top - anchor).norm()) step(anchor - at, 1.0);
-  }
-  for (const Ray& ray : body.rays) step(ray.direction, kInfinity);
-  return at;
-}
-
-// Points that are less than this part of the size, or of how far away they are, from where the
-// normal leads, stay where they are: rounding does as much.
+// Points that are less than this part of the size from where the normal leads stay where they are:
+// rounding does as much.
 constexpr double kLevelPoints = 0x1p-47;
-
-double reach_of(const DistanceResult& r) noexcept {
-  return std::max(r.point_on_a.norm(), r.point_on_b.norm());
-}
-double off_normal(const DistanceResult& r) noexcept {
-  return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
-}
-
-// Puts the points to where two rays that are level across the normal meet, one of each body, if
-// that is right to the rounding of what lies there.
-bool meet_along_rays(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, TrackingState& state,
-                     DistanceResult& r) noexcept {
-  const Vec3 n = r.normal, m = -(a_from_b.rotation.transpose() * n);
-  const Vec3& top_a = a.anchors[support(a, n).anchor];
-  const Vec3& top_b = b.anchors[support(b, m).anchor];
-  const Vec3 from = a_from_b.rotation * top_b + a_from_b.translation - r.distance * n;
-  for (const Ray& of_a : a.rays) {
-    const Vec3 e = of_a.direction.normalized();
-    if (!(std::abs(n.dot(e)) <= kLevelTop)) continue;
-    for (const Ray& of_b : b.rays) {
-      const Vec3 own = of_b.direction.normalized(), f = a_from_b.rotation * own;
-      if (!(std::abs(n.dot(f)) <= kLevelTop)) continue;
-      const double s = (from - top_a).cross(f).dot(n) / e.cross(f).dot(n);
-      const double t = (top_a + s * e - from).dot(f);
-      if (!(s >= 0.0 && s < kInfinity && t >= 0.0)) continue;
-      DistanceResult there = r;
-      there.point_on_a = top_a + s * e;
-      const Vec3 own_b = top_b + t * own;
-      there.point_on_b = a_from_b.rotation * own_b + a_from_b.translation;
-      const double reach = reach_of(there);
-      if (!(reach < kInfinity && off_normal(there) <= kLevelPoints * reach)) continue;
-      state.a.point = there.point_on_a;
-      state.b.point = own_b;
-      r = there;
-      return true;
-    }
-  }
-  return false;
-}
-
-// Lines that all but run along each other meet, the bodies being parted, far away, where the walk's
-// points are not; or so far away that no points there can be told: then at least they are as far
-// apart along the normal as they should be.
-void level_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, double size, TrackingState& state,
-                     DistanceResult& r) noexcept {
-  const double rounding = kLevelPoints * std::max(size, reach_of(r));
-  if (off_normal(r) <= rounding || meet_along_rays(a, b, a_from_b, state, r)) return;
-  const Vec3 way = r.distance * r.normal;
-  if (!(std::abs((r.point_on_b - r.point_on_a - way).dot(r.normal)) > rounding)) return;
-  const Mat3 b_from_a = a_from_b.rotation.transpose();
-  const Vec3 near = b_from_a * (r.point_on_a + way - a_from_b.translation);
-  state.b.point = farthest_near(b, -(b_from_a * r.normal), near);
-  r.point_on_b = a_from_b.rotation * state.b.point + a_from_b.translation;
-  state.a.point = farthest_near(a, r.normal, r.point_on_b - way);
-  r.point_on_a = state.a.point;
-}
 
 // From the features of the state, unless that brings the points farther beside each other than
 // `beside`; how far they are then.
@@ -189,7 +110,8 @@ TrackingState at_farthest(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                           const RelativePose& a_from_b, const Vec3& normal) noexcept {
   const std::int32_t of_a = support(a, normal).anchor;
   const std::int32_t of_b = support(b, -(a_from_b.rotation.transpose() * normal)).anchor;
-  return {{0, false, of_a, a.anchors[of_a]}, {0, false, of_b, b.anchors[of_b]}};
+  return {{FeatureKind::kVertex, false, of_a, a.anchors[of_a]},
+          {FeatureKind::kVertex, false, of_b, b.anchors[of_b]}};
 }
 
 // The points that meet when B has been moved clear of A.
@@ -201,7 +123,7 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   RelativePose moved = a_from_b;
   moved.translation += (found.value + farther) * found.normal;
   DistanceResult apart;
-  if (walk_features(a, b, moved, state, apart) != WalkEnd::kLost) {
+  if (walk_features(a, b, moved, state, apart) != WalkEnd::kUndecided) {
     r.iterations = apart.iterations;
   } else {
     r.iterations = settle_apart(a, b, moved, state);
@@ -210,7 +132,6 @@ void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (!(beside > kBeside * size)) return;
   moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
   const double nearer = bring_together(a, b, a_from_b, moved, beside, state, r);
-  if (!a.bounded() && !b.bounded()) return level_witnesses(a, b, a_from_b, size, state, r);
   // Features that are level to more than rounding, and yet at so small a distance not to be told
   // from the right ones, nor left by steps.
   const double along = (r.point_on_b - r.point_on_a).dot(r.normal) - r.distance;
@@ -233,7 +154,7 @@ void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   r.distance = std::clamp(-found.value, r.lower, r.upper);
   r.normal = found.normal;
   place_witnesses(a, b, a_from_b, found, state, r);
-  state.a.deep = true;
+  state.a.penetrating = true;
 }
 
 }  // namespace
@@ -241,8 +162,8 @@ void conclude_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                        const RelativePose& a_from_b, TrackingState& state,
                        DistanceResult& result) noexcept {
-  if (!state.a.deep) return false;
-  state.a.deep = false;
+  if (!state.a.penetrating) return false;
+  state.a.penetrating = false;
   const Depth found = tracked_depth(a, b, a_from_b, state);
   if (!(found.lower > 0.0 && found.value < kInfinity)) return false;
   conclude_overlapping(a, b, a_from_b, found, state, result);

@@ -1,4 +1,5 @@
-// Compiled once a vector width, as far as the walk goes.
+// distance() itself: the relative pose, the walk from the features of the last query, and what that
+// leaves open. The first part is compiled once a vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/query/distance.cpp"
 #include "core/numerics/simd_targets.hpp"
@@ -12,114 +13,103 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-HWY_INLINE DistanceResult rounded_result_of(const Walk& w) {
-  DistanceResult result = result_of(w);
-  add_radii(result, w.a, w.b);
+HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
+  DistanceResult result = result_of(pair);
+  add_radii(result, pair.a, pair.b);
   return result;
 }
 
-// With a pose and a walk of its own, so that those of the others can be kept in registers.
-inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
-                                                   const ConvexPolyhedron& b,
-                                                   const Pose& world_from_a,
-                                                   const Pose& world_from_b, TrackingState& state) {
-  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  Walk w(a, b, a_from_b, state);
-  if (!walk_overlap(w)) {
+// What walk() leaves to others has a relative pose and a pair of its own, so that those of walk()
+// can be kept in registers.
+inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
+                                                    const ConvexPolyhedron& b,
+                                                    const Pose& world_from_a,
+                                                    const Pose& world_from_b,
+                                                    TrackingState& state) {
+  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+  TrackedPair pair(a, b, a_from_b, state);
+  if (!walk_penetration(pair)) {
     return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
   }
-  DistanceResult result = overlap_result_of(w);
+  DistanceResult result = penetration_result_of(pair);
   add_radii(result, a, b);
   return result;
 }
 
-// Of pairs that begin at no feature, or whose first step is not straight-line code.
-HWY_INLINE DistanceResult walked_anyhow(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                        const Pose& world_from_a, const Pose& world_from_b,
-                                        TrackingState& state, WalkStart start) {
-  if (state.a.deep) return tracked_overlap(a, b, world_from_a, world_from_b, state);
-  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  Walk w(a, b, a_from_b, state);
-  w.steps = start.steps;
-  w.levels = start.levels;
-  if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
+// From no features, from parallel ones, or of bodies that penetrated each other. `start`: as of
+// walk().
+template <class... Start>
+HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                           const Pose& world_from_a, const Pose& world_from_b,
+                                           TrackingState& state, Start... start) {
+  if (state.a.penetrating) return walk_penetrating(a, b, world_from_a, world_from_b, state);
+  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+  TrackedPair pair(a, b, a_from_b, state, start...);
+  if (walk(pair) == WalkEnd::kCertified) return rounded_result_of(pair);
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
-// After a first step that has ended so; with a walk of its own, as above.
-inline HWY_NOINLINE DistanceResult walked_on(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                             const Pose& world_from_a, const Pose& world_from_b,
-                                             const RelativeQuads& a_from_b, TrackingState& state,
-                                             WalkStart at, Step first) {
-  Walk w(a, b, a_from_b, state);
-  w.steps = at.steps;
-  w.levels = at.levels;
-  if (first == Step::kMoved && walk_on(w) == WalkEnd::kProved) return rounded_result_of(w);
+// After a first transition that has ended so.
+inline HWY_NOINLINE DistanceResult walk_further(const ConvexPolyhedron& a,
+                                                const ConvexPolyhedron& b, const Pose& world_from_a,
+                                                const Pose& world_from_b,
+                                                const RelativePose4& a_from_b, TrackingState& state,
+                                                WalkStart at, Transition first) {
+  TrackedPair pair(a, b, a_from_b, state, at);
+  if (first == Transition::kMoved && walk_on(pair) == WalkEnd::kCertified) {
+    return rounded_result_of(pair);
+  }
   return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
 }
 
-// A walk's first step where that is straight-line code: nothing here needs the walk in memory, so
-// that what the step finds stays in registers. As a case of step() it costs boxes 3 % more.
-HWY_INLINE Step first_step(Walk& w) {
-  switch (w.on_a.dimension * 3 + w.on_b.dimension) {
-    case 0:
-      return vertex_vertex(w);
-    case 1:
-      return edge_vertex(Owned<true>{w});
-    case 2:
-      return facet_vertex(Owned<true>{w});
-    case 3:
-      return edge_vertex(Owned<false>{w});
-    case 4:
-      return edge_edge<true>(w);
-    default:
-      return facet_vertex(Owned<false>{w});
-  }
+DistanceResult tracked_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                   const Pose& world_from_a, const Pose& world_from_b,
+                                   TrackingState& state) {
+  return walk_from_others(a, b, world_from_a, world_from_b, state);
+}
+inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexPolyhedron& a,
+                                                         const ConvexPolyhedron& b,
+                                                         const Pose& world_from_a,
+                                                         const Pose& world_from_b,
+                                                         TrackingState& state, WalkStart start) {
+  return walk_from_others(a, b, world_from_a, world_from_b, state, start);
 }
 
-HWY_INLINE DistanceResult walked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                          const Pose& world_from_a, const Pose& world_from_b,
-                                          TrackingState& state, WalkStart start) {
-  const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
-  Walk w(a, b, a_from_b, state);
-  w.steps = start.steps + 1;
-  w.levels = start.levels;
-  const Step first = first_step(w);
-  if (HWY_LIKELY(first == Step::kHolds && conclude(w) == WalkEnd::kProved)) {
-    return rounded_result_of(w);
+// Every query by poses: transitions until the features are closest and certified, else the search.
+// `start` is a WalkStart or nothing: one argument more than fits into registers costs a query that
+// begins at the beginning 1 ns. So does a query that begins at no feature if it comes by here:
+// distance() looks at the state first.
+template <class... Start>
+HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                               const Pose& world_from_a, const Pose& world_from_b,
+                               TrackingState& state, Start... start) {
+  if (HWY_UNLIKELY(!is_straight(state) || !can_be_walked(a, b, state))) {
+    if constexpr (sizeof...(start) == 0) {
+      return tracked_from_others(a, b, world_from_a, world_from_b, state);
+    } else {
+      return continued_from_others(a, b, world_from_a, world_from_b, state, start...);
+    }
   }
-  return walked_on(a, b, world_from_a, world_from_b, a_from_b, state, {w.steps, w.levels}, first);
+  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+  TrackedPair pair(a, b, a_from_b, state, start...);
+  ++pair.transitions;
+  const Transition first = transition<Tracking::kFirst>(pair);
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == WalkEnd::kCertified)) {
+    return rounded_result_of(pair);
+  }
+  return walk_further(a, b, world_from_a, world_from_b, a_from_b, state,
+                      {pair.transitions, pair.parallel_transitions}, first);
 }
 
-// Two of each: another argument costs a query that begins at the beginning 1 ns.
-DistanceResult tracked_anyhow(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                              const Pose& world_from_a, const Pose& world_from_b,
-                              TrackingState& state) {
-  return walked_anyhow(a, b, world_from_a, world_from_b, state, {});
-}
-// From features that are straight.
-DistanceResult tracked_straight(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
-  if (HWY_UNLIKELY(!can_be_walked(a, b, state))) {
-    return tracked_anyhow(a, b, world_from_a, world_from_b, state);
-  }
-  return walked_straight(a, b, world_from_a, world_from_b, state, {});
+  return walk(a, b, world_from_a, world_from_b, state);
 }
-inline HWY_NOINLINE DistanceResult departed_anyhow(const ConvexPolyhedron& a,
-                                                   const ConvexPolyhedron& b,
-                                                   const Pose& world_from_a,
-                                                   const Pose& world_from_b, TrackingState& state,
-                                                   WalkStart start) {
-  return walked_anyhow(a, b, world_from_a, world_from_b, state, start);
-}
-DistanceResult departed_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                 const Pose& world_from_a, const Pose& world_from_b,
-                                 TrackingState& state, WalkStart start) {
-  if (!is_straight(state) || !can_be_walked(a, b, state)) {
-    return departed_anyhow(a, b, world_from_a, world_from_b, state, start);
-  }
-  return walked_straight(a, b, world_from_a, world_from_b, state, start);
+DistanceResult continued_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                  const Pose& world_from_a, const Pose& world_from_b,
+                                  TrackingState& state, WalkStart start) {
+  return walk(a, b, world_from_a, world_from_b, state, start);
 }
 
 }  // namespace clearance::HWY_NAMESPACE
@@ -134,9 +124,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace clearance {
 
-HWY_EXPORT(tracked_straight);
-HWY_EXPORT(tracked_anyhow);
-HWY_EXPORT(departed_distance);
+HWY_EXPORT(tracked_distance);
+HWY_EXPORT(tracked_from_others);
+HWY_EXPORT(continued_distance);
 
 namespace {
 
@@ -146,10 +136,10 @@ std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const Co
                                              double far_away) noexcept {
   if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return {};
   const double apart = a_from_b.translation.norm(), size = a.bounding_radius + b.bounding_radius;
-  const double slack = a_from_b.translation_error + 0x1p-50 * (apart + size) + kUnderflow;
+  const double error = a_from_b.translation_error + 0x1p-50 * (apart + size) + kUnderflow;
   DistanceResult r;
-  r.lower = apart - size - slack;
-  r.upper = apart + size + slack;
+  r.lower = apart - size - error;
+  r.upper = apart + size + error;
   r.distance = r.lower;
   r.normal = a_from_b.translation / apart;
   r.point_on_a = a.interior;
@@ -185,9 +175,9 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (!is_a_place(a_from_b)) return nothing_known();
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
-  if (state.a.deep && options.depth) {
-    if (!walk_overlap(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+  if (state.a.penetrating && options.depth) {
+    if (!walk_penetration(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
+  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, options.depth);
   }
   finish(a, b, result);
@@ -200,8 +190,8 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const Pose& world_from_a, const Pose& world_from_b,
                         TrackingState& state) noexcept {
   return is_straight(state)
-             ? HWY_STATIC_DISPATCH(tracked_straight)(a, b, world_from_a, world_from_b, state)
-             : HWY_STATIC_DISPATCH(tracked_anyhow)(a, b, world_from_a, world_from_b, state);
+             ? HWY_STATIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state)
+             : HWY_STATIC_DISPATCH(tracked_from_others)(a, b, world_from_a, world_from_b, state);
 }
 
 #else
@@ -227,14 +217,14 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
-  const auto& queries = is_straight(state) ? HWY_DISPATCH_TABLE(tracked_straight)
-                                           : HWY_DISPATCH_TABLE(tracked_anyhow);
+  const auto& queries = is_straight(state) ? HWY_DISPATCH_TABLE(tracked_distance)
+                                           : HWY_DISPATCH_TABLE(tracked_from_others);
   return queries[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
 
 #endif
 
-TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(departed_distance); }
+TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(continued_distance); }
 
 }  // namespace clearance
 #endif

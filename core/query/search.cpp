@@ -2,31 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
-#include "core/active_set/far_features.hpp"
-#include "core/active_set/polar_cone.hpp"
 #include "core/feature_walk/feature_walk.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/radii.hpp"
-#include "core/model/wide_rotation.hpp"
 #include "core/penetration/penetration.hpp"
 
 namespace clearance {
 namespace {
 
-// What is known so far of the distance between the cores, slack not yet taken.
+// What is known so far of the distance between the polyhedra, the error bound not yet taken off.
 struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
-  double beyond = 0.0;  // what the points' places may cost beyond the slack
+  double beyond = 0.0;  // what the points' places may cost beyond the error bound
   Vec3 normal = Vec3::Zero();
 
-  [[nodiscard]] double certain_upper() const noexcept { return upper + beyond; }
+  [[nodiscard]] double certified_upper() const noexcept { return upper + beyond; }
   void raise(double value, const Vec3& n) noexcept {
     if (value > lower) {
       lower = value;
@@ -35,26 +31,12 @@ struct Bounds {
   }
 };
 
-void prove_from_below(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
-                      const Precision& p) noexcept {
+void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
+                   const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
-    if (bounds.certain_upper() - bounds.lower <= p.tight) return;
+    if (bounds.certified_upper() - bounds.lower <= p.tight) return;
   }
-  if (a.body().bounded() || b.body().bounded()) return;
-  const auto raise = [&](const Separator& s) { bounds.raise(separation(s, a, b, p), s.normal); };
-  const PolarCone cone(a, b);
-  // Doubles know the direction across lines at an angle f to 1/f ulps, and may prefer one to it
-  // along which one of them falls, by what that comes to where they are closest.
-  if (a.feature() == Feature::kEdge && b.feature() == Feature::kEdge) {
-    const auto across = cone.across_lines(a.edge(), b.edge());
-    if (across.off < kInfinity) {
-      raise({across.n});
-      raise({-across.n});
-      if (bounds.certain_upper() - bounds.lower <= p.tight) return;
-    }
-  }
-  cone.across_near_parallels(raise);
 }
 
 DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {
@@ -68,7 +50,7 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
                         const Precision& p) noexcept {
   DistanceResult r;
   r.lower = bounds.lower - p.slack;
-  r.upper = bounds.certain_upper() + p.slack;
+  r.upper = bounds.certified_upper() + p.slack;
   r.distance = bounds.upper;
   r.normal = unit_along(bounds.normal);
   r.point_on_a = a.common();
@@ -77,35 +59,27 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
   return r;
 }
 
-// The distance that the optimal active set proves by itself: what lies behind both features along
-// `n`. Along an active edge the body may reach its whole length farther, as far as rounding tilts
-// n.
-double proved_distance(const Vec3& n, double apart, const ActiveFeature& a, const ActiveFeature& b,
-                       const Precision& p) noexcept {
+// The distance that the optimal active set certifies by itself: both bodies lie behind their
+// features along n. Along an active edge the body may reach its whole length farther, as far as
+// rounding tilts n.
+double certified_distance(const Vec3& n, double apart, const ActiveFeature& a,
+                          const ActiveFeature& b, const Precision& p) noexcept {
   const auto along_edge = [&](const ActiveFeature& s) {
-    return s.feature() == Feature::kEdge ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
-                                         : 0.0;
+    return s.feature() == FeatureKind::kEdge
+               ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
+               : 0.0;
   };
   return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
 }
 
-// Lines that all but run along each other are closest far beyond where Precision looks for the
-// closest points of unbounded bodies: what rounding costs the points there.
+// m: what rounding costs points that lie far beyond where Precision looks for the closest points of
+// unbounded bodies, as those of lines that are nearly parallel.
 double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
                     const Precision& p) noexcept {
   if (a.body().bounded() || b.body().bounded()) return 0.0;
   const double out_a = std::max(0.0, a.own().norm() - p.reach_a);
   const double out_b = std::max(0.0, b.own().norm() - p.reach_b);
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
-}
-
-void bound_far_away(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
-                    const Precision& p) noexcept {
-  if (!(bounds.beyond > 0.0)) return;
-  const FarApart far = far_apart(a, b, p);
-  if (!(far.upper + far.beyond < bounds.certain_upper())) return;
-  bounds.upper = far.upper;
-  bounds.beyond = far.beyond;
 }
 
 DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
@@ -121,26 +95,26 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
   if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
     const double apart = outcome.towards.norm();
     const Vec3 n = outcome.towards / apart;
-    bounds.raise(proved_distance(n, apart, a, b, p), n);
+    bounds.raise(certified_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  bound_far_away(bounds, a, b, p);
-  if (!met && !(bounds.certain_upper() - bounds.lower <= p.tight))
-    prove_from_below(bounds, a, b, p);
+  if (!met && !(bounds.certified_upper() - bounds.lower <= p.tight)) {
+    certify_lower(bounds, a, b, p);
+  }
   DistanceResult result = conclude(a, b, bounds, p);
   result.path = DistancePath::kLoop;
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.certain_upper() - above > p.tight) {
+  if (bounds.certified_upper() - above > p.tight) {
     refine(a, b, a_from_b, p, result);
     result.path = DistancePath::kRobust;
   }
-  // Points far away, whose places cost much, may be nearer than is proved.
+  // Points far away, whose places cost much, may be nearer than is certified.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
   return result;
 }
 
-// From the features of the state on, which it moves on; of the cores, without radii.
+// From the features of the state on, which it moves on; of the polyhedra, without radii.
 DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
@@ -156,36 +130,6 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
     result.status = DistanceStatus::kIterationLimit;
   }
   return result;
-}
-
-// Of bodies that overlap or touch more is rounded than of others, and their bounds may come out
-// wider than a converged answer's: then once more, with less rounding of the pose. Both are bounds.
-void narrow_bounds(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                   const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) noexcept {
-  const double gap = r.upper - r.lower;
-  const bool overlapping = r.status == DistanceStatus::kOverlapping;
-  if (!overlapping && r.status != DistanceStatus::kTouching) return;
-  if (!(gap < kInfinity)) return;
-  const Precision p = precision(a, b, a_from_b, std::abs(r.distance));
-  if (is_as_promised(a, b, p.size, r.upper, gap)) return;
-  const std::optional<RelativePose> nearer = rounded_once(a_from_b);
-  if (!nearer) return;
-  TrackingState again = state;
-  DistanceResult narrower;
-  if (still_overlapping(a, b, *nearer, again, narrower)) {
-    narrower.path = r.path;
-  } else if (overlapping) {
-    return;
-  } else {
-    narrower = searched(a, b, *nearer, again, true);
-  }
-  narrower.iterations += r.iterations;
-  narrower.lower = std::max(narrower.lower, r.lower);
-  narrower.upper = std::min(narrower.upper, r.upper);
-  if (!(narrower.upper - narrower.lower < gap)) return;
-  narrower.distance = std::clamp(narrower.distance, narrower.lower, narrower.upper);
-  r = narrower;
-  state = again;
 }
 
 // Lengths that overflow leave numbers that are none.
@@ -216,7 +160,6 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
   if (!is_a_place(a_from_b)) return nothing_known();
   DistanceResult result = searched(a, b, a_from_b, state, depth);
-  if (depth) narrow_bounds(a, b, a_from_b, state, result);
   finish(a, b, result);
   return result;
 }
@@ -227,8 +170,7 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   DistanceResult result;
   if (still_overlapping(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
-    narrow_bounds(a, b, a_from_b, state, result);
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
+  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);
   }
   finish(a, b, result);

@@ -1,18 +1,14 @@
-// distance() for those who have begun a pair's walk themselves, and ask so often that finding the
-// vectors that the machine has counts: once for many queries.
+// distance() for a batch: it may have taken a pair's first transition itself, and asks so often
+// that finding the machine's vectors counts, which is done once for many queries.
 #pragma once
 
 #include "core/distance_result.hpp"
+#include "core/feature_walk/feature_walk.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 
-// How far a walk is: what core/feature_walk/steps-inl.hpp counts.
-struct WalkStart {
-  int steps = 0, levels = 0;
-};
-
-// From there on, as compiled for these vectors.
+// A query of a pair whose walk has this behind it.
 using TrackedQuery = DistanceResult (*)(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, WalkStart start);

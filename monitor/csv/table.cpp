@@ -1,5 +1,7 @@
 #include "monitor/csv/table.hpp"
 
+#include <fmt/format.h>
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,11 +10,12 @@
 #include <cmath>
 #include <system_error>
 
-#include "monitor/mcap/unreadable.hpp"
+#include "monitor/files/file_error.hpp"
 
 namespace clearance {
 namespace {
 
+// Quotes are stripped, not parsed: no column of ours holds a comma.
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n\"";
   const std::size_t begin = text.find_first_not_of(kBlank);
@@ -44,7 +47,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::strin
       file_(gzopen(file.c_str(), "rb")),
       place_(columns.size()) {
   if (!file_) {
-    error_ = unreadable(file);
+    error_ = cannot_read(file);
     return;
   }
   gzbuffer(static_cast<gzFile>(file_.get()), 1 << 18);
@@ -52,7 +55,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::strin
 }
 
 std::string CsvTable::located(const std::string& what) const {
-  return path_.string() + ":" + std::to_string(line_) + ": " + what;
+  return fmt::format("{}:{}: {}", path_.string(), line_, what);
 }
 
 bool CsvTable::fail(const std::string& what) {
@@ -60,6 +63,7 @@ bool CsvTable::fail(const std::string& what) {
   return false;
 }
 
+// Lines of any length; gzip and plain files alike, since zlib reads both.
 bool CsvTable::read_line(std::string& line) {
   line.clear();
   auto* const file = static_cast<gzFile>(file_.get());
@@ -79,6 +83,7 @@ bool CsvTable::read_line(std::string& line) {
   return true;
 }
 
+// The fields are views into the line, which lives until the next one is read.
 bool CsvTable::split(const std::string& line) {
   fields_.clear();
   std::string_view rest = line;
@@ -91,13 +96,14 @@ bool CsvTable::split(const std::string& line) {
   return fields_.size() > 1 || !fields_.front().empty();  // false: a blank line
 }
 
+// Finds each column's place by its name; a column that is there twice is ambiguous.
 bool CsvTable::read_header() {
-  const std::string expected =
-      "; expected a first line that names " + joined(columns_) + ", each once, in any order";
+  const std::string expected = fmt::format(
+      "; expected a first line that names {}, each once, in any order", joined(columns_));
   if (!read_line(text_)) {
     if (!error_.empty()) return false;
     line_ = 1;
-    return fail("is empty" + expected);
+    return fail(fmt::format("is empty{}", expected));
   }
   if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // byte order mark
   split(text_);
@@ -105,40 +111,42 @@ bool CsvTable::read_header() {
   for (std::size_t column = 0; column < columns_.size(); ++column) {
     const std::string name(columns_[column]);
     const auto found = std::ranges::find(fields_, columns_[column]);
-    if (found == fields_.end()) return fail("no column '" + name + "'" + expected);
+    if (found == fields_.end()) return fail(fmt::format("no column '{}'{}", name, expected));
     if (std::find(found + 1, fields_.end(), columns_[column]) != fields_.end()) {
-      return fail("two columns are named '" + name + "'" + expected);
+      return fail(fmt::format("two columns are named '{}'{}", name, expected));
     }
     place_[column] = static_cast<std::size_t>(found - fields_.begin());
   }
   return true;
 }
 
+// A row with more or fewer fields than the header is refused: its columns may be shifted.
 bool CsvTable::next() {
   if (!error_.empty()) return false;
   do {
     if (!read_line(text_)) return false;
   } while (!split(text_));
   if (fields_.size() == width_) return true;
-  return fail("has " + std::to_string(fields_.size()) + " fields; expected " +
-              std::to_string(width_) + ", as the header names");
+  return fail(
+      fmt::format("has {} fields; expected {}, as the header names", fields_.size(), width_));
 }
 
+// std::from_chars depends on no locale; nan and inf are refused.
 bool CsvTable::number(std::size_t column, double& value) {
   if (parsed(text(column), value) && std::isfinite(value)) return true;
-  return fail(std::string(columns_[column]) + " is '" + std::string(text(column)) +
-              "'; expected a finite number");
+  return fail(fmt::format("{} is '{}'; expected a finite number", columns_[column], text(column)));
 }
 
+// Times must not go back: replays and batches rely on the order of rows.
 bool CsvTable::time_ns(std::size_t column, std::int64_t& value) {
   const std::string name(columns_[column]);
   const std::string found(text(column));
   if (!parsed(text(column), value) || value < 0) {
-    return fail(name + " is '" + found + "'; expected whole nanoseconds, 0 or more");
+    return fail(fmt::format("{} is '{}'; expected whole nanoseconds, 0 or more", name, found));
   }
   if (value < last_t_ns_) {
-    return fail(name + " goes back from " + std::to_string(last_t_ns_) + " to " + found +
-                "; sort the log by " + name);
+    return fail(fmt::format("{} goes back from {} to {}; sort the log by {}", name, last_t_ns_,
+                            found, name));
   }
   last_t_ns_ = value;
   return true;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "monitor/daemon/realtime.hpp"
-#include "monitor/daemon/summary.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "monitor/loop/summary.hpp"
 
 namespace clearance {
 namespace {
@@ -45,6 +45,7 @@ std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOption
 
 }  // namespace
 
+// Members are made in the order of their dependencies: ports before the loop that uses them.
 Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
     : scene_(scene),
       options_(options),
@@ -61,6 +62,8 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
   loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
 }
 
+// The loop ticks in its own thread; this one waits for signals. Afterwards the queues are emptied,
+// so that the last report is published and recorded.
 void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
   spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
@@ -82,6 +85,7 @@ void Daemon::run(StopSignal& signal) {
   spdlog::info("stopped after {} ticks", loop_->statistics().cycle);
 }
 
+// A refusal (no privilege) is logged and the daemon runs without it.
 void Daemon::tick_thread(std::atomic<bool>& done) {
   name_thread("tick");
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(options_.fifo_priority));

@@ -12,11 +12,11 @@
 #include "config/scene.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
-#include "monitor/daemon/report_queue.hpp"
-#include "monitor/daemon/tick_loop.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
+#include "monitor/loop/report_queue.hpp"
+#include "monitor/loop/tick_loop.hpp"
 
 namespace clearance {
 

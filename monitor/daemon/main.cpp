@@ -3,9 +3,13 @@
 #include <cstdio>
 
 #include "monitor/app/log.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/daemon/daemon.hpp"
 #include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
 
 namespace clearance {
 namespace {
@@ -31,22 +35,21 @@ struct Arguments {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
-  app.add_flag("--check", arguments.check,
-               "Only check the cell: print every error in it, or a summary");
+  app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
   arguments.dds.add_to(app);
   app.add_option("--record", arguments.daemon.record_file,
                  "Record inputs and reports to this MCAP file");
   add_force(app, arguments.daemon.record_over);
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
-  app.add_option(
-         "--priority", arguments.daemon.fifo_priority,
-         "Run the tick thread under SCHED_FIFO and lock memory; without: ordinary scheduling")
+  app.add_option("--priority", arguments.daemon.fifo_priority,
+                 "Run the tick thread under SCHED_FIFO with this priority, and lock memory")
       ->check(CLI::Range(1, 99));
   app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
       ->check(whole_number(0, 1023));
-  app.add_option("--workers", arguments.daemon.workers,
-                 "Threads that evaluate pairs, the tick thread included; results are the same bits")
+  app.add_option(
+         "--workers", arguments.daemon.workers,
+         "Threads that evaluate pairs, the tick thread included; results do not depend on it")
       ->check(CLI::Range(1, 64));
   add_log_level(app, arguments.log_level);
   app.footer(kFooter);
@@ -55,7 +58,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
 int check_only(const std::string& cell) {
   const auto scene = scene_or_errors(read_cell(cell));
   if (!scene) return kBadCell;
-  std::printf("%s\n", summary(*scene).c_str());
+  print(stdout, "{}\n", summary(*scene));
   return kOk;
 }
 
@@ -64,7 +67,7 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   route_dds_log();
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
-  std::fputs(daemon.summary().c_str(), stdout);
+  print(stdout, "{}", daemon.summary());
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
@@ -90,10 +93,15 @@ int run(int argc, char** argv, StopSignal& signal) {
   return run_daemon(*scene, arguments, signal);
 }
 
+ExitCode exit_code_of(const std::exception& error) {
+  return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
+}
+
 }  // namespace
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  return clearance::run_program("clearanced",
-                                [=](auto& signal) { return clearance::run(argc, argv, signal); });
+  return clearance::run_program(
+      "clearanced", [=](auto& signal) { return clearance::run(argc, argv, signal); },
+      clearance::exit_code_of);
 }

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "monitor/daemon/health.hpp"
-#include "monitor/daemon/realtime.hpp"
+#include "monitor/dds/health.hpp"
+#include "monitor/loop/realtime.hpp"
 
 namespace clearance {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kMostSlots = 1024, kFewestSlots = 64;
 constexpr std::size_t kQueueBytes = std::size_t{64} << 20;
 
+// As many slots as fit into the memory that a queue may use.
 std::size_t slots(std::size_t bytes_a_slot) {
   return std::clamp(kQueueBytes / std::max<std::size_t>(bytes_a_slot, 1), kFewestSlots, kMostSlots);
 }
@@ -35,7 +36,7 @@ Recording::Recording(const std::filesystem::path& file, bool over, const Scene& 
       poses_(poses),
       queue_(scene, queue_options(scene)),
       recorder_(file, scene, SystemClock().realtime_ns(), over) {
-  if (!recorder_.ok()) throw RecordError("recording: " + recorder_.error());
+  if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   thread_ = std::thread([this] { run(); });
 }
 
@@ -47,6 +48,7 @@ void Recording::finish() {
   thread_.join();
 }
 
+// Empties the queue until it is closed. What a report used is in the queue before the report is.
 void Recording::run() {
   name_thread("record");
   // A file can wait: no priority over the rest of the machine.
@@ -73,6 +75,7 @@ void Recording::run() {
   log_trouble();
 }
 
+// Each new trouble once: at a tick rate the log would be flooded.
 void Recording::log_trouble() {
   if (!recorder_.ok() && !std::exchange(error_logged_, true)) {
     spdlog::error("recording stopped: {}", recorder_.error());

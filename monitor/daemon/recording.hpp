@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/report_queue.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/loop/report_queue.hpp"
 #include "monitor/recording/recorder.hpp"
 
 namespace clearance {

@@ -1,12 +1,17 @@
-// The command-line options by which every program says where on DDS it is.
+// The command line of programs that use DDS: where on DDS they are, and their exit code when it
+// fails.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <string>
 
 #include "config/scene.hpp"
+#include "monitor/app/program.hpp"
 #include "monitor/dds/participant.hpp"
 
 namespace clearance {
@@ -26,18 +31,19 @@ struct DdsArguments {
                             : "DDS partition; otherwise the default one")
         ->check([](const std::string& name) {
           return is_partition(name) ? std::string()
-                                    : "found '" + name +
-                                          "'; expected a partition of at most 255 bytes without "
-                                          "wildcards (* ? [)";
+                                    : fmt::format(
+                                          "found '{}'; expected a partition of at most 255 "
+                                          "bytes without wildcards (* ? [)",
+                                          name);
         });
-    app.add_option("--interface", options.interface,
-                   "Network interface; lo keeps everything on this machine")
+    app.add_option("--interface", options.interface, "Network interface; lo stays on this machine")
         ->capture_default_str();
-    app.add_option("--peer", options.peers, "Address of another machine to look for; repeatable")
+    app.add_option("--peer", options.peers, "Address of another machine; repeatable")
         ->check([](const std::string& peer) {
           return can_be_looked_up(peer)
                      ? std::string()
-                     : "found '" + peer + "'; expected the address or the name of a machine";
+                     : fmt::format("found '{}'; expected the address or the name of a machine",
+                                   peer);
         });
   }
 
@@ -50,11 +56,9 @@ struct DdsArguments {
   }
 };
 
-// "--log-level" with its six values.
-inline void add_log_level(CLI::App& app, std::string& level) {
-  app.add_option("--log-level", level, "trace, debug, info, warn, error or off")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->capture_default_str();
+// The exit code of a program that uses DDS and was ended by this exception.
+[[nodiscard]] inline ExitCode dds_exit_code(const std::exception& error) {
+  return dynamic_cast<const DdsError*>(&error) != nullptr ? kDdsFailed : kFailed;
 }
 
 }  // namespace clearance

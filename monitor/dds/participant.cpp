@@ -1,5 +1,7 @@
 #include "monitor/dds/participant.hpp"
 
+#include <fmt/format.h>
+
 #include <netdb.h>
 
 #include <algorithm>
@@ -34,13 +36,13 @@ Qos partition_qos(const std::string& partition) {
   return qos;
 }
 
+// The same for readers and writers, so that both sides of a topic always match.
 Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
   Qos qos(dds_create_qos());
-  const bool latched = delivery == Delivery::kLatched;
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
-  dds_qset_durability(qos.get(),
-                      latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, latched ? 1 : depth);
+  dds_qset_durability(qos.get(), delivery == Delivery::kLatched ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                                                : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   // A writer that leaves takes nothing back: readers keep what it said.
   dds_qset_writer_data_lifecycle(qos.get(), false);
   return qos;
@@ -50,9 +52,10 @@ Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
 // poses in two. On a real network Cyclone's own sizes fit an Ethernet frame better.
 std::string configuration(const DdsOptions& options) {
   const bool loopback = options.interface == "lo";
-  std::string xml =
-      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"" +
-      options.interface + "\"/></Interfaces>";
+  std::string xml = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface "
+      "name=\"{}\"/></Interfaces>",
+      options.interface);
   xml += loopback ? "<AllowMulticast>false</AllowMulticast>"
                     "<MaxMessageSize>65000B</MaxMessageSize><FragmentSize>64000B</FragmentSize>"
                   : "<AllowMulticast>spdp</AllowMulticast>";
@@ -60,7 +63,7 @@ std::string configuration(const DdsOptions& options) {
       "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
       "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>";
   if (loopback) xml += "<Peer Address=\"127.0.0.1\"/>";
-  for (const std::string& peer : options.peers) xml += "<Peer Address=\"" + peer + "\"/>";
+  for (const std::string& peer : options.peers) xml += fmt::format("<Peer Address=\"{}\"/>", peer);
   xml += "</Peers></Discovery></Domain></CycloneDDS>";
   // What a person sets for all of Cyclone comes last, so it wins.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
@@ -76,7 +79,7 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
   if (auto open = domains[options.domain].lock()) return open;
   const dds_entity_t handle =
       check_dds(dds_create_domain(options.domain, configuration(options).c_str()),
-                "configuring DDS domain " + std::to_string(options.domain));
+                fmt::format("configuring DDS domain {}", options.domain));
   std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
                                              [](const dds_entity_t* entity) {
                                                dds_delete(*entity);
@@ -87,9 +90,10 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
 }
 
 std::string describe(const DdsOptions& options) {
-  return "domain " + std::to_string(options.domain) + ", " +
-         (options.partition.empty() ? "default partition" : "partition " + options.partition) +
-         ", interface " + options.interface;
+  return fmt::format("domain {}, {}, interface {}", options.domain,
+                     options.partition.empty() ? "default partition"
+                                               : fmt::format("partition {}", options.partition),
+                     options.interface);
 }
 
 // "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
@@ -109,21 +113,23 @@ bool can_be_looked_up(const std::string& peer) {
 }
 
 DdsError::DdsError(const std::string& attempted, dds_return_t code)
-    : std::runtime_error("DDS: " + attempted + " failed: " + dds_strretcode(code)) {}
+    : std::runtime_error(fmt::format("DDS: {} failed: {}", attempted, dds_strretcode(code))) {}
 
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
   if (code < 0) throw DdsError(attempted, code);
   return code;
 }
 
+// The partition is that of publisher and subscriber: endpoints of other partitions are never
+// matched.
 Participant::Participant(const DdsOptions& options) : where_(describe(options)) {
   if (options.domain > kMaxDomain) {
-    throw DdsError("joining domain " + std::to_string(options.domain) + " (0 to 232 exist)",
+    throw DdsError(fmt::format("joining domain {} (0 to 232 exist)", options.domain),
                    DDS_RETCODE_BAD_PARAMETER);
   }
   domain_ = open_domain(options);
-  participant_ =
-      check_dds(dds_create_participant(options.domain, nullptr, nullptr), "joining " + where_);
+  participant_ = check_dds(dds_create_participant(options.domain, nullptr, nullptr),
+                           fmt::format("joining {}", where_));
   const Qos qos = partition_qos(options.partition);
   publisher_ =
       check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");
@@ -133,27 +139,29 @@ Participant::Participant(const DdsOptions& options) : where_(describe(options)) 
 
 Participant::~Participant() { dds_delete(participant_); }
 
-dds_entity_t Participant::topic(const dds_topic_descriptor_t& type, const std::string& name) {
+dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const std::string& name) {
   return check_dds(dds_create_topic(participant_, &type, name.c_str(), nullptr, nullptr),
-                   "making topic " + name);
+                   fmt::format("making topic {}", name));
 }
 
-dds_entity_t Participant::reader(const dds_topic_descriptor_t& type, const std::string& name,
-                                 Delivery delivery, std::int32_t depth,
+dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
                                  const dds_listener_t* listener) {
-  const Qos qos = endpoint_qos(delivery, depth);
-  return check_dds(dds_create_reader(subscriber_, topic(type, name), qos.get(), listener),
-                   "making a reader of " + name);
+  const Topic& row = topic(kind);
+  const bool own_depth = depth > 0 && row.delivery == Delivery::kStream;
+  const Qos qos = endpoint_qos(row.delivery, own_depth ? depth : row.reader_depth);
+  return check_dds(dds_create_reader(subscriber_, make_topic(*row.type, name), qos.get(), listener),
+                   fmt::format("making a reader of {}", name));
 }
 
-dds_entity_t Participant::writer(const dds_topic_descriptor_t& type, const std::string& name,
-                                 Delivery delivery, std::int32_t depth,
+dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
                                  const dds_listener_t* listener) {
-  const Qos qos = endpoint_qos(delivery, depth);
-  return check_dds(dds_create_writer(publisher_, topic(type, name), qos.get(), listener),
-                   "making a writer of " + name);
+  const Topic& row = topic(kind);
+  const Qos qos = endpoint_qos(row.delivery, row.writer_depth);
+  return check_dds(dds_create_writer(publisher_, make_topic(*row.type, name), qos.get(), listener),
+                   fmt::format("making a writer of {}", name));
 }
 
+// A guard condition beside the readers' conditions lets another thread end the wait.
 DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_t>& readers)
     : waitset_(check_dds(dds_create_waitset(participant.handle()), "making a waitset")),
       guard_(

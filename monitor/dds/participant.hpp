@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "monitor/wire/topics.hpp"
+
 namespace clearance {
 
 // Says what was attempted, on what, and Cyclone's reason.
@@ -31,13 +33,6 @@ struct DdsOptions {
   std::vector<std::string> peers = {};  // addresses to look for others at; for lo none are needed
 };
 
-// How a topic is delivered. idl/README.md says why.
-enum class Delivery {
-  kStream,   // reliable, volatile: what is sent from now on
-  kLatched,  // reliable, transient-local, keep-last 1: a late joiner gets the last value of each
-             // key
-};
-
 // Owns the domain's configuration, the participant and all endpoints made through it.
 class Participant {
  public:
@@ -46,19 +41,19 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  // `depth`: samples kept an instance (kLatched: always 1). `listener` may be null; it is copied.
-  dds_entity_t reader(const dds_topic_descriptor_t& type, const std::string& topic,
-                      Delivery delivery, std::int32_t depth,
+  // Endpoints of a topic under the name given, with the QoS of the topic table. `depth`: samples of
+  // a key that may wait for a reader that is sometimes late; 0: the table's, as for every latched
+  // topic. `listener` may be null; it is copied.
+  dds_entity_t reader(TopicKind kind, const std::string& name, std::int32_t depth = 0,
                       const dds_listener_t* listener = nullptr);
-  dds_entity_t writer(const dds_topic_descriptor_t& type, const std::string& topic,
-                      Delivery delivery, std::int32_t depth,
+  dds_entity_t writer(TopicKind kind, const std::string& name,
                       const dds_listener_t* listener = nullptr);
   [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
   // "domain 7, partition demo, interface lo"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
 
  private:
-  dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name);
+  dds_entity_t make_topic(const dds_topic_descriptor_t& type, const std::string& name);
 
   std::string where_;
   std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process

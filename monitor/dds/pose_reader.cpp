@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "monitor/daemon/realtime.hpp"
+#include "monitor/loop/realtime.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
 
+// A writer with other QoS is silent for us, which nobody would notice without this line.
 void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void*) {
   if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
   spdlog::warn(
@@ -30,8 +31,7 @@ dds_entity_t make_reader(const Scene& scene, Participant& participant) {
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
   dds_lset_subscription_matched(listener, log_matched);
   const dds_entity_t reader =
-      participant.reader(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
-                         Delivery::kStream, PoseReader::kDepth, listener);
+      participant.reader(TopicKind::kPoses, scene.topics.poses, PoseReader::kDepth, listener);
   dds_delete_listener(listener);
   return reader;
 }
@@ -62,6 +62,8 @@ PoseReader::~PoseReader() {
   thread_.join();
 }
 
+// The slot lent by the last call is given back by this one. No lock: the ring has one filler and
+// one emptier.
 const PoseBatch* PoseReader::next() noexcept {
   if (lent_) ring_.pop();
   const PoseBatch* batch = ring_.front();
@@ -79,6 +81,7 @@ std::vector<RefusedSource> PoseReader::refused_sources() const {
   return refused_;
 }
 
+// Waits for data or for the destructor.
 void PoseReader::run() {
   name_thread("poses");
   while (!stop_) {
@@ -86,6 +89,7 @@ void PoseReader::run() {
   }
 }
 
+// Takes until nothing is left, into samples that are reused: no allocation for batches that fit.
 void PoseReader::take_all() {
   std::array<void*, kDepth> pointers;
   std::array<dds_sample_info_t, kDepth> infos;
@@ -100,6 +104,7 @@ void PoseReader::take_all() {
   }
 }
 
+// Null: one source too many.
 SourceTally* PoseReader::tally_of(const SourceName& source) {
   const auto found = std::find_if(tallies_.begin(), tallies_.end(),
                                   [&](const SourceTally& tally) { return tally.source == source; });
@@ -109,6 +114,7 @@ SourceTally* PoseReader::tally_of(const SourceName& source) {
   return &tallies_.emplace_back(SourceTally{.source = source});
 }
 
+// The first sources beyond the limit are named, all others counted together.
 void PoseReader::refuse(const SourceName& source, std::uint64_t poses) {
   auto entry = std::ranges::find(refused_, source, &RefusedSource::source);
   if (entry == refused_.end()) {
@@ -123,6 +129,7 @@ void PoseReader::refuse(const SourceName& source, std::uint64_t poses) {
   entry->poses += poses;
 }
 
+// Counts what is missing, converts into a free slot, and hands it to the tick thread.
 void PoseReader::hand_over(clearance_msg_PoseBatch& batch) {
   const std::lock_guard lock(tallies_mutex_);
   SourceTally* tally = tally_of(SourceName(batch.source));

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/ports.hpp"
-#include "monitor/daemon/spsc_ring.hpp"
 #include "monitor/dds/participant.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -41,8 +41,8 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] static std::size_t samples_a_batch(const Scene& scene) noexcept;
   // Batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
-  // Samples kept an unread source: what may arrive while the taking thread is held up.
-  static constexpr std::int32_t kDepth = 16;
+  // Samples of a source that may arrive while the taking thread is held up.
+  static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
   PoseReader(const Scene& scene, Participant& participant);
   ~PoseReader() override;

@@ -1,18 +1,17 @@
 #include "monitor/dds/report_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <spdlog/spdlog.h>
 
 #include <string>
 
-#include "monitor/daemon/realtime.hpp"
+#include "monitor/loop/realtime.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
-
-// What a client that is held up for a moment can still be sent again.
-constexpr std::int32_t kDistancesDepth = 64;
 
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
                       void*) {
@@ -28,22 +27,21 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
 
 // "entered at cycle 12: hand - box, 0.043 m clear, 0.041 m since the tick before".
 std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
-  const std::string at_cycle = "at cycle " + std::to_string(cycle);
-  if (!zone.active) return "left " + at_cycle;
-  const std::string pair = "entered " + at_cycle + ": " + pair_name(scene, zone.pair);
-  if (zone.clearance == -kInfinity) return pair + " unknown: no pose of one of them, or too old";
-  if (zone.swept_clearance == -kInfinity) return pair + ", which may have been anywhere: one leapt";
+  const std::string at_cycle = fmt::format("at cycle {}", cycle);
+  if (!zone.active) return fmt::format("left {}", at_cycle);
+  const std::string pair = fmt::format("entered {}: {}", at_cycle, pair_name(scene, zone.pair));
+  if (zone.clearance == -kInfinity)
+    return fmt::format("{} unknown: no pose of one of them, or too old", pair);
+  if (zone.swept_clearance == -kInfinity)
+    return fmt::format("{}, unknown since the last tick: the pose of one is discontinuous", pair);
   return fmt::format("{}, {:.3f} m clear, {:.3f} m since the tick before", pair, zone.clearance,
                      zone.swept_clearance);
 }
 
-template <class T>
-dds_entity_t make_writer(Participant& participant, const std::string& topic, Delivery delivery,
-                         std::int32_t depth = 1) {
+dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind kind) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_offered_incompatible_qos(listener, log_incompatible);
-  const dds_entity_t writer =
-      participant.writer(topic_descriptor<T>(), topic, delivery, depth, listener);
+  const dds_entity_t writer = participant.writer(kind, scene.topics.*topic(kind).name, listener);
   dds_delete_listener(listener);
   return writer;
 }
@@ -55,17 +53,12 @@ ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQ
     : scene_(scene),
       queue_(queue),
       poses_(poses),
-      distances_(make_writer<clearance_msg_Distances>(participant, scene.topics.distances,
-                                                      Delivery::kStream, kDistancesDepth)),
-      catalogue_(make_writer<clearance_msg_Catalogue>(participant, scene.topics.catalogue,
-                                                      Delivery::kLatched)),
-      zones_(make_writer<clearance_msg_ZoneState>(participant, scene.topics.zones,
-                                                  Delivery::kLatched)),
-      health_(
-          make_writer<clearance_msg_Health>(participant, scene.topics.health, Delivery::kLatched)),
+      distances_(make_writer(participant, scene, TopicKind::kDistances)),
+      catalogue_(make_writer(participant, scene, TopicKind::kCatalogue)),
+      zones_(make_writer(participant, scene, TopicKind::kZones)),
+      health_(make_writer(participant, scene, TopicKind::kHealth)),
       distances_sample_(make_distances(scene)),
-      zone_written_(scene.zones.size()),
-      zone_active_(scene.zones.size()),
+      written_zones_(scene.zones.size()),
       health_log_(scene) {
   const auto catalogue = make_catalogue(scene);
   check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
@@ -74,6 +67,7 @@ ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQ
 
 ReportWriter::~ReportWriter() { finish(); }
 
+// Safe to call twice: the destructor calls it as well.
 void ReportWriter::finish() {
   if (!thread_.joinable()) return;
   queue_.close();
@@ -87,6 +81,7 @@ std::uint32_t ReportWriter::distance_readers() const {
              : 0;
 }
 
+// Reports in order, then statistics; ends when the queue is closed and empty.
 void ReportWriter::run() {
   name_thread("reports");
   for (bool closed = false; !closed;) {
@@ -103,27 +98,26 @@ void ReportWriter::run() {
   }
 }
 
+// The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
   to_wire(queued.report, queued.sources(), dds_time(), *distances_sample_);
   write(distances_, &*distances_sample_, "distances");
   write_zones(queued.report);
 }
 
-// Compared with what was written last, not with Report's own `changed`: a change must come through
-// even when the report in which it happened was dropped.
+// A zone is written at the start, and whenever it changes from what was written last.
 void ReportWriter::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    if (zone_written_[zone] && zone_active_[zone] == active) continue;
+    if (written_zones_.is(zone, active)) continue;
     clearance_msg_ZoneState state{};
     to_wire(scene_, report, zone, state);
     write(zones_, &state, "zone state");
-    if (zone_written_[zone] || active) {
+    if (written_zones_.any(zone) || active) {
       spdlog::info("zone '{}' {}", scene_.zones[zone].name,
                    change_of_zone(scene_, report.zones[zone], report.cycle));
     }
-    zone_written_[zone] = true;
-    zone_active_[zone] = active;
+    written_zones_.set(zone, active);
   }
 }
 

@@ -4,14 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <thread>
-#include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/daemon/health.hpp"
-#include "monitor/daemon/report_queue.hpp"
+#include "monitor/dds/health.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/loop/report_queue.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
 
@@ -41,7 +41,7 @@ class ReportWriter {
   const PoseReader& poses_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   Sample<clearance_msg_Distances> distances_sample_;
-  std::vector<bool> zone_written_, zone_active_;  // as last written
+  WrittenZones written_zones_;
   HealthLog health_log_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::thread thread_;

@@ -172,6 +172,24 @@ class McapFields {
     ok_ = ok_ && entries.ok();
     return map;
   }
+  // What follows the id of a schema.
+  [[nodiscard]] McapSchema get_schema() {
+    McapSchema schema;
+    schema.name = get_text();
+    schema.encoding = get_text();
+    schema.text = get_text();
+    return schema;
+  }
+  // What follows the id of a channel; without its schema, of which the record has the id only.
+  [[nodiscard]] McapChannel get_channel(std::uint16_t id) {
+    McapChannel channel;
+    channel.id = id;
+    channel.schema_id = get<std::uint16_t>();
+    channel.topic = get_text();
+    channel.encoding = get_text();
+    channel.metadata = get_map();
+    return channel;
+  }
   // A map from channel ids to numbers.
   [[nodiscard]] std::map<std::uint16_t, std::uint64_t> get_channel_map() {
     McapFields entries(get_raw(get<std::uint32_t>()));

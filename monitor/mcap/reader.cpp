@@ -1,18 +1,16 @@
 #include "monitor/mcap/reader.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cstdio>
+#include <fmt/format.h>
 
-#include "monitor/mcap/unreadable.hpp"
+#include <algorithm>
+
+#include "monitor/files/file_error.hpp"
 
 namespace clearance {
 namespace {
 
 std::string seconds(std::uint64_t ns) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.3f s", static_cast<double>(ns) * 1e-9);
-  return text.data();
+  return fmt::format("{:.3f} s", static_cast<double>(ns) * 1e-9);
 }
 
 }  // namespace
@@ -43,16 +41,17 @@ bool McapReader::read_magic() {
   done_ = true;
   readable_ = false;
   if (!file_.open()) {
-    error_ = unreadable(path_);
+    error_ = cannot_read(path_);
     return false;
   }
   if (file_.size() == 0) {
-    error_ =
-        path_.string() + " is empty: nothing was recorded, or the recorder was stopped at once";
+    error_ = fmt::format("{} is empty: nothing was recorded, or the recorder was stopped at once",
+                         path_.string());
     return false;
   }
   if (!file_.read(0, magic) || !std::ranges::equal(magic, std::as_bytes(std::span(kMcapMagic)))) {
-    error_ = path_.string() + " is not an MCAP file: it does not begin with the MCAP magic bytes";
+    error_ = fmt::format("{} is not an MCAP file: it does not begin with the MCAP magic bytes",
+                         path_.string());
     return false;
   }
   done_ = false;
@@ -66,13 +65,15 @@ double McapReader::progress() const noexcept {
   return file_.size() == 0 ? 1.0 : static_cast<double>(offset_) / static_cast<double>(file_.size());
 }
 
+// Ends the reading: what follows a damage cannot be trusted. The message says where it is and how
+// much was read before, which is what a person can still use.
 void McapReader::damage(std::uint64_t offset, const std::string& what) {
   done_ = true;
   chunk_ = {};
-  error_ = path_.string() + " is damaged at byte " + std::to_string(offset) + " of " +
-           std::to_string(file_.size()) + ": " + what + ". Before that, " +
-           std::to_string(messages_) + " messages were read";
-  if (messages_ > 0) error_ += ", the last " + seconds(last_ns_ - first_ns_) + " after the first";
+  error_ = fmt::format("{} is damaged at byte {} of {}: {}. Before that, {} messages were read",
+                       path_.string(), offset, file_.size(), what, messages_);
+  if (messages_ > 0)
+    error_ += fmt::format(", the last {} after the first", seconds(last_ns_ - first_ns_));
 }
 
 void McapReader::cut_off(std::uint64_t offset) {
@@ -80,6 +81,7 @@ void McapReader::cut_off(std::uint64_t offset) {
          "the file is cut off here (the recorder was stopped hard, or the copy is incomplete)");
 }
 
+// Goes on until a message of the window is found.
 bool McapReader::next(McapMessage& message) {
   bool found = false;
   while (!found && !done_) {
@@ -155,11 +157,13 @@ void McapReader::refuse_compression(const std::string& compression) {
   done_ = true;
   readable_ = false;
   chunk_cut_off_ = false;
-  error_ = path_.string() + " has compressed chunks (" + compression +
-           "), which Clearance does not read. Rewrite it with the command-line tool of mcap.dev: "
-           "mcap decompress IN.mcap -o OUT.mcap";
+  error_ = fmt::format(
+      "{} has compressed chunks ({}), which Clearance does not read. Rewrite it with the "
+      "command-line tool of mcap.dev: mcap decompress IN.mcap -o OUT.mcap",
+      path_.string(), compression);
 }
 
+// One record of the open chunk.
 void McapReader::take_from_chunk(McapMessage& message, bool& found) {
   McapFields fields(chunk_);
   const auto kind = static_cast<McapKind>(fields.get<std::uint8_t>());
@@ -188,15 +192,10 @@ bool McapReader::take_definition(McapKind kind, std::span<const std::byte> body)
   }
   const auto id = fields.get<std::uint16_t>();
   if (kind == McapKind::kSchema) {
-    McapSchema schema{fields.get_text(), fields.get_text(), fields.get_text()};
+    const McapSchema schema = fields.get_schema();
     return fields.ok() && id != 0 && schemas_.try_emplace(id, schema).first->second == schema;
   }
-  McapChannel channel;
-  channel.id = id;
-  channel.schema_id = fields.get<std::uint16_t>();
-  channel.topic = fields.get_text();
-  channel.encoding = fields.get_text();
-  channel.metadata = fields.get_map();
+  McapChannel channel = fields.get_channel(id);
   if (!fields.ok()) return false;
   if (indexed_) return channels_.contains(id);  // known from the summary, schema and all
   if (channel.schema_id != 0) {
@@ -207,6 +206,7 @@ bool McapReader::take_definition(McapKind kind, std::span<const std::byte> body)
   return channels_.try_emplace(id, channel).first->second == channel;
 }
 
+// A message outside the window is sound, but not handed out.
 bool McapReader::take_message(std::span<const std::byte> body, McapMessage& message, bool& found) {
   McapFields fields(body);
   const auto channel = channels_.find(fields.get<std::uint16_t>());

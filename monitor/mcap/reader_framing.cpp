@@ -1,4 +1,6 @@
 // Where records begin and end, and the checksums over them.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -11,6 +13,8 @@ constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 30;  // 1 GiB, in m
 
 }  // namespace
 
+// Reads the header of the next record. A file that ends between records, without its closing magic,
+// was cut off.
 bool McapReader::next_record(Record& record) {
   if (offset_ == file_.size()) {
     cut_off(offset_);
@@ -35,6 +39,7 @@ bool McapReader::next_record(Record& record) {
   return true;
 }
 
+// The next chunk that overlaps the window, where the index says that it is.
 bool McapReader::next_indexed_chunk(Record& record) {
   const std::vector<McapChunkIndex>& chunks = summary_->chunks;
   while (next_chunk_ < chunks.size() && (chunks[next_chunk_].end_ns < window_.start_ns ||
@@ -54,14 +59,15 @@ bool McapReader::next_indexed_chunk(Record& record) {
   return false;
 }
 
+// No length is trusted beyond the file's size, nor beyond what fits into memory.
 bool McapReader::read_body(const Record& record) {
   if (record.length > file_.size() - offset_) {
     cut_off(record.offset);
     return false;
   }
   if (record.length > kLargestRecord) {
-    damage(record.offset, "a record of " + std::to_string(record.length) +
-                              " bytes is more than this reader takes (1 GiB)");
+    damage(record.offset, fmt::format("a record of {} bytes is more than this reader takes (1 GiB)",
+                                      record.length));
     return false;
   }
   body_.resize(static_cast<std::size_t>(record.length));
@@ -89,6 +95,7 @@ void McapReader::pass_over(const Record& record) {
   }
 }
 
+// A checksum of 0 stands for none.
 void McapReader::end_data(const Record& record) {
   if (!read_body(record)) return;
   McapFields fields(body_);
@@ -102,6 +109,7 @@ void McapReader::end_data(const Record& record) {
   crc_ = 0;  // the summary has one of its own, in the footer
 }
 
+// The footer, the closing magic, and nothing behind it.
 void McapReader::end_file(const Record& record) {
   if (!data_ended_)
     return damage(record.offset, "the closing record stands before the end of the data");

@@ -14,6 +14,7 @@ struct Footer {
   std::uint32_t crc = 0;
 };
 
+// The last record of a closed file has a fixed length, so it is found from the end.
 std::optional<Footer> read_footer(McapFile& file) {
   constexpr std::uint64_t kTail = kMcapRecordHeader + kMcapFooterBody + kMcapMagic.size();
   if (file.size() < kTail + kMcapMagic.size()) return std::nullopt;
@@ -35,6 +36,7 @@ std::optional<Footer> read_footer(McapFile& file) {
   return footer;
 }
 
+// In the order of the format's specification; what we do not use is passed over.
 McapStatistics read_statistics(McapFields& fields) {
   McapStatistics statistics;
   statistics.messages = fields.get<std::uint64_t>();
@@ -78,26 +80,19 @@ bool read_metadata(McapFile& file, McapFields& index, McapSummary& summary) {
   return fields.ok();
 }
 
+// One record of the summary section. Kinds that are not known are skipped, as the format demands.
 bool read_record(McapFile& file, McapKind kind, McapFields& fields,
                  std::map<std::uint16_t, McapSchema>& schemas, McapSummary& summary) {
   switch (kind) {
     case McapKind::kSchema: {
       const auto id = fields.get<std::uint16_t>();
-      McapSchema& schema = schemas[id];
-      schema.name = fields.get_text();
-      schema.encoding = fields.get_text();
-      schema.text = fields.get_text();
+      schemas[id] = fields.get_schema();
       return fields.ok();
     }
     case McapKind::kChannel: {
       const auto id = fields.get<std::uint16_t>();
-      McapChannel& channel = summary.channels[id];
-      channel.id = id;
-      channel.schema_id = fields.get<std::uint16_t>();
+      McapChannel& channel = summary.channels[id] = fields.get_channel(id);
       channel.schema = schemas[channel.schema_id];
-      channel.topic = fields.get_text();
-      channel.encoding = fields.get_text();
-      channel.metadata = fields.get_map();
       return fields.ok();
     }
     case McapKind::kStatistics:
@@ -115,6 +110,7 @@ bool read_record(McapFile& file, McapKind kind, McapFields& fields,
 
 }  // namespace
 
+// Nothing is taken from a summary whose checksum or content is wrong: the reader then streams.
 std::optional<McapSummary> read_mcap_summary(McapFile& file) {
   const std::optional<Footer> footer = read_footer(file);
   if (!footer) return std::nullopt;

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <system_error>
+
+#include "monitor/files/file_error.hpp"
 
 namespace clearance {
 namespace {
@@ -29,6 +30,7 @@ void put_channel(McapBytes& out, const McapChannel& channel) {
   out.end_record(record);
 }
 
+// Pairs of channel id and number, prefixed by their length in bytes.
 void put_channel_map(McapBytes& out, const std::map<std::uint16_t, std::uint64_t>& map) {
   const std::size_t length = out.begin_length<std::uint32_t>();
   for (const auto& [channel, value] : map) {
@@ -75,7 +77,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOption
   const int existing = options.overwrite ? O_TRUNC : O_EXCL;
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644);
   if (descriptor_ < 0) {
-    fail("cannot create");
+    fail(cannot_create(file_));
     return;
   }
   put_out(std::as_bytes(std::span(kMcapMagic)));
@@ -90,16 +92,17 @@ McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOption
 McapWriter::~McapWriter() { close(); }
 
 void McapWriter::fail(const std::string& what) {
-  if (!error_.empty()) return;
-  error_ = what + " " + file_.string() + ": " + std::system_category().message(errno);
+  if (error_.empty()) error_ = what;
 }
 
+// Everything that reaches the file passes here, so that the checksum of the data section covers it.
+// After an error nothing more is written.
 void McapWriter::put_out(std::span<const std::byte> bytes) {
   crc_ = mcap_crc(crc_, bytes);
   while (ok() && !bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0) {
-      if (errno != EINTR) fail("cannot write to");
+      if (errno != EINTR) fail(cannot_write(file_));
       continue;
     }
     offset_ += static_cast<std::uint64_t>(written);
@@ -107,6 +110,8 @@ void McapWriter::put_out(std::span<const std::byte> bytes) {
   }
 }
 
+// Definitions stand in the chunk in front of the messages that use them, and again in the summary:
+// a file that was cut off before its end can still be read.
 std::uint16_t McapWriter::add_channel(const McapSchema& schema, std::string_view topic,
                                       std::string_view encoding, const McapMap& metadata) {
   auto known = std::find(schemas_.begin(), schemas_.end(), schema);
@@ -122,6 +127,7 @@ std::uint16_t McapWriter::add_channel(const McapSchema& schema, std::string_view
   return id;
 }
 
+// A chunk is closed when it is large, or when it holds as much time as a crash may cost.
 void McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                        std::span<const std::byte> payload) {
   if (!ok()) return;
@@ -148,6 +154,7 @@ void McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::uint6
   }
 }
 
+// Outside chunks, at once: a reader needs it before the first message.
 void McapWriter::metadata(std::string_view name, const McapMap& values) {
   out_.clear();
   const std::size_t record = out_.begin_record(McapKind::kMetadata);
@@ -159,6 +166,7 @@ void McapWriter::metadata(std::string_view name, const McapMap& values) {
   put_out(out_.view());
 }
 
+// Writes the open chunk with the indexes of its messages.
 void McapWriter::flush() {
   if (!ok() || chunk_.size() == 0) return;
   out_.clear();
@@ -186,6 +194,7 @@ void McapWriter::flush() {
   chunk_messages_ = chunk_start_ns_ = chunk_end_ns_ = 0;
 }
 
+// By channel and in order of log time, which is not always the order of writing.
 void McapWriter::write_message_indexes(McapChunkIndex& index) {
   const std::size_t begin = out_.size();
   for (const McapChannel& channel : channels_) {
@@ -259,6 +268,8 @@ void McapWriter::write_summary() {
   put_out(std::as_bytes(std::span(&crc, 1)));
 }
 
+// The end of the data with its checksum, then the summary, which lets readers find a window of
+// time.
 bool McapWriter::close() {
   if (descriptor_ < 0) return ok();
   flush();
@@ -270,7 +281,7 @@ bool McapWriter::close() {
   put_out(out_.view());
   write_summary();
   put_out(std::as_bytes(std::span(kMcapMagic)));
-  if (::close(descriptor_) != 0) fail("cannot close");
+  if (::close(descriptor_) != 0) fail(cannot_write(file_));
   descriptor_ = -1;
   return ok();
 }

@@ -6,6 +6,7 @@
 namespace clearance {
 namespace {
 
+// Channels are recognised by type, not by topic name, which a cell may choose.
 std::optional<TopicKind> kind_of(const McapChannel& channel) {
   if (channel.encoding != kCdrEncoding) return std::nullopt;
   return topic_kind(channel.schema.name);
@@ -28,6 +29,7 @@ std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKi
 RecordingReader::RecordingReader(const std::filesystem::path& file, const McapWindow& window)
     : mcap_(file, window) {}
 
+// Each channel's kind is looked up once.
 bool RecordingReader::next(RecordedMessage& message) {
   McapMessage raw;
   while (mcap_.next(raw)) {
@@ -48,6 +50,8 @@ std::string RecordingReader::build() const {
   return build == about->second.end() ? std::string() : build->second;
 }
 
+// A file with a summary tells at once whether it has reports; without one, every message may be
+// needed.
 RecordingOutline outline(const std::filesystem::path& file) {
   RecordingOutline found;
   RecordingReader reader(file);

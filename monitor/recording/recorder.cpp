@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/recording/build.hpp"
+#include "monitor/build_info/build_info.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -19,18 +19,19 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
 
 }  // namespace
 
+// The catalogue comes first: it names the ids that every message after it uses.
 Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
                    bool overwrite)
     : scene_(scene),
       writer_(file, scene.topics, {.overwrite = overwrite}),
       batch_(make_batch(clearance_msg_kMaxPoses)),
       distances_(make_distances(scene)),
-      zone_written_(scene.zones.size(), false),
-      zone_active_(scene.zones.size(), false),
+      zones_(scene.zones.size()),
       last_ns_(now_ns) {
   writer_.catalogue(*make_catalogue(scene), now_ns, kBuild);
 }
 
+// Encoded now, written with the report that names it: only then is it known that a tick used it.
 void Recorder::poses(const PoseBatch& batch) {
   to_wire(batch, *batch_);
   const std::span<const std::byte> cdr = encoder_.encode(*batch_);
@@ -38,6 +39,7 @@ void Recorder::poses(const PoseBatch& batch) {
                       std::vector<std::byte>(cdr.begin(), cdr.end())});
 }
 
+// Inputs stand in front of the report that they led to, in the order of use.
 void Recorder::report(const Report& report, std::span<const SourceUse> sources) {
   last_ns_ = report.now_ns;
   write_used(sources, report.now_ns);
@@ -69,15 +71,15 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
 void Recorder::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < scene_.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    if (zone_written_[zone] && zone_active_[zone] == active) continue;
-    zone_written_[zone] = true;
-    zone_active_[zone] = active;
+    if (zones_.is(zone, active)) continue;
+    zones_.set(zone, active);
     clearance_msg_ZoneState state{};
     to_wire(scene_, report, zone, state);
     writer_.write(TopicKind::kZones, report.now_ns, report.now_ns, state);
   }
 }
 
+// Stamped no earlier than the last report, so that log times do not go back.
 void Recorder::health(const clearance_msg_Health& health) {
   writer_.write(TopicKind::kHealth, std::max(last_ns_, health.now_ns), health.now_ns, health);
 }

@@ -11,6 +11,7 @@
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/report.hpp"
+#include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
 
@@ -56,7 +57,7 @@ class Recorder {
   Sample<clearance_msg_PoseBatch> batch_;
   Sample<clearance_msg_Distances> distances_;
   CdrEncoder encoder_;
-  std::vector<bool> zone_written_, zone_active_;
+  WrittenZones zones_;
   std::int64_t last_ns_;
 };
 

@@ -1,6 +1,9 @@
 #include "monitor/recording/topic_schema.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <set>
 #include <utility>
@@ -11,6 +14,7 @@ namespace {
 
 constexpr std::string_view kScope = "clearance::msg::";
 
+// Comments would be found by the search for names.
 std::string without_comments(std::string_view idl) {
   std::string text;
   for (std::size_t i = 0; i < idl.size(); ++i) {
@@ -20,6 +24,7 @@ std::string without_comments(std::string_view idl) {
   return text;
 }
 
+// Identifiers in a definition: the names of everything that it may use, and more.
 std::set<std::string> words(std::string_view text) {
   std::set<std::string> found;
   std::string word;
@@ -72,6 +77,7 @@ std::vector<Definition> definitions(const std::string& text) {
 
 }  // namespace
 
+// Readers of MCAP parse the schema alone, so it holds every type that the topic's type needs.
 std::string self_contained_idl(std::string_view idl, std::string_view type) {
   const std::vector<Definition> all = definitions(without_comments(idl));
   std::set<std::string> needed = {std::string(type)};
@@ -85,62 +91,29 @@ std::string self_contained_idl(std::string_view idl, std::string_view type) {
   if (kept.empty()) return {};
   std::string text = "module clearance {\nmodule msg {\n";
   for (auto definition = kept.rbegin(); definition != kept.rend(); ++definition) {
-    text += *definition + "\n";
+    text += fmt::format("{}\n", *definition);
   }
-  return text + "};\n};\n";
-}
-
-const dds_topic_descriptor_t& descriptor(TopicKind kind) noexcept {
-  switch (kind) {
-    case TopicKind::kCatalogue:
-      return clearance_msg_Catalogue_desc;
-    case TopicKind::kPoses:
-      return clearance_msg_PoseBatch_desc;
-    case TopicKind::kDistances:
-      return clearance_msg_Distances_desc;
-    case TopicKind::kZones:
-      return clearance_msg_ZoneState_desc;
-    case TopicKind::kHealth:
-      return clearance_msg_Health_desc;
-  }
-  __builtin_unreachable();
-}
-
-const std::string& topic_name(const Topics& topics, TopicKind kind) noexcept {
-  switch (kind) {
-    case TopicKind::kCatalogue:
-      return topics.catalogue;
-    case TopicKind::kPoses:
-      return topics.poses;
-    case TopicKind::kDistances:
-      return topics.distances;
-    case TopicKind::kZones:
-      return topics.zones;
-    case TopicKind::kHealth:
-      return topics.health;
-  }
-  __builtin_unreachable();
+  return fmt::format("{}}};\n}};\n", text);
 }
 
 std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
-  for (const TopicKind kind : kTopicKinds) {
-    if (type_name == descriptor(kind).m_typename) return kind;
+  for (const Topic& topic : kTopics) {
+    if (type_name == topic.type->m_typename) return topic.kind;
   }
   return std::nullopt;
 }
 
 const McapSchema& topic_schema(TopicKind kind) {
-  static const std::array<McapSchema, kTopicKinds.size()> kSchemas = [] {
-    std::array<McapSchema, kTopicKinds.size()> all;
-    for (const TopicKind each : kTopicKinds) {
-      const std::string name = descriptor(each).m_typename;
-      all[static_cast<std::size_t>(each)] = {
-          name, std::string(kIdlEncoding),
-          self_contained_idl(kIdlText, name.substr(kScope.size()))};
+  static const std::array<McapSchema, kTopics.size()> kSchemas = [] {
+    std::array<McapSchema, kTopics.size()> all;
+    for (const Topic& each : kTopics) {
+      const std::string name = each.type->m_typename;
+      all[index(each.kind)] = {name, std::string(kIdlEncoding),
+                               self_contained_idl(kIdlText, name.substr(kScope.size()))};
     }
     return all;
   }();
-  return kSchemas[static_cast<std::size_t>(kind)];
+  return kSchemas[index(kind)];
 }
 
 }  // namespace clearance

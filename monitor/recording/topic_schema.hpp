@@ -1,32 +1,19 @@
-// The five topics as a recording holds them: type, schema text, message encoding.
+// The five topics as a recording holds them: schema name and text, message encoding.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "config/scene.hpp"
 #include "monitor/mcap/format.hpp"
-#include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/topics.hpp"
 
 namespace clearance {
-
-enum class TopicKind : std::uint8_t { kCatalogue, kPoses, kDistances, kZones, kHealth };
-inline constexpr std::array kTopicKinds = {TopicKind::kCatalogue, TopicKind::kPoses,
-                                           TopicKind::kDistances, TopicKind::kZones,
-                                           TopicKind::kHealth};
 
 inline constexpr std::string_view kCdrEncoding = "cdr";
 inline constexpr std::string_view kIdlEncoding = "omgidl";
 
-[[nodiscard]] const dds_topic_descriptor_t& descriptor(TopicKind kind) noexcept;
-
-// The name of the topic in this scene.
-[[nodiscard]] const std::string& topic_name(const Topics& topics, TopicKind kind) noexcept;
-
-// Which of our topics has this schema name, if any.
+// The topic whose type has this schema name, if any.
 [[nodiscard]] std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept;
 
 // Name, encoding and self-contained IDL text of the topic's type.

@@ -5,9 +5,9 @@ namespace clearance {
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                                  const McapWriterOptions& options)
     : mcap_(file, options) {
-  for (const TopicKind kind : kTopicKinds) {
-    channels_[static_cast<std::size_t>(kind)] =
-        mcap_.add_channel(topic_schema(kind), topic_name(topics, kind), kCdrEncoding);
+  for (const Topic& topic : kTopics) {
+    channels_[index(topic.kind)] =
+        mcap_.add_channel(topic_schema(topic.kind), topics.*topic.name, kCdrEncoding);
   }
 }
 
@@ -28,7 +28,7 @@ void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::i
 
 void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                             std::span<const std::byte> cdr) {
-  mcap_.write(channels_[static_cast<std::size_t>(kind)], static_cast<std::uint64_t>(log_ns),
+  mcap_.write(channels_[index(kind)], static_cast<std::uint64_t>(log_ns),
               static_cast<std::uint64_t>(publish_ns), cdr);
 }
 

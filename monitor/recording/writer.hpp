@@ -15,7 +15,7 @@
 namespace clearance {
 
 // Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
-// build, the one that made the reports (monitor/recording/build.hpp), where that is known.
+// build, the one that made the reports (monitor/build_info/build_info.hpp), where that is known.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Errors are kept, as McapWriter does. Not for several threads at once.
@@ -49,7 +49,7 @@ class RecordingWriter {
 
  private:
   McapWriter mcap_;
-  std::array<std::uint16_t, kTopicKinds.size()> channels_{};
+  std::array<std::uint16_t, kTopics.size()> channels_{};
   CdrEncoder encoder_;
 };
 

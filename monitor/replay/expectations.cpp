@@ -1,54 +1,52 @@
 #include "monitor/replay/expectations.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "config/spelling.hpp"
 #include "monitor/pair_name.hpp"
+#include "monitor/replay/metres.hpp"
 
 namespace clearance {
 namespace {
 
-std::string metres(double value) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), "%.9g m", value);
-  return text.data();
-}
-
 std::string zone_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const Zone& zone : scene.zones) names.push_back(zone.name);
-  return names.empty() ? "it has none" : "its zones are " + one_of(names);
+  return names.empty() ? "it has none" : fmt::format("its zones are {}", one_of(names));
 }
 
+// Why a zone is active: by the distance now, or by what may have happened between two ticks.
 std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& report) {
   const Zone& zone = scene.zones[id];
   const bool between =
       report.clearance >= zone.enter_below && report.swept_clearance < zone.enter_below;
-  const std::string what = between
-                               ? " was between two ticks not proved to have more clearance than " +
-                                     metres(report.swept_clearance)
-                               : " has a clearance of " + metres(report.clearance);
-  return "zone '" + zone.name + "' is active: " + pair_name(scene, report.pair) + what +
-         " (its lower bound less both margins)";
+  const std::string what =
+      between ? fmt::format(" was between two ticks not certified to have more clearance than {}",
+                            metres(report.swept_clearance))
+              : fmt::format(" has a clearance of {}", metres(report.clearance));
+  return fmt::format("zone '{}' is active: {}{} (its lower bound less both margins)", zone.name,
+                     pair_name(scene, report.pair), what);
 }
 
 }  // namespace
 
+// A zone that does not exist is an error: an expectation about it could never fail.
 Expectations::Expectations(const Scene& scene, std::optional<double> min_distance,
                            const std::vector<std::string>& no_zone)
     : scene_(scene), min_distance_(min_distance) {
   for (const std::string& name : no_zone) {
     const auto found = std::ranges::find(scene.zones, name, &Zone::name);
     if (found == scene.zones.end()) {
-      error_ = "the cell has no zone '" + name + "'; " + zone_names(scene);
+      error_ = fmt::format("the cell has no zone '{}'; {}", name, zone_names(scene));
       return;
     }
     no_zone_.push_back({.zone = static_cast<std::uint32_t>(found - scene.zones.begin())});
   }
 }
 
+// Before every moving object has been seen, distances are unknown and zones active by definition.
 bool Expectations::all_seen(const Monitor& monitor) {
   for (std::uint32_t i = 0; i < scene_.objects.size() && !all_seen_; ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) return false;
@@ -56,6 +54,7 @@ bool Expectations::all_seen(const Monitor& monitor) {
   return all_seen_ = true;
 }
 
+// Each expectation is reported once, at the first tick that breaks it.
 std::vector<std::string> Expectations::check(const Report& report, const Monitor& monitor,
                                              bool judge) {
   std::vector<std::string> broken;
@@ -71,6 +70,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
   return broken;
 }
 
+// The bound over all pairs decides; only where it fails is a pair looked for to name it.
 std::optional<std::string> Expectations::check_distance(const Report& report,
                                                         const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
@@ -82,12 +82,12 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
   }
   const PairReport pair = monitor.pair(nearest);
   const std::string who = pair_name(scene_, nearest);
-  const std::string expected = metres(*min_distance_) + " expected";
+  const std::string expected = fmt::format("{} expected", metres(*min_distance_));
   if (pair.upper < *min_distance_) {
-    return who + " is " + metres(pair.distance) + " apart, at least " + expected;
+    return fmt::format("{} is {} apart, at least {}", who, metres(pair.distance), expected);
   }
-  return who + " is not proved to be " + metres(*min_distance_) + " apart: " + name(pair.status) +
-         ", lower bound " + metres(pair.lower) + ", at least " + expected;
+  return fmt::format("{} is not certified to be {} apart: {}, lower bound {}, at least {}", who,
+                     metres(*min_distance_), name(pair.status), metres(pair.lower), expected);
 }
 
 // Nothing is too near now; was something since the last tick?
@@ -99,17 +99,20 @@ std::optional<std::string> Expectations::check_passages(const Report& report,
     if (found.lower >= *min_distance_) continue;
     distance_broken_ = true;
     const std::string who = pair_name(scene_, p);
-    const std::string expected = ", at least " + metres(*min_distance_) + " expected";
+    const std::string expected = fmt::format(", at least {} expected", metres(*min_distance_));
     if (found.upper < *min_distance_) {
-      return who + " was no more than " + metres(found.upper) +
-             " apart between this tick and the last" + expected;
+      return fmt::format("{} was no more than {} apart between this tick and the last{}", who,
+                         metres(found.upper), expected);
     }
-    return who + " is not proved to have been " + metres(*min_distance_) +
-           " apart between this tick and the last: lower bound " + metres(found.lower) + expected;
+    return fmt::format(
+        "{} is not certified to have been {} apart between this tick and the last: lower bound "
+        "{}{}",
+        who, metres(*min_distance_), metres(found.lower), expected);
   }
   return std::nullopt;
 }
 
+// A replay that judged nothing must not pass for one that found nothing wrong.
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {
   if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
   if (all_seen_) return "no tick could be judged";
@@ -119,7 +122,8 @@ std::optional<std::string> Expectations::never_judged(const Monitor& monitor) co
       unseen.push_back(scene_.objects[i].name);
     }
   }
-  return "no tick could be judged: the recording never gives a usable pose of " + one_of(unseen);
+  return fmt::format("no tick could be judged: the recording never gives a usable pose of {}",
+                     one_of(unseen));
 }
 
 }  // namespace clearance

@@ -1,5 +1,7 @@
 #include "monitor/replay/object_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -13,6 +15,8 @@ constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
+// A recording may be replayed with a changed cell: names connect the two, since ids are places in a
+// file. Everything that does not match is noted.
 ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded)
     : revision_(recorded == nullptr ? scene.revision : recorded->scene_revision) {
   if (recorded == nullptr) return;
@@ -29,9 +33,9 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
     if (object.id >= clearance_msg_kMaxObjects) continue;
     if (object.id >= id_.size()) id_.resize(object.id + 1, kLeftOut);
     if (found == names.end()) {
-      notes_.push_back("object '" + std::string(object.name) +
-                       "' of the recording is not in the cell: its poses are left out" +
-                       did_you_mean(object.name, names));
+      notes_.push_back(
+          fmt::format("object '{}' of the recording is not in the cell: its poses are left out{}",
+                      object.name, did_you_mean(object.name, names)));
       continue;
     }
     met[id] = true;
@@ -39,18 +43,19 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
       id_[object.id] = id;
       any_ = true;
     } else if (!object.is_fixed) {
-      notes_.push_back("object '" + names[id] +
-                       "' is fixed in the cell: its recorded poses are left out");
+      notes_.push_back(fmt::format(
+          "object '{}' is fixed in the cell: its recorded poses are left out", names[id]));
     }
   }
   for (std::size_t id = 0; id < names.size(); ++id) {
     if (!met[id] && !scene.objects[id].fixed) {
-      notes_.push_back("object '" + names[id] +
-                       "' of the cell is not in the recording: its pairs stay unknown");
+      notes_.push_back(fmt::format(
+          "object '{}' of the cell is not in the recording: its pairs stay unknown", names[id]));
     }
   }
 }
 
+// Poses of objects that the cell lacks, or has as fixed ones, are left out.
 bool ObjectMap::translate(PoseBatch& batch) const {
   if (!made_for(batch, revision_)) return false;
   if (identity_) return true;

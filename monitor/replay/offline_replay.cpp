@@ -1,12 +1,16 @@
 #include "monitor/replay/offline_replay.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "monitor/recording/build.hpp"
+#include "monitor/build_info/build_info.hpp"
 #include "monitor/replay/expectations.hpp"
+#include "monitor/replay/reference_check.hpp"
+#include "monitor/replay/report_difference.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/replay/zone_difference.hpp"
 #include "monitor/wire/convert.hpp"
@@ -14,6 +18,7 @@
 namespace clearance {
 namespace {
 
+// Seconds of an option, which may be infinite, as ns.
 std::int64_t whole_ns(double seconds) {
   constexpr double kCentury = 3.2e9;  // s: fits
   return std::llround(std::min(seconds, kCentury) * 1e9);
@@ -30,13 +35,16 @@ std::string other_build(const std::string& recorded) {
   if (recorded == kBuild) return {};
   const std::string ours = kBuild;
   if (recorded.empty()) {
-    return "; the recording does not name its build: if that is not this one (" + ours +
-           "), it may be the reason";
+    return fmt::format(
+        "; the recording does not name its build: if that is not this one ({}), it may be the "
+        "reason",
+        ours);
   }
-  return "; it was recorded by another build (" + recorded +
-         "), which may be the reason: this is " + ours;
+  return fmt::format("; it was recorded by another build ({}), which may be the reason: this is {}",
+                     recorded, ours);
 }
 
+// One replay from its outline to its result.
 class Replay {
  public:
   Replay(const Scene& scene, const std::filesystem::path& recording,
@@ -93,6 +101,7 @@ class Replay {
   double shown_ = -1.0;
 };
 
+// Why the replay cannot be run at all; empty: it can.
 std::string Replay::refusal() const {
   if (!expectations_.error().empty()) return expectations_.error();
   if (reference_ && !reference_->error().empty()) return reference_->error();
@@ -100,7 +109,7 @@ std::string Replay::refusal() const {
     std::string text =
         "the recording has no object that moves in this cell; expected the cell that "
         "it was made for, or one with the same names";
-    for (const std::string& note : feed_.objects().notes()) text += "\n" + note;
+    for (const std::string& note : feed_.objects().notes()) text += fmt::format("\n{}", note);
     return text;
   }
   if (!options_.compare) return {};
@@ -151,14 +160,17 @@ void Replay::judge_the_whole() {
   if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
 }
 
+// A daemon that was started anew begins with a new monitor: its bounds and zones have no history.
+// Cycle numbers of the daemon and of the replay differ by what the recording lacks in front and in
+// between.
 void Replay::begin_tick(const TickInput& input) {
   if (result_.ticks++ == 0) result_.first_ns = input.now_ns;
   result_.last_ns = input.now_ns;
   if (input.restart) {
     restarted_ = true;
     monitor_ = std::make_unique<Monitor>(scene_);
-    result_.notes.push_back("the daemon was started anew " + std::to_string(seconds(input.now_ns)) +
-                            " s after the first tick");
+    result_.notes.push_back(fmt::format("the daemon was started anew {:f} s after the first tick",
+                                        seconds(input.now_ns)));
   }
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;
@@ -166,21 +178,24 @@ void Replay::begin_tick(const TickInput& input) {
   if (first) {
     cycle_offset_ = cycle - 1;
     if (cycle > 1) {
-      result_.notes.push_back("the recording begins at tick " + std::to_string(cycle) +
-                              " of the daemon: what the monitor knew by then is not in it, so only "
-                              "bounds can be compared");
+      result_.notes.push_back(
+          fmt::format("the recording begins at tick {} of the daemon: what the monitor knew by "
+                      "then is not in it, so only bounds can be compared",
+                      cycle));
     }
   } else if (cycle != last_recorded_cycle_ + 1) {
     if (!std::exchange(gap_noted_, true)) {
-      result_.notes.push_back("reports are missing in the recording, the first between ticks " +
-                              std::to_string(last_recorded_cycle_) + " and " +
-                              std::to_string(cycle));
+      result_.notes.push_back(
+          fmt::format("reports are missing in the recording, the first between ticks {} and {}",
+                      last_recorded_cycle_, cycle));
     }
     cycle_offset_ += cycle - last_recorded_cycle_ - 1;
   }
   last_recorded_cycle_ = cycle;
 }
 
+// Expectations see every tick, since they begin when all objects have been seen; everything else
+// only the ticks of the window.
 void Replay::end_tick(const TickInput& input, const Report& report,
                       const std::function<void(const ReplayedTick&)>& on_tick) {
   const std::int64_t after_ns = input.now_ns - result_.first_ns;
@@ -212,6 +227,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
   if (on_tick) on_tick({report, input.sources, *monitor_});
 }
 
+// Only the first difference is reported: later ones are its consequences.
 void Replay::compare(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
   const auto difference =
@@ -219,12 +235,13 @@ void Replay::compare(const TickInput& input, const Report& report) {
   ++result_.compared;
   if (!difference) return;
   differs_ = true;
-  const std::string what = "the replay differs in " + *difference;
+  const std::string what = fmt::format("the replay differs in {}", *difference);
   fail(report.cycle, report.now_ns,
        input.complete
            ? what + other_build_
-           : "poses that this tick used are not in the recording: it cannot be compared (" + what +
-                 ")");
+           : fmt::format(
+                 "poses that this tick used are not in the recording: it cannot be compared ({})",
+                 what));
 }
 
 // Zone changes come on a topic of their own and are compared when all are known; only where the
@@ -233,19 +250,22 @@ void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
   if (const auto found = zones_.first(feed_.zones())) {
-    fail(found->cycle, found->now_ns, "the replay differs in " + found->what + other_build_);
+    fail(found->cycle, found->now_ns,
+         fmt::format("the replay differs in {}{}", found->what, other_build_));
   }
 }
 
+// The reason why no tick was judged.
 std::string Replay::nothing_in_window() const {
   if (result_.ticks == 0) {
     return result_.damage.empty() ? "the recording holds neither reports nor poses"
                                   : "nothing can be replayed: no tick is whole before the damage";
   }
-  return "no tick lies between the start and the end given: the recording lasts " +
-         std::to_string(seconds(result_.last_ns)) + " s";
+  return fmt::format("no tick lies between the start and the end given: the recording lasts {:f} s",
+                     seconds(result_.last_ns));
 }
 
+// Values that met no tick are notes; when none was met, the check has failed.
 void Replay::finish_reference() {
   if (!reference_) return;
   result_.reference = reference_->totals();
@@ -262,7 +282,7 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
 
 void Replay::note_counts() {
   const auto note = [this](std::uint64_t count, const std::string& what) {
-    if (count > 0) result_.notes.push_back(std::to_string(count) + " " + what);
+    if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
   };
   note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
   note(feed_.of_other_scenes(), "batches were made for another scene and left out");
@@ -273,6 +293,7 @@ void Replay::note_counts() {
   }
 }
 
+// About a hundred calls, whatever the length of the recording.
 void Replay::show_progress() {
   const double share = feed_.progress();
   if (!options_.progress || share < shown_ + 0.01) return;

@@ -1,5 +1,9 @@
 // A recording through Monitor::tick, without a clock and without DDS: the same reports again, as
-// fast as they can be computed. For a user's own tests:
+// fast as they can be computed. For a user's own tests, which find_package(clearance) and link
+// clearance::replay:
+//
+//   #include <config/cell_file.hpp>
+//   #include <monitor/replay/offline_replay.hpp>
 //
 //   const CellResult cell = read_cell("cell.yaml");
 //   const OfflineReplay replay =
@@ -19,12 +23,14 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/monitor.hpp"
 #include "monitor/pose_batch.hpp"
-#include "monitor/replay/reference_check.hpp"
-#include "monitor/replay/report_difference.hpp"
+#include "monitor/replay/comparison.hpp"
+#include "monitor/replay/reference_totals.hpp"
+#include "monitor/report.hpp"
 
 namespace clearance {
+
+class Monitor;  // monitor/monitor.hpp, in the source tree
 
 struct OfflineReplayOptions {
   // Ticks in this window are compared, judged and handed out; s after the first tick. Those before
@@ -35,7 +41,7 @@ struct OfflineReplayOptions {
   std::optional<Comparison> compare = {};  // with the recorded reports and zones
 
   // Expectations begin when every moving object of the cell has been seen once.
-  // Every pair is proved to be at least this far apart, m.
+  // Every pair's distance is certified to be at least this, m.
   std::optional<double> expect_min_distance = {};
   // Names of zones that are never active.
   std::vector<std::string> expect_no_zone = {};

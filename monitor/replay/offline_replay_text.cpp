@@ -1,14 +1,14 @@
 // What a replay tells a person.
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "monitor/replay/offline_replay.hpp"
 
 namespace clearance {
 
 std::string TickNumber::text() const {
-  const std::string name = "tick " + std::to_string(cycle);
+  const std::string name = fmt::format("tick {}", cycle);
   if (recorded == cycle) return name;
-  return name + " of the replay, " + std::to_string(recorded) + " of the daemon";
+  return fmt::format("{} of the replay, {} of the daemon", name, recorded);
 }
 
 std::string OfflineReplay::text() const {
@@ -20,14 +20,12 @@ std::string OfflineReplay::text() const {
       line(failure.what);
       continue;
     }
-    std::array<char, 32> when;
-    std::snprintf(when.data(), when.size(), " (%.6f s): ", failure.time_s);
-    line(failure.tick.text() + when.data() + failure.what);
+    line(fmt::format("{} ({:.6f} s): {}", failure.tick.text(), failure.time_s, failure.what));
   }
   if (!damage.empty()) line(damage);
   if (stopped) {
-    line("stopped after " + std::to_string(ticks) +
-         " ticks: nothing is known of the rest of the recording");
+    line(fmt::format("stopped after {} ticks: nothing is known of the rest of the recording",
+                     ticks));
   }
   for (const std::string& note : notes) line(note);
   return out;

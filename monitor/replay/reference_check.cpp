@@ -1,16 +1,18 @@
 #include "monitor/replay/reference_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string_view>
 #include <utility>
 
 #include "monitor/csv/table.hpp"
 #include "monitor/pair_name.hpp"
+#include "monitor/replay/metres.hpp"
 
 namespace clearance {
 namespace {
@@ -20,6 +22,7 @@ enum Column : std::size_t { kTime, kObjectA, kObjectB, kDistance };
 
 using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t, std::less<>>;
 
+// Either object may come first in the table.
 PairIds pair_ids(const Scene& scene) {
   PairIds ids;
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
@@ -48,14 +51,12 @@ double seen_by(double reference, double ours) {
   return reference == 0.0 && ours < 0.0 ? 0.0 : ours;
 }
 
-std::string metres(double value) {
-  std::array<char, 40> text;
-  std::snprintf(text.data(), text.size(), "%.12g m", value);
-  return text.data();
-}
+// References may have more digits than a person cares for elsewhere.
+std::string precise(double value) { return metres(value, 12); }
 
 }  // namespace
 
+// The whole table is read in front, so that a mistake in it is known before the replay runs.
 ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
                                double tolerance)
     : scene_(scene), tolerance_(tolerance) {
@@ -76,6 +77,7 @@ ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& 
   error_ = table.error();
 }
 
+// Table and ticks are both in order of time: one pass over both.
 std::vector<std::string> ReferenceCheck::check(const Report& report, const Monitor& monitor) {
   std::vector<std::string> broken;
   for (; next_ < values_.size() && values_[next_].t_ns <= report.now_ns; ++next_) {
@@ -89,23 +91,26 @@ std::vector<std::string> ReferenceCheck::check(const Report& report, const Monit
   return broken;
 }
 
+// A carried distance is that of another tick: only its bounds can be held against this one's
+// reference.
 void ReferenceCheck::compare(const Value& value, const PairReport& ours,
                              std::vector<std::string>& broken) {
   ++totals_.compared;
   const std::string who = pair_name(scene_, ours);
-  const std::string reference = ", reference " + metres(value.distance);
+  const std::string reference = fmt::format(", reference {}", precise(value.distance));
   const bool evaluated = ours.status != PairStatus::kCarried;  // else it is that of another tick
   const double difference = std::abs(seen_by(value.distance, ours.distance) - value.distance);
   if (evaluated && difference > totals_.largest) totals_.largest = difference;
   if (!(evaluated && difference <= tolerance_) && totals_.off++ == 0) {
-    broken.push_back(who + ": " + name(ours.status) + ", distance " + metres(ours.distance) +
-                     reference + ": not within the tolerance of " + metres(tolerance_));
+    broken.push_back(fmt::format("{}: {}, distance {}{}: not within the tolerance of {}", who,
+                                 name(ours.status), precise(ours.distance), reference,
+                                 precise(tolerance_)));
   }
   const bool within = seen_by(value.distance, ours.lower) <= value.distance + value.rounding &&
                       seen_by(value.distance, ours.upper) >= value.distance - value.rounding;
   if (!within && totals_.outside++ == 0) {
-    broken.push_back(who + ": bounds " + metres(ours.lower) + " to " + metres(ours.upper) +
-                     reference + ": outside");
+    broken.push_back(fmt::format("{}: bounds {} to {}{}: outside", who, precise(ours.lower),
+                                 precise(ours.upper), reference));
   }
 }
 
@@ -119,13 +124,13 @@ std::vector<std::string> ReferenceCheck::notes() const {
   std::vector<std::string> notes;
   const ReferenceTotals all = totals();
   if (all.other_pairs > 0) {
-    notes.push_back(std::to_string(all.other_pairs) +
-                    " reference values are of pairs that the cell does not watch, such as " +
-                    other_pair_);
+    notes.push_back(
+        fmt::format("{} reference values are of pairs that the cell does not watch, such as {}",
+                    all.other_pairs, other_pair_));
   }
   if (all.other_times > 0) {
-    notes.push_back(std::to_string(all.other_times) +
-                    " reference values are of times at which there is no tick to compare");
+    notes.push_back(fmt::format(
+        "{} reference values are of times at which there is no tick to compare", all.other_times));
   }
   return notes;
 }

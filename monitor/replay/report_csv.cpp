@@ -1,15 +1,17 @@
 #include "monitor/replay/report_csv.hpp"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <system_error>
+
+#include "monitor/files/file_error.hpp"
+#include "monitor/monitor.hpp"
 
 namespace clearance {
 namespace {
 
 constexpr std::size_t kWriteAt = std::size_t{1} << 18;  // bytes
 
+// As RFC 4180 has it.
 std::string quoted(const std::string& name) {
   if (name.find_first_of(",\"\n") == std::string::npos) return name;
   std::string out = "\"";
@@ -17,6 +19,7 @@ std::string quoted(const std::string& name) {
   return out + "\"";
 }
 
+// The shortest text that reads back as the same number.
 template <class Number>
 void put(std::string& row, Number value) {
   std::array<char, 32> text;
@@ -36,7 +39,7 @@ void put(std::string& row, const Vec3& vector) {
 ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool all_pairs)
     : path_(file), scene_(scene), all_pairs_(all_pairs), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) {
-    error_ = "cannot create " + file.string() + ": " + std::system_category().message(errno);
+    error_ = cannot_create(file);
     return;
   }
   for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
@@ -46,6 +49,7 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
       "closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles\n";
 }
 
+// Rows are collected and written in large pieces.
 void ReportCsv::add(const ReplayedTick& tick) {
   if (!error_.empty()) return;
   if (all_pairs_) {
@@ -87,16 +91,17 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
 
 void ReportCsv::write() {
   if (std::fwrite(rows_.data(), 1, rows_.size(), file_.get()) != rows_.size()) {
-    error_ = "cannot write to " + path_.string() + ": " + std::system_category().message(errno);
+    error_ = cannot_write(path_);
   }
   rows_.clear();
 }
 
+// The last rows, and the errors that only closing shows (a full disk).
 bool ReportCsv::close() {
   if (!file_) return error_.empty();
   if (error_.empty()) write();
   if (std::fclose(file_.release()) != 0 && error_.empty()) {
-    error_ = "cannot write to " + path_.string() + ": " + std::system_category().message(errno);
+    error_ = cannot_write(path_);
   }
   return error_.empty();
 }

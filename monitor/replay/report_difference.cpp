@@ -1,9 +1,10 @@
 #include "monitor/replay/report_difference.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
-#include <cstdio>
+#include <string_view>
 
 #include "monitor/pair_name.hpp"
 #include "monitor/report.hpp"
@@ -11,18 +12,13 @@
 namespace clearance {
 namespace {
 
-std::string text(double value) {
-  std::array<char, 64> out;
-  std::snprintf(out.data(), out.size(), "%.17g", value);
-  return out.data();
-}
-std::string text(bool value) { return value ? "true" : "false"; }
-template <class Integer>
-std::string text(Integer value) {
-  return std::to_string(value);
+std::string text(double value) { return fmt::format("{:.17g}", value); }
+template <class T>
+std::string text(const T& value) {
+  return fmt::format("{}", value);
 }
 
-// Compares field by field until the first difference.
+// Compares field by field until the first difference; no text is made before that.
 class Comparer {
  public:
   Comparer(const Scene& scene, std::uint64_t cycle_offset)
@@ -31,77 +27,93 @@ class Comparer {
   [[nodiscard]] const std::optional<std::string>& difference() const { return difference_; }
 
   template <class T>
-  void field(const std::string& name, const T& recorded, const T& replayed) {
+  void field(std::string_view name, const T& recorded, const T& replayed) {
     if (!difference_ && !(recorded == replayed)) tell(name, text(recorded), text(replayed));
   }
   // To the bit: -0 is not 0. Any NaN is any other: what is not known has no bits worth comparing.
-  void field(const std::string& name, double recorded, double replayed) {
+  void field(std::string_view name, double recorded, double replayed, std::string_view axis = "") {
     if (difference_ || (std::isnan(recorded) && std::isnan(replayed))) return;
     if (std::bit_cast<std::uint64_t>(recorded) != std::bit_cast<std::uint64_t>(replayed)) {
-      tell(name, text(recorded), text(replayed));
+      tell(name, text(recorded), text(replayed), axis);
     }
   }
-  void field(const std::string& name, const clearance_msg_Vector3& recorded,
+  void field(std::string_view name, const clearance_msg_Vector3& recorded,
              const clearance_msg_Vector3& replayed) {
-    field(name + ".x", recorded.x, replayed.x);
-    field(name + ".y", recorded.y, replayed.y);
-    field(name + ".z", recorded.z, replayed.z);
+    field(name, recorded.x, replayed.x, ".x");
+    field(name, recorded.y, replayed.y, ".y");
+    field(name, recorded.z, replayed.z, ".z");
   }
   // A cycle number; 0 stands for never.
-  void cycle(const std::string& name, std::uint64_t recorded, std::uint64_t replayed) {
+  void cycle(std::string_view name, std::uint64_t recorded, std::uint64_t replayed) {
     field(name, recorded > cycle_offset_ ? recorded - cycle_offset_ : recorded, replayed);
   }
 
-  void bits(const std::string& where, const clearance_msg_PairDistance& recorded,
+  // `place`: in the report's list of pairs; none: the minimum.
+  void bits(std::optional<std::uint32_t> place, const clearance_msg_PairDistance& recorded,
             const clearance_msg_PairDistance& replayed) {
     if (difference_) return;
     if (recorded.pair != replayed.pair) {
-      tell(where + ".pair", pair_name(scene_, recorded.pair), pair_name(scene_, replayed.pair));
+      tell(list_entry(place) + ".pair", pair_name(scene_, recorded.pair),
+           pair_name(scene_, replayed.pair));
     }
-    const std::string pair = where + " (" + pair_name(scene_, recorded.pair) + ").";
-    field(pair + "status", std::string(name(static_cast<PairStatus>(recorded.status))),
-          std::string(name(static_cast<PairStatus>(replayed.status))));
-    field(pair + "part_a", recorded.part_a, replayed.part_a);
-    field(pair + "part_b", recorded.part_b, replayed.part_b);
-    field(pair + "distance", recorded.distance, replayed.distance);
-    field(pair + "lower", recorded.lower, replayed.lower);
-    field(pair + "upper", recorded.upper, replayed.upper);
-    field(pair + "swept_lower", recorded.swept_lower, replayed.swept_lower);
-    field(pair + "witness_a", recorded.witness_a, replayed.witness_a);
-    field(pair + "witness_b", recorded.witness_b, replayed.witness_b);
-    field(pair + "normal", recorded.normal, replayed.normal);
-    field(pair + "closing_speed", recorded.closing_speed, replayed.closing_speed);
-    field(pair + "time_to_contact", recorded.time_to_contact, replayed.time_to_contact);
-    field(pair + "age_a_ns", recorded.age_a_ns, replayed.age_a_ns);
-    field(pair + "age_b_ns", recorded.age_b_ns, replayed.age_b_ns);
-    cycle(pair + "evaluated_cycle", recorded.evaluated_cycle, replayed.evaluated_cycle);
-    field(pair + "refresh_age_cycles", recorded.refresh_age_cycles, replayed.refresh_age_cycles);
+    within_ = Entry{place, recorded.pair};
+    field("status", std::string_view(name(static_cast<PairStatus>(recorded.status))),
+          std::string_view(name(static_cast<PairStatus>(replayed.status))));
+    field("part_a", recorded.part_a, replayed.part_a);
+    field("part_b", recorded.part_b, replayed.part_b);
+    field("distance", recorded.distance, replayed.distance);
+    field("lower", recorded.lower, replayed.lower);
+    field("upper", recorded.upper, replayed.upper);
+    field("swept_lower", recorded.swept_lower, replayed.swept_lower);
+    field("witness_a", recorded.witness_a, replayed.witness_a);
+    field("witness_b", recorded.witness_b, replayed.witness_b);
+    field("normal", recorded.normal, replayed.normal);
+    field("closing_speed", recorded.closing_speed, replayed.closing_speed);
+    field("time_to_contact", recorded.time_to_contact, replayed.time_to_contact);
+    field("age_a_ns", recorded.age_a_ns, replayed.age_a_ns);
+    field("age_b_ns", recorded.age_b_ns, replayed.age_b_ns);
+    cycle("evaluated_cycle", recorded.evaluated_cycle, replayed.evaluated_cycle);
+    field("refresh_age_cycles", recorded.refresh_age_cycles, replayed.refresh_age_cycles);
+    within_.reset();
   }
 
-  void bounds(const std::string& where, const clearance_msg_PairDistance& recorded,
+  void bounds(std::optional<std::uint32_t> place, const clearance_msg_PairDistance& recorded,
               const clearance_msg_PairDistance& replayed) {
     if (difference_ || recorded.pair != replayed.pair) return;
     if (recorded.lower <= replayed.upper && replayed.lower <= recorded.upper) return;
-    tell(where + " (" + pair_name(scene_, recorded.pair) + ") bounds",
-         text(recorded.lower) + " to " + text(recorded.upper),
-         text(replayed.lower) + " to " + text(replayed.upper));
+    const auto interval = [](const clearance_msg_PairDistance& pair) {
+      return fmt::format("{} to {}", text(pair.lower), text(pair.upper));
+    };
+    tell(fmt::format("{} ({}) bounds", list_entry(place), pair_name(scene_, recorded.pair)),
+         interval(recorded), interval(replayed));
   }
 
  private:
-  static std::string text(const std::string& value) { return value; }
-  template <class T>
-  static std::string text(const T& value) {
-    return clearance::text(value);
+  struct Entry {
+    std::optional<std::uint32_t> place;
+    std::uint32_t pair;
+  };
+
+  static std::string list_entry(std::optional<std::uint32_t> place) {
+    return place ? fmt::format("pairs[{}]", *place) : "minimum";
   }
-  void tell(const std::string& name, const std::string& recorded, const std::string& replayed) {
-    difference_ = name + ": recorded " + recorded + ", replayed " + replayed;
+  void tell(std::string_view name, const std::string& recorded, const std::string& replayed,
+            std::string_view axis = "") {
+    const std::string in = within_ ? fmt::format("{} ({}).", list_entry(within_->place),
+                                                 pair_name(scene_, within_->pair))
+                                   : "";
+    difference_ =
+        fmt::format("{}{}{}: recorded {}, replayed {}", in, name, axis, recorded, replayed);
   }
 
   const Scene& scene_;
   std::uint64_t cycle_offset_;
+  std::optional<Entry> within_;  // the pair whose fields are compared; none: the report's own
   std::optional<std::string> difference_;
 };
 
+// The tick's own fields, in the order in which a person would look for the cause: time and scene,
+// then counts, then distances.
 void compare_bits(Comparer& compare, const clearance_msg_Distances& recorded,
                   const clearance_msg_Distances& replayed) {
   compare.cycle("cycle", recorded.cycle, replayed.cycle);
@@ -119,7 +131,7 @@ void compare_bits(Comparer& compare, const clearance_msg_Distances& recorded,
                 replayed.oldest_evaluation_cycles);
   compare.field("minimum_known", recorded.minimum_known, replayed.minimum_known);
   compare.field("minimum_proved", recorded.minimum_proved, replayed.minimum_proved);
-  compare.bits("minimum", recorded.minimum, replayed.minimum);
+  compare.bits(std::nullopt, recorded.minimum, replayed.minimum);
   compare.field("lower_all", recorded.lower_all, replayed.lower_all);
   compare.field("swept_lower_all", recorded.swept_lower_all, replayed.swept_lower_all);
 }
@@ -135,14 +147,13 @@ std::optional<std::string> report_difference(const Scene& scene,
   if (bits) {
     compare_bits(compare, recorded, replayed);
   } else {
-    compare.bounds("minimum", recorded.minimum, replayed.minimum);
+    compare.bounds(std::nullopt, recorded.minimum, replayed.minimum);
   }
   compare.field("pairs.length", recorded.pairs._length, replayed.pairs._length);
   for (std::uint32_t i = 0; i < recorded.pairs._length && !compare.difference(); ++i) {
-    const std::string where = "pairs[" + std::to_string(i) + "]";
     const clearance_msg_PairDistance& a = recorded.pairs._buffer[i];
     const clearance_msg_PairDistance& b = replayed.pairs._buffer[i];
-    bits ? compare.bits(where, a, b) : compare.bounds(where, a, b);
+    bits ? compare.bits(i, a, b) : compare.bounds(i, a, b);
   }
   return compare.difference();
 }

@@ -6,15 +6,10 @@
 #include <string>
 
 #include "config/scene.hpp"
+#include "monitor/replay/comparison.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
-
-enum class Comparison : std::uint8_t {
-  kBits,    // every field of the tick, to the bit
-  kBounds,  // only what is certain: bounds of one pair overlap; for other builds, or without the
-            // history
-};
 
 // The first field that differs, with both values, e.g. "pairs[2] (hand - box).lower: recorded 0.5,
 // replayed 0.25"; none when they agree. When and whether a report was published is no part of a

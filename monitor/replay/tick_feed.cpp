@@ -19,6 +19,8 @@ TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
       by_report_(outline.has_reports) {}
 
+// Recordings with reports are replayed tick by tick as the daemon ran; others have a tick wherever
+// poses have a new time.
 bool TickFeed::next(TickInput& tick) {
   tick.samples.clear();
   tick.sources.clear();
@@ -28,6 +30,7 @@ bool TickFeed::next(TickInput& tick) {
   return by_report_ ? next_by_report(tick) : next_by_time(tick);
 }
 
+// Reads one message into the queue of its kind.
 bool TickFeed::read_one() {
   RecordedMessage message;
   if (!reader_.next(message)) return false;
@@ -63,6 +66,8 @@ void TickFeed::read_batch(const RecordedMessage& message) {
   batches_waiting_.push_back(std::move(waiting));
 }
 
+// A report names the last batch of each source that its tick used. Recorded over DDS, that batch
+// may stand behind the report, so reading goes on for a while.
 bool TickFeed::next_by_report(TickInput& tick) {
   while (reports_waiting_.empty()) {
     if (!read_one()) return false;
@@ -91,6 +96,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   return true;
 }
 
+// The place among the waiting batches; their count when it is not there.
 std::size_t TickFeed::place_of(const SourceUse& use) const {
   const auto found = std::ranges::find_if(batches_waiting_, [&use](const Waiting& waiting) {
     return waiting.batch.sequence_number == use.sequence_number &&
@@ -99,6 +105,7 @@ std::size_t TickFeed::place_of(const SourceUse& use) const {
   return static_cast<std::size_t>(found - batches_waiting_.begin());
 }
 
+// A report may name the batch that an earlier tick used already: then this tick had no new one.
 bool TickFeed::consumed(const SourceUse& use) const {
   const auto last = consumed_.find(use.source.c_str());
   return last != consumed_.end() && last->second == use.sequence_number;
@@ -145,6 +152,7 @@ void TickFeed::forget_unused(std::int64_t log_ns) {
   }
 }
 
+// All batches of one log time are one tick.
 bool TickFeed::next_by_time(TickInput& tick) {
   while (batches_waiting_.empty()) {
     if (!read_one()) return false;

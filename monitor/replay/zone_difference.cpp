@@ -1,9 +1,9 @@
 #include "monitor/replay/zone_difference.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cstdio>
 
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
@@ -13,6 +13,8 @@ namespace {
 
 using States = std::vector<clearance_msg_ZoneState>;
 
+// The changes of one zone. A daemon also publishes every zone once at its start, which is no change
+// unless it is active.
 States changes_of(const States& recorded, std::uint32_t zone) {
   States changes;
   bool active = false;  // as every monitor begins
@@ -28,23 +30,21 @@ bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
+// To the bit, as reports are compared.
 bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
   return a.cycle == b.cycle && a.active == b.active && a.pair == b.pair &&
          same_bits(a.clearance, b.clearance) && same_bits(a.swept_clearance, b.swept_clearance);
 }
 
 std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
-  std::array<char, 120> clearance;
-  std::snprintf(clearance.data(), clearance.size(),
-                " at tick %llu, clearance %.17g m, since the last tick %.17g m",
-                static_cast<unsigned long long>(state.cycle), state.clearance,
-                state.swept_clearance);
-  const std::string pair = pair_name(scene, state.pair);
-  return std::string(state.active ? "active" : "inactive") + clearance.data() + " (" + pair + ")";
+  return fmt::format("{} at tick {}, clearance {:.17g} m, since the last tick {:.17g} m ({})",
+                     state.active ? "active" : "inactive", state.cycle, state.clearance,
+                     state.swept_clearance, pair_name(scene, state.pair));
 }
 
 }  // namespace
 
+// In the daemon's cycle numbers, so that both sides can be compared.
 void ZoneDifference::replayed(const Report& report, std::uint64_t cycle_offset) {
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     if (!report.zones[zone].changed) continue;
@@ -55,6 +55,7 @@ void ZoneDifference::replayed(const Report& report, std::uint64_t cycle_offset) 
   }
 }
 
+// The earliest difference of all zones.
 std::optional<ZoneDifference::Found> ZoneDifference::first(const States& recorded) const {
   std::optional<Found> earliest;
   for (std::uint32_t zone = 0; zone < changes_.size(); ++zone) {
@@ -69,10 +70,10 @@ std::optional<ZoneDifference::Found> ZoneDifference::first(const States& recorde
     const auto side = [this](bool has, auto state) {
       return has ? described(scene_, *state) : std::string("no change");
     };
-    earliest = Found{at.cycle, at.now_ns,
-                     "zone '" + scene_.zones[zone].name + "': recorded " +
-                         side(there != theirs.end(), there) + ", replayed " +
-                         side(here != ours.end(), here)};
+    earliest =
+        Found{at.cycle, at.now_ns,
+              fmt::format("zone '{}': recorded {}, replayed {}", scene_.zones[zone].name,
+                          side(there != theirs.end(), there), side(here != ours.end(), here))};
   }
   return earliest;
 }

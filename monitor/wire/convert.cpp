@@ -8,6 +8,7 @@ namespace {
 
 clearance_msg_Vector3 to_wire(const Vec3& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
+// Numbers are passed on as they are: the tick refuses those that are not finite.
 Vec3 from_wire(const clearance_msg_Vector3& v) noexcept { return {v.x, v.y, v.z}; }
 
 // Into a bounded string, cut to fit; the rest is zeroed so that equal names are equal bytes.
@@ -40,6 +41,7 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
 
 }  // namespace
 
+// Sequences get all the room that any report of this scene needs.
 Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
@@ -119,6 +121,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
   out.now_ns = report.now_ns;
 }
 
+// Ids are places in the lists, as in the scene.
 Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
   Sample<clearance_msg_Catalogue> sample;
   sample->scene = duplicate(scene.name);
@@ -141,6 +144,7 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
   return sample;
 }
 
+// Quaternions are x, y, z, w on the wire.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
   out.source = SourceName(batch.source);
   out.sequence_number = batch.sequence_number;

@@ -90,7 +90,7 @@ const Mistake kMistakes[] = {
      "expected two different ends"},
     {"FlatPrism", with_shape("prism: @{base: [[0, 0], [1, 0], [0, 1]], z: [1, 1]}"),
      "found a prism that is not a solid convex body (the prism's low end must be finite and below "
-     "its high end); expected a base of at least three corners"},
+     "its high end); expected a base of at least three vertices"},
     {"PrismOverALine", with_shape("prism: @{base: [[0, 0], [1, 0], [2, 0]], z: [0, 1]}"),
      "found a prism that is not a solid convex body"},
     {"FlatVertices",

@@ -93,7 +93,7 @@ void change(hard::HardCase& c, Bytes& bytes) {
 
 TrackingState::Side any_side(Bytes& bytes) {
   TrackingState::Side out;
-  out.dimension = bytes.byte() % 8;
+  out.kind = static_cast<FeatureKind>(bytes.byte() % 8);
   out.feature = bytes.byte() % 64 - 2;
   out.point = {bytes.byte() / 64.0 - 2.0, bytes.byte() / 64.0 - 2.0, bytes.byte() / 64.0 - 2.0};
   out.point *= std::ldexp(1.0, bytes.byte() % 64);
@@ -189,7 +189,7 @@ void run(Bytes bytes) {
   const bool by_input = how % 2 == 1, at_random = how % 4 == 2, moves = how >= 128;
   TrackingState state;
   if (by_input) state = {any_side(bytes), any_side(bytes)};
-  state.a.deep = bytes.byte() % 2 == 1;
+  state.a.penetrating = bytes.byte() % 2 == 1;
   change(c, bytes);
   if (!has_truth(c)) return;
   Fuzzed fuzzed(family.name, c);

@@ -18,9 +18,9 @@ using oracle::Body;
 using oracle::ExactDistance;
 using oracle::Rational;
 
-// Relative to DistanceJudge::size: of the gap between the bounds; and of where the witness points
-// may lie.
-constexpr double kGapTolerance = 1e-14, kPointTolerance = 1.5e-14;
+// Relative to DistanceJudge::size: of the gap between the bounds, apart and else; and of where the
+// witness points may lie.
+constexpr double kApartTolerance = 1e-14, kMetTolerance = 1.25e-14, kPointTolerance = 1.5e-14;
 
 // Rows or points; where their features are not plain, the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
@@ -101,23 +101,21 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
                 text("%s with a gap of %.3g, more than %.3g", status, gap, tolerance));
 }
 
-// Are the points where distance and normal say? `placed`: what rounding may do to a point;
-// `beside`: and to where the bodies meet across the normal.
-void look_at_witnesses(const DistanceResult& r, double placed, double beside, Faults& faults) {
+// Are the points where distance and normal say? `placed`: what rounding may do to a point.
+void look_at_witnesses(const DistanceResult& r, double placed, Faults& faults) {
   const Vec3 between = r.point_on_b - r.point_on_a;
   faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
                 text("normal of length %.17g", r.normal.norm()));
   if (r.status == DistanceStatus::kTouching) {
-    faults.unless(between.norm() <= beside,
+    faults.unless(between.norm() <= placed,
                   text("touching, but the witness points are %.3g apart", between.norm()));
     return;
   }
   const Vec3 off = between - r.distance * r.normal;
-  const double along = std::abs(off.dot(r.normal)), across = off.norm();
-  faults.unless(along <= placed && across <= beside,
+  faults.unless(off.norm() <= placed,
                 text("%s, but from one witness point to the other it is not the distance along the "
-                     "normal: off by %.3g, tolerance %.3g; along it by %.3g, tolerance %.3g",
-                     name(r.status), across, beside, along, placed));
+                     "normal: off by %.3g, tolerance %.3g",
+                     name(r.status), off.norm(), placed));
 }
 
 }  // namespace
@@ -221,99 +219,49 @@ bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pos
   }
 }
 
-std::vector<std::string> DistanceJudge::faults_of_no_way_out(const DistanceResult& r,
-                                                             const ExactDistance& truth,
-                                                             const Pose& pose_a,
-                                                             const Pose& pose_b) {
+std::vector<std::string> DistanceJudge::faults_of_unbounded(const DistanceResult& r,
+                                                            const ExactDistance& truth) const {
   Faults faults;
-  faults.unless(truth.cores_meet(), "no lower bound, but they are apart");
-  faults.unless(truth.squared_depth == 0,
-                text("no lower bound and an upper one of %.17g, but the truth is %.17g", r.upper,
-                     truth.lower));
-  faults.unless(r.upper < 0.0 || r.status == DistanceStatus::kIterationLimit,
-                text("status %s without a lower bound", name(r.status)));
-  const bool overlapping = r.status == DistanceStatus::kOverlapping;
-  faults.unless(overlapping ? r.distance == -kInfinity && r.normal.isZero(0.0)
-                            : r.distance <= r.upper && r.normal.allFinite(),
-                text("no lower bound, but a distance of %g, or a normal", r.distance));
-  const bool points = r.point_on_a.allFinite() && r.point_on_b.allFinite();
-  faults.unless(points, "no lower bound, and a point that is none");
-  if (!points) return faults.all;
-  const double reach = size(0.0, pose_a, pose_b);
-  const double met_at = (oracle::to_vec(truth.point_on_a) - pose_a.position).norm();
-  const auto look = [&](bool in_a, const Vec3& point) {
-    const double placed = kPointTolerance * std::max(reach, point.norm()) + 4.0 * kUnderflow;
-    const double off = in_a ? outside(exact_a_, pose_a, body_a_.radius, point, pose_a)
-                            : outside(exact_b_, pose_b, body_b_.radius, point, pose_a);
-    faults.unless(off <= placed,
-                  text("no lower bound, but a point is %.3g outside %s, tolerance %.3g", off,
-                       in_a ? "A" : "B", placed));
-  };
-  look(true, r.point_on_a);
-  look(false, r.point_on_b);
-  if (overlapping && met_at <= reach) {
-    look(false, r.point_on_a);
-    look(true, r.point_on_b);
-  }
+  look_at_bounds(r, truth, depth_is_known(truth) && truth.squared_depth != 0, faults);
+  const bool numbers = r.normal.allFinite() && r.point_on_a.allFinite() &&
+                       r.point_on_b.allFinite() && !std::isnan(r.distance);
+  faults.unless(numbers, "a figure is no number");
+  faults.unless(r.status != DistanceStatus::kConverged || r.lower > 0.0, "converged, but to what?");
+  faults.unless(r.status != DistanceStatus::kOverlapping || truth.cores_meet(),
+                "overlapping, but apart");
   return faults.all;
-}
-
-double DistanceJudge::where_they_part(const DistanceResult& r, const ExactDistance& truth,
-                                      const Pose& pose_a, const Pose& pose_b) {
-  const auto out_there = [&](const ExactDistance& d) {
-    return (oracle::to_vec(d.point_on_a) - pose_a.position).norm();
-  };
-  if (a_.bounded() || b_.bounded() || !truth.cores_meet()) return out_there(truth);
-  Pose parted = pose_b;
-  parted.position += 2.0 * std::abs(r.distance) * (pose_a.orientation.normalized() * r.normal);
-  return out_there(oracle::exact_distance(exact_a_, pose_a, exact_b_, parted));
 }
 
 std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const ExactDistance& truth,
                                                const Pose& pose_a, const Pose& pose_b) {
-  if (!a_.bounded() && !b_.bounded() && r.lower == -kInfinity) {
-    return faults_of_no_way_out(r, truth, pose_a, pose_b);
-  }
+  if (!a_.bounded() && !b_.bounded()) return faults_of_unbounded(r, truth);
   Faults faults;
   if (!are_numbers(r, faults)) return faults.all;
   look_at_bounds(r, truth, depth_is_known(truth), faults);
 
   const double reach = size(r, truth, pose_a, pose_b);
-  const double tolerance = kGapTolerance * reach + 4.0 * kUnderflow;
+  const bool apart = r.status == DistanceStatus::kConverged;
+  const double tolerance = (apart ? kApartTolerance : kMetTolerance) * reach + 4.0 * kUnderflow;
   if (!depth_is_known(truth)) {
     for (const auto& fault : faults_along(r, tolerance, pose_a, pose_b))
       faults.all.push_back(fault);
   }
-  // Lines of two unbounded bodies that all but run along each other: the closest points are so far
-  // away that doubles cannot say where, let alone to the tolerance.
-  const double closest_at = where_they_part(r, truth, pose_a, pose_b);
-  const bool out_of_sight = !a_.bounded() && !b_.bounded() && kUlp * closest_at > tolerance;
-  // Floors and wedges through both origins have no size that a rounding error could be relative to.
-  const bool no_size = reach == 0.0;
-  const bool may_give_up = no_size || (out_of_sight && truth.squared_depth == 0);
-  if (may_give_up && r.status == DistanceStatus::kIterationLimit) return faults.all;
+  // A floor through both origins has no size that a rounding error could be relative to.
+  if (reach == 0.0 && r.status == DistanceStatus::kIterationLimit) return faults.all;
   look_at_status(r, truth, tolerance, faults);
   if (r.status == DistanceStatus::kTouching && tolerance > 0.0 && truth.cores_meet()) {
     faults.unless(!overlap_by(tolerance, pose_a, pose_b),
                   text("touching, but a ball of %.3g fits into both", tolerance));
   }
 
-  // Two unbounded bodies may be closest, or part, far away: there the points' own coordinates are
-  // rounded to more.
-  const double out_there = std::max(r.point_on_a.norm(), r.point_on_b.norm());
-  const bool far_out = !a_.bounded() && !b_.bounded();
-  const double placed =
-      kPointTolerance * (far_out ? std::max(reach, out_there) : reach) + 4.0 * kUnderflow;
+  const double placed = kPointTolerance * reach + 4.0 * kUnderflow;
   const double off_a = outside(exact_a_, pose_a, body_a_.radius, r.point_on_a, pose_a);
   const double off_b = outside(exact_b_, pose_b, body_b_.radius, r.point_on_b, pose_a);
   faults.unless(off_a <= placed,
                 text("witness on A is %.3g outside, tolerance %.3g", off_a, placed));
   faults.unless(off_b <= placed,
                 text("witness on B is %.3g outside, tolerance %.3g", off_b, placed));
-  // The normal, a rounded one, leads to where they part but for its rounding; no point there can be
-  // told, and those that are told stay near the bodies.
-  const double led = std::min(kPointTolerance * closest_at, reach);
-  look_at_witnesses(r, placed, out_of_sight ? std::max(placed, led) : placed, faults);
+  look_at_witnesses(r, placed, faults);
   return faults.all;
 }
 

@@ -32,14 +32,11 @@ class DistanceJudge {
   //  - numbers: finite where they must be, lower <= distance <= upper
   //  - the bounds, compared exactly; where the depth is not known, that B moved along the normal
   //    by as much parts from A, and by less does not, to 1e-14 of size()
-  //  - the status: converged, overlapping and touching within 1e-14 of size(); overlapping and
-  //    touching only where it is so; at the iteration limit only where two unbounded bodies, apart
-  //    or touching, are closest beyond what doubles can say; with no lower bound only where two
-  //    unbounded bodies overlap that no translation parts; proved so, with points in both unless
-  //    they meet farther out than they are apart and reach
-  //  - the witness points, to 1.5e-14: on their bodies, and `distance` apart along the normal; of
-  //    two unbounded bodies that meet beyond what doubles can say, beside each other by no more
-  //    than the normal's rounding moves them there, and than their size; the normal: unit
+  //  - the status: converged within 1e-14 of size(), overlapping and touching within 1.25e-14, and
+  //    only where it is so
+  //  - the witness points, to 1.5e-14: on their bodies, and `distance` apart along the normal; the
+  //    normal: unit
+  // Of two unbounded bodies: that the bounds hold, and that numbers are numbers.
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& result,
                                                 const oracle::ExactDistance& truth,
                                                 const Pose& pose_a, const Pose& pose_b);
@@ -64,15 +61,8 @@ class DistanceJudge {
   // where one of them is a hull of points.
   [[nodiscard]] bool overlap_by(double depth, const Pose& pose_a, const Pose& pose_b) const;
 
-  // Of two unbounded bodies, where the result says that no translation parts them.
-  [[nodiscard]] std::vector<std::string> faults_of_no_way_out(const DistanceResult& r,
-                                                              const oracle::ExactDistance& truth,
-                                                              const Pose& pose_a,
-                                                              const Pose& pose_b);
-  // How far from A's origin the closest points are (m); of two unbounded bodies that overlap, of B
-  // moved out along the normal: there they would meet.
-  [[nodiscard]] double where_they_part(const DistanceResult& r, const oracle::ExactDistance& truth,
-                                       const Pose& pose_a, const Pose& pose_b);
+  [[nodiscard]] std::vector<std::string> faults_of_unbounded(
+      const DistanceResult& r, const oracle::ExactDistance& truth) const;
 
   oracle::Body body_a_, body_b_;
   oracle::ExactBody exact_a_, exact_b_;

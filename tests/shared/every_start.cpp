@@ -9,20 +9,22 @@ namespace {
 // Each feature that the body has, with a point on it, and none.
 std::vector<TrackingState::Side> every_side(const ConvexPolyhedron& body) {
   std::vector<TrackingState::Side> out(1);
-  const auto add = [&](std::uint8_t dimension, std::size_t feature, const Vec3& point) {
-    out.push_back({dimension, false, static_cast<std::int32_t>(feature), point});
+  const auto add = [&](FeatureKind kind, std::size_t feature, const Vec3& point) {
+    out.push_back({kind, false, static_cast<std::int32_t>(feature), point});
   };
-  for (std::size_t i = 0; i < body.vertices.size(); ++i) add(0, i, body.vertices[i].position);
+  for (std::size_t i = 0; i < body.vertices.size(); ++i)
+    add(FeatureKind::kVertex, i, body.vertices[i].position);
   for (std::size_t i = 0; i < body.edges.size(); ++i) {
     const Edge& edge = body.edges[i];
-    add(1, i, edge.point + std::min(0.5 * edge.end, 1.0) * edge.direction);
+    add(FeatureKind::kEdge, i, edge.point + std::min(0.5 * edge.end, 1.0) * edge.direction);
   }
-  for (std::size_t i = 0; i < body.facets.size(); ++i) add(2, i, body.point_of(body.facets[i]));
+  for (std::size_t i = 0; i < body.facets.size(); ++i)
+    add(FeatureKind::kFacet, i, body.point_of(body.facets[i]));
   return out;
 }
 
 std::string name_of(const TrackingState::Side& side) {
-  return std::to_string(side.dimension) + '/' + std::to_string(side.feature);
+  return std::to_string(static_cast<int>(side.kind)) + '/' + std::to_string(side.feature);
 }
 
 }  // namespace

@@ -10,14 +10,6 @@ namespace clearance::hard {
 // common direction, or all alike, by quaternions of different lengths.
 [[nodiscard]] HardCase columns(Random& random);
 
-// The same, leaning against each other by 1e-14 to 1 rad: closest, or meeting, up to 1e17 m away.
-[[nodiscard]] HardCase leaning(Random& random);
-
-// The same, leaning by 5e-324 to 1e-100 rad: what only components of a quaternion can say.
-[[nodiscard]] HardCase hairs_breadth(Random& random);
-// Two of these given by normals with components down to subnormals.
-[[nodiscard]] HardCase faint_normals(Random& random);
-
 // Bodies of 1e-120 to 1e80 m, one or both.
 [[nodiscard]] HardCase scales(Random& random);
 

@@ -171,9 +171,10 @@ Body lattice(Random& random) {
 
 Body unbounded(Random& random) {
   Body out;
-  const double tilt = random.chance(0.4) ? random.log_uniform(1e-15, 1e-2) : 0.0;
+  const double tilt = random.chance(0.4) ? random.log_uniform(1e-5, 1e-2) : 0.0;
   const int sides = random.integer(3, 24);
-  switch (random.integer(0, 7)) {
+  const int kind = random.integer(0, 7);
+  switch (kind) {
     case 0:  // half-space
       add_row(out, {0, 0, 1}, 0.0);
       break;
@@ -182,7 +183,7 @@ Body unbounded(Random& random) {
       add_row(out, {0, 0, -1}, 0.5);
       break;
     case 2:  // wedge
-      out.rows = wedge(random.log_uniform(1e-6, 3.0), 1.0).rows;
+      out.rows = wedge(random.log_uniform(1e-5, 3.0), 1.0).rows;
       out.rows.resize(2);
       break;
     case 3:  // corner
@@ -206,7 +207,9 @@ Body unbounded(Random& random) {
       out.rows = random_polytope(random, random.integer(5, 20)).rows;
       out.rows.resize(static_cast<std::size_t>(random.integer(1, 3)));
   }
-  return random.chance(0.5) ? rotated(std::move(out), random.rotation()) : out;
+  Body turned = random.chance(0.5) ? rotated(out, random.rotation()) : out;
+  const bool is_prism = kind == 5 || kind == 6;  // turned, its sides would not be parallel
+  return is_prism ? out : turned;
 }
 
 Body rounded(Random& random) {

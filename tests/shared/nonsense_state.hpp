@@ -13,7 +13,7 @@ namespace clearance::test {
 [[nodiscard]] inline TrackingState::Side nonsense_side(const ConvexPolyhedron& body,
                                                        Random& random) {
   TrackingState::Side out;
-  out.dimension = static_cast<std::uint8_t>(random.integer(0, 6));
+  out.kind = static_cast<FeatureKind>(random.integer(0, 6));
   const std::size_t most = std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
   out.feature = random.integer(-2, static_cast<int>(most) + 1);
   out.point = random.in_box(random.log_uniform(1e-3, random.chance(0.7) ? 1e18 : 1e307));
@@ -25,7 +25,7 @@ namespace clearance::test {
 [[nodiscard]] inline TrackingState nonsense_state(const ConvexPolyhedron& a,
                                                   const ConvexPolyhedron& b, Random& random) {
   TrackingState out{nonsense_side(a, random), nonsense_side(b, random)};
-  out.a.deep = random.chance(0.5);
+  out.a.penetrating = random.chance(0.5);
   return out;
 }
 
@@ -35,7 +35,7 @@ namespace clearance::test {
   const int dimension = random.integer(0, 2);
   const auto count = static_cast<int>(body.features[static_cast<std::size_t>(dimension)]);
   if (count == 0) return out;
-  out.dimension = static_cast<std::uint8_t>(dimension);
+  out.kind = static_cast<FeatureKind>(dimension);
   out.feature = random.integer(0, count - 1);
   const auto on_edge = [&](const Edge& edge) -> Vec3 {
     const double from = std::max(edge.begin, -10.0), to = std::min(edge.end, 10.0);
@@ -58,7 +58,7 @@ namespace clearance::test {
 [[nodiscard]] inline TrackingState other_state(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                                Random& random) {
   TrackingState out{other_side(a, random), other_side(b, random)};
-  out.a.deep = random.chance(0.3);
+  out.a.penetrating = random.chance(0.3);
   return out;
 }
 

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "monitor/build_info/build_info.hpp"
 #include "monitor/monitor.hpp"
-#include "monitor/recording/build.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -291,7 +291,7 @@ TEST(DaemonCommand, NeverOverwritesARecording) {
   ChildProcess daemon(test::kDaemon,
                       test::with({cell.path(), "--record", (folder / "old").string()}, dds));
   EXPECT_EQ(daemon.wait(), 5);
-  EXPECT_TRUE(daemon.wrote("is there already; --force writes over it")) << daemon.output();
+  EXPECT_TRUE(daemon.wrote("exists; --force overwrites it")) << daemon.output();
   EXPECT_EQ("precious", test::read_text(folder / "old"));
 }
 

@@ -201,7 +201,7 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
   ASSERT_EQ(0, record_log());
   EXPECT_EQ(1, record_log());
-  EXPECT_THAT(output, HasSubstr("run.mcap is there already; --force writes over it"));
+  EXPECT_THAT(output, HasSubstr("run.mcap exists; --force overwrites it"));
   EXPECT_EQ(1, replay({"--csv", path("nowhere/table.csv"), "-o", path("again.mcap")}));
   EXPECT_THAT(output, HasSubstr("cannot create " + path("nowhere/table.csv")));
   EXPECT_EQ(1, replay({"-o", path("nowhere/again.mcap")}));
@@ -269,7 +269,7 @@ TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {
   for (const char* option : {"-o", "--csv"}) {
     write_text(folder / "old", "precious");
     EXPECT_EQ(1, replay({option, path("old")}));
-    EXPECT_THAT(output, HasSubstr("old is there already; --force writes over it"));
+    EXPECT_THAT(output, HasSubstr("old exists; --force overwrites it"));
     EXPECT_EQ("precious", read_text(folder / "old"));
     EXPECT_EQ(0, replay({option, path("old"), "--force"})) << output;
     EXPECT_NE("precious", read_text(folder / "old"));

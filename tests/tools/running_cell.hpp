@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "config/cell_file.hpp"
-#include "monitor/daemon/ports.hpp"
+#include "monitor/loop/ports.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/loopback.hpp"
@@ -80,9 +80,7 @@ inline std::vector<std::string> with(std::vector<std::string> first,
 class Poses {
  public:
   Poses(Participant& participant, const Scene& scene)
-      : scene_(scene),
-        writer_(participant.writer(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
-                                   Delivery::kStream, 64)) {
+      : scene_(scene), writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)) {
     poses_at(scene, 0.0, poses_);
     sample_ = make_batch(poses_.size());
   }
@@ -121,8 +119,7 @@ class Poses {
 class Distances {
  public:
   Distances(Participant& participant, const Scene& scene)
-      : reader_(participant.reader(topic_descriptor<clearance_msg_Distances>(),
-                                   scene.topics.distances, Delivery::kStream, 8192)) {}
+      : reader_(participant.reader(TopicKind::kDistances, scene.topics.distances, 8192)) {}
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
 
   // Past discovery: until both ends know each other, reports may be missing.

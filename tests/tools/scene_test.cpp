@@ -48,7 +48,7 @@ TEST_F(SceneProgram, WritesACellThatIsGood) {
 TEST_F(SceneProgram, WritesOverAFileOnlyWhenForced) {
   std::ofstream(file("cell.yaml")) << "precious";
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml")}), 1);
-  EXPECT_NE(output_.find("is there already; --force writes over it"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("exists; --force overwrites it"), std::string::npos) << output_;
   EXPECT_EQ(std::filesystem::file_size(file("cell.yaml")), 8u);
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--force"}), 0)
       << output_;

@@ -78,8 +78,7 @@ TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
   const Scene scene = cell.scene();
   const DdsOptions dds = test::own_dds();
   Participant participant(dds);
-  const dds_entity_t reader = participant.reader(topic_descriptor<clearance_msg_PoseBatch>(),
-                                                 scene.topics.poses, Delivery::kStream, 4096);
+  const dds_entity_t reader = participant.reader(TopicKind::kPoses, scene.topics.poses, 4096);
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "100", "--source", "tester"},
                                               test::dds_arguments(dds)));
   Sample<clearance_msg_PoseBatch> sample;

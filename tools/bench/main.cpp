@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "monitor/recording/build.hpp"
+#include "monitor/build_info/build_info.hpp"
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"

@@ -66,7 +66,7 @@ inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, doub
   const Lambda best = lambda(side, towards_in_common);
   if (!(best.rate > least)) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
-  if (side.feature() == Feature::kEdge) {
+  if (side.feature() == FeatureKind::kEdge) {
     const bool both = (side.edge().inward * towards).minCoeff() > least;
     if (both)
       side.place_inside(side.own());
@@ -74,7 +74,7 @@ inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, doub
       let_go(side, best);
     return true;
   }
-  if (side.feature() != Feature::kVertex) {
+  if (side.feature() != FeatureKind::kVertex) {
     let_go(side, best);
     return true;
   }
@@ -96,7 +96,7 @@ inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, doub
   const Edge& f = side.body().edges[other];
   for (const std::int32_t facet : e.facet) {
     if (rising != 2 || (facet != f.facet[0] && facet != f.facet[1])) continue;
-    side.place(Feature::kFacet, facet, side.own());
+    side.place(FeatureKind::kFacet, facet, side.own());
     return true;
   }
   side.place_inside(side.own());
@@ -122,7 +122,7 @@ LoopEnd dqp3_variant(ActiveFeature& a, ActiveFeature& b) {
       release_all(a, b, least);
       if (step<kScan>(a, b) && !release_all(a, b, least)) return {true, cycle};
     } else if constexpr (kRelease == Release::kConsistent) {
-      const bool active = a.feature() != Feature::kInside && b.feature() != Feature::kInside;
+      const bool active = a.feature() != FeatureKind::kInside && b.feature() != FeatureKind::kInside;
       if (active && !release_best<kRelease>(a, b, least)) return {true, cycle};
       step<kScan>(a, b);
     } else {

@@ -17,12 +17,12 @@ namespace clearance::bench {
 
 // The same as alpha(), found the long way.
 [[nodiscard]] inline Alpha alpha_over_all(const ActiveFeature& side, const Vec3& move_in_common) {
-  if (side.feature() == Feature::kVertex || side.feature() == Feature::kInside) {
+  if (side.feature() == FeatureKind::kVertex || side.feature() == FeatureKind::kInside) {
     return alpha(side, move_in_common);
   }
   const ConvexPolyhedron& body = side.body();
   const Vec3 move = side.direction_to_own(move_in_common);
-  const bool on_edge = side.feature() == Feature::kEdge;
+  const bool on_edge = side.feature() == FeatureKind::kEdge;
   const std::int32_t active[2] = {on_edge ? side.edge().facet[0] : side.index(),
                                   on_edge ? side.edge().facet[1] : kNone};
   // A vertex where many facets meet lets x pass along their common edge only up to rounding.

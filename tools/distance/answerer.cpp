@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/dqp3.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/radii.hpp"
+#include "monitor/app/print.hpp"
 
 namespace clearance {
 namespace {
@@ -84,23 +84,24 @@ OrderedJson Answerer::answer(const DistanceCase& question) {
 }
 
 void Answerer::print_summary(std::size_t lines, std::size_t bad_lines) const {
-  std::cerr << "clearance-distance: " << lines << " lines, " << bad_lines << " with errors, "
-            << queries_ << " queries" << (cold_ ? " (cold)" : "");
+  print(stderr, "clearance-distance: {} lines, {} with errors, {} queries{}", lines, bad_lines,
+        queries_, cold_ ? " (cold)" : "");
   if (queries_ > 0) {
     const double ns = std::chrono::duration<double, std::nano>(time_).count();
-    std::cerr << ", " << std::llround(ns / static_cast<double>(queries_)) << " ns a query, "
-              << not_converged_ << " stopped at the iteration limit";
+    print(stderr, ", {} ns a query, {} stopped at the iteration limit",
+          std::llround(ns / static_cast<double>(queries_)), not_converged_);
   }
-  std::cerr << '\n';
+  print(stderr, "\n");
   if (queries_ > 0) print_paths();
 }
 
 void Answerer::print_paths() const {
   const std::size_t robust = paths_[DistancePath::kRobust];
-  std::cerr << "clearance-distance: by the walk " << paths_[DistancePath::kWalk] << ", by the loop "
-            << paths_[DistancePath::kLoop] + robust << " (" << paths_.met << " touch or overlap, "
-            << robust << " by the robust path), by the last overlap "
-            << paths_[DistancePath::kOverlap] << '\n';
+  print(stderr,
+        "clearance-distance: by the walk {}, by the loop {} ({} touch or overlap, {} by the robust "
+        "path), by the last overlap {}\n",
+        paths_[DistancePath::kWalk], paths_[DistancePath::kLoop] + robust, paths_.met, robust,
+        paths_[DistancePath::kOverlap]);
 }
 
 void PathCount::add(const DistanceResult& result) {

@@ -1,5 +1,7 @@
 #include "tools/distance/case.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <variant>
@@ -14,24 +16,25 @@ using Json = nlohmann::json;
 // As much of a value as a message can carry.
 std::string shown(const Json& value) {
   const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  return text.size() <= 80 ? text : text.substr(0, 77) + "...";
+  return text.size() <= 80 ? text : fmt::format("{}...", text.substr(0, 77));
 }
 
 const Json& member(const Json& object, const char* key, const std::string& where) {
-  if (!object.is_object()) throw BadLine(where + " is not a JSON object");
+  if (!object.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
   const auto found = object.find(key);
-  if (found == object.end()) throw BadLine(where + " has no \"" + key + "\"");
+  if (found == object.end()) throw BadLine(fmt::format("{} has no \"{}\"", where, key));
   return *found;
 }
 
 template <std::size_t N>
 std::array<double, N> numbers(const Json& list, const std::string& where, const char* expected) {
   if (!list.is_array() || list.size() != N) {
-    throw BadLine(where + ": expected " + expected + ", found " + shown(list));
+    throw BadLine(fmt::format("{}: expected {}, found {}", where, expected, shown(list)));
   }
   std::array<double, N> out{};
   for (std::size_t k = 0; k < N; ++k) {
-    if (!list[k].is_number()) throw BadLine(where + ": " + shown(list[k]) + " is not a number");
+    if (!list[k].is_number())
+      throw BadLine(fmt::format("{}: {} is not a number", where, shown(list[k])));
     out[k] = list[k].get<double>();
   }
   return out;
@@ -44,19 +47,19 @@ Pose read_pose(const Json& list, const std::string& where) {
   const Pose pose{{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
   const double norm = pose.orientation.norm();
   if (!pose.position.allFinite() || !std::isfinite(norm)) {
-    throw BadLine(where + " is not finite");
+    throw BadLine(fmt::format("{} is not finite", where));
   }
   if (!(pose.position.cwiseAbs().maxCoeff() <= kFarthest)) {
-    throw BadLine(where + " lies more than 1e100 m from the origin");
+    throw BadLine(fmt::format("{} lies more than 1e100 m from the origin", where));
   }
-  if (norm == 0.0) throw BadLine(where + ": the quaternion has length zero");
+  if (norm == 0.0) throw BadLine(fmt::format("{}: the quaternion has length zero", where));
   return pose;
 }
 
 ShapeResult shape_of_rows(const Json& list, const std::string& where) {
   std::vector<HalfSpace> rows;
   for (const Json& entry : list) {
-    const std::string row = where + ".halfspaces[" + std::to_string(rows.size()) + "]";
+    const std::string row = fmt::format("{}.halfspaces[{}]", where, rows.size());
     const auto v = numbers<4>(entry, row, "[nx, ny, nz, d]");
     rows.push_back({{v[0], v[1], v[2]}, v[3]});
   }
@@ -66,7 +69,7 @@ ShapeResult shape_of_rows(const Json& list, const std::string& where) {
 ShapeResult shape_of_vertices(const Json& list, const std::string& where, double radius) {
   std::vector<Vec3> points;
   for (const Json& entry : list) {
-    const std::string row = where + ".vertices[" + std::to_string(points.size()) + "]";
+    const std::string row = fmt::format("{}.vertices[{}]", where, points.size());
     const auto v = numbers<3>(entry, row, "[x, y, z]");
     points.emplace_back(v[0], v[1], v[2]);
   }
@@ -76,31 +79,31 @@ ShapeResult shape_of_vertices(const Json& list, const std::string& where, double
 }
 
 ConvexPolyhedron read_body(const Json& body, const std::string& where) {
-  if (!body.is_object()) throw BadLine(where + " is not a JSON object");
+  if (!body.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
   double radius = 0.0;
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
     if (!found->is_number() || !(found->get<double>() >= 0.0) ||
         !(found->get<double>() <= kFarthest)) {
-      throw BadLine(where + ".radius: expected a length in metres, at most 1e100, found " +
-                    shown(*found));
+      throw BadLine(fmt::format("{}.radius: expected a length in metres, at most 1e100, found {}",
+                                where, shown(*found)));
     }
     radius = found->get<double>();
   }
   const auto list_named = [&](const char* key) -> const Json* {
     const auto found = body.find(key);
     if (found == body.end() || found->is_null()) return nullptr;
-    if (!found->is_array()) throw BadLine(where + "." + key + " is not a list");
+    if (!found->is_array()) throw BadLine(fmt::format("{}.{} is not a list", where, key));
     return &*found;
   };
   const Json* rows = list_named("halfspaces");
   const Json* vertices = list_named("vertices");
   if (rows == nullptr && vertices == nullptr) {
-    throw BadLine(where + " has neither \"halfspaces\" nor \"vertices\"");
+    throw BadLine(fmt::format("{} has neither \"halfspaces\" nor \"vertices\"", where));
   }
   ShapeResult shape =
       rows != nullptr ? shape_of_rows(*rows, where) : shape_of_vertices(*vertices, where, radius);
   if (const auto* error = std::get_if<ShapeError>(&shape)) {
-    throw BadLine(where + ": " + error->reason);
+    throw BadLine(fmt::format("{}: {}", where, error->reason));
   }
   ConvexPolyhedron& polyhedron = std::get<ConvexPolyhedron>(shape);
   polyhedron.radius = radius;
@@ -111,11 +114,12 @@ std::vector<std::pair<Pose, Pose>> read_motion(const Json& list) {
   if (!list.is_array()) throw BadLine("poses is not a list");
   std::vector<std::pair<Pose, Pose>> out;
   for (const Json& step : list) {
-    const std::string where = "poses[" + std::to_string(out.size()) + "]";
+    const std::string where = fmt::format("poses[{}]", out.size());
     if (!step.is_array() || step.size() != 2) {
-      throw BadLine(where + ": expected [pose_a, pose_b], found " + shown(step));
+      throw BadLine(fmt::format("{}: expected [pose_a, pose_b], found {}", where, shown(step)));
     }
-    out.emplace_back(read_pose(step[0], where + "[0]"), read_pose(step[1], where + "[1]"));
+    out.emplace_back(read_pose(step[0], fmt::format("{}[0]", where)),
+                     read_pose(step[1], fmt::format("{}[1]", where)));
   }
   return out;
 }

@@ -1,5 +1,7 @@
 #include "tools/distance/exact_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,6 +11,7 @@
 
 #include "core/distance.hpp"
 #include "core/numerics/error_constants.hpp"
+#include "monitor/app/print.hpp"
 #include "tools/distance/rational.hpp"
 
 namespace clearance {
@@ -30,7 +33,7 @@ ExactNumber exact_number(const Json& value, const char* key) {
   const std::string text = value.is_string() ? value.get<std::string>() : "";
   const auto number = rational_from(text);
   if (!number)
-    throw BadLine(std::string(key) + ": expected an exact number as text, as \"0.0625\"");
+    throw BadLine(fmt::format("{}: expected an exact number as text, as \"0.0625\"", key));
   return {*number, text};
 }
 
@@ -118,7 +121,7 @@ class ExactCheck::Judge {
                       const std::string& status) {
     const Rational& truth = question_.distance.value;
     const Rational slack = truth * digits_left_out();
-    const std::string exact = ", exactly " + question_.distance.text;
+    const std::string exact = fmt::format(", exactly {}", question_.distance.text);
     if (!is_finite(distance) || !is_finite(lower) || !is_finite(upper)) {
       faults.push_back("has no number for distance, lower and upper");
       return;
@@ -127,37 +130,37 @@ class ExactCheck::Judge {
     const Rational off = abs(Rational(d) - truth);
     figures.error = off.get_d() / measure_;
     judge_gap(lower.get<double>(), upper.get<double>());
-    if (figures.error > tolerance_) faults.push_back("distance " + shown(d) + exact);
+    if (figures.error > tolerance_) faults.push_back(fmt::format("distance {}{}", shown(d), exact));
     if (Rational(lower.get<double>()) > truth + slack) {
-      faults.push_back("lower bound " + shown(lower.get<double>()) + exact);
+      faults.push_back(fmt::format("lower bound {}{}", shown(lower.get<double>()), exact));
     }
     if (Rational(upper.get<double>()) < truth - slack) {
-      faults.push_back("upper bound " + shown(upper.get<double>()) + exact);
+      faults.push_back(fmt::format("upper bound {}{}", shown(upper.get<double>()), exact));
     }
     if (status == name(DistanceStatus::kIterationLimit) ||
         (status == name(DistanceStatus::kOverlapping) && truth > 0)) {
-      faults.push_back("status " + status + exact);
+      faults.push_back(fmt::format("status {}{}", status, exact));
     }
   }
 
   void judge_depth(const Json& depth, const Json& lower, const Json& upper) {
     if (!question_.penetration) return;
     const Rational& exact = question_.penetration->value;
-    const std::string text = ", exactly " + question_.penetration->text;
+    const std::string text = fmt::format(", exactly {}", question_.penetration->text);
     if (!is_finite(depth) || !is_finite(lower) || !is_finite(upper)) {
-      faults.push_back("has no number for penetration and its bounds" + text);
+      faults.push_back(fmt::format("has no number for penetration and its bounds{}", text));
       return;
     }
     const Rational slack = exact * digits_left_out();
     judge_gap(lower.get<double>(), upper.get<double>());
     figures.depth = Rational(abs(Rational(depth.get<double>()) - exact)).get_d() / question_.scale;
     if (figures.depth > tolerance_) {
-      faults.push_back("penetration " + shown(depth.get<double>()) + text);
+      faults.push_back(fmt::format("penetration {}{}", shown(depth.get<double>()), text));
     }
     if (Rational(lower.get<double>()) > exact + slack ||
         Rational(upper.get<double>()) < exact - slack) {
-      faults.push_back("penetration from " + shown(lower.get<double>()) + " to " +
-                       shown(upper.get<double>()) + text);
+      faults.push_back(fmt::format("penetration from {} to {}{}", shown(lower.get<double>()),
+                                   shown(upper.get<double>()), text));
     }
   }
 
@@ -174,8 +177,8 @@ class ExactCheck::Judge {
     const double over = std::max(0.0, apart - rounding_of(a) - rounding_of(b)) / measure_;
     figures.witness = std::max(figures.witness, over);
     if (over > tolerance_) {
-      faults.push_back("the witness points are not " + shown(distance) + " apart, but off by " +
-                       shown(apart));
+      faults.push_back(fmt::format("the witness points are not {} apart, but off by {}",
+                                   shown(distance), shown(apart)));
     }
   }
 
@@ -187,8 +190,8 @@ class ExactCheck::Judge {
     const double gap = std::max(0.0, upper - lower - kUnderflow) / question_.size;
     figures.gap = std::max(figures.gap, gap);
     if (!(gap <= widest_)) {
-      faults.push_back("bounds from " + shown(lower) + " to " + shown(upper) + ", " + shown(gap) +
-                       " of the bodies' size apart");
+      faults.push_back(fmt::format("bounds from {} to {}, {} of the bodies' size apart",
+                                   shown(lower), shown(upper), shown(gap)));
     }
   }
 
@@ -199,8 +202,7 @@ class ExactCheck::Judge {
     const double over = std::max(0.0, out - rounding_of(point)) / measure_;
     figures.witness = std::max(figures.witness, over);
     if (over > tolerance_) {
-      faults.push_back(std::string("witness_") + which + " is " + shown(out) + " outside of " +
-                       which);
+      faults.push_back(fmt::format("witness_{} is {} outside of {}", which, shown(out), which));
     }
   }
 
@@ -255,7 +257,7 @@ std::vector<std::string> ExactCheck::faults(const Json& line, const DistanceCase
     judge.figures.wrong = judge.faults.empty() ? 0 : 1;
     families_[line.value("family", "cases")].add(judge.figures);
     for (const std::string& fault : judge.faults) {
-      all.push_back((asked.motion ? "pose " + std::to_string(k) + ": " : "") + fault);
+      all.push_back((asked.motion ? fmt::format("pose {}: ", k) : "") + fault);
     }
   }
   return all;
@@ -268,24 +270,24 @@ ExactCheck::Figures ExactCheck::total() const {
 }
 
 void ExactCheck::print_row(const std::string& name, const Figures& figures) {
-  std::fprintf(stderr, "%-20s %8zu %9.1e %9.1e %9.1e %9.1e %6zu\n", name.c_str(), figures.answers,
-               figures.error, figures.gap, figures.witness, figures.depth, figures.wrong);
+  print(stderr, "{:<20} {:8} {:9.1e} {:9.1e} {:9.1e} {:9.1e} {:6}\n", name, figures.answers,
+        figures.error, figures.gap, figures.witness, figures.depth, figures.wrong);
 }
 
 void ExactCheck::print_summary() const {
-  std::fprintf(stderr,
-               "%-20s %8s %9s %9s %9s %9s %6s   largest, over the scale; gap over the size\n",
-               "family", "answers", "error", "gap", "witness", "depth", "wrong");
+  print(stderr,
+        "{:<20} {:>8} {:>9} {:>9} {:>9} {:>9} {:>6}   largest, over the scale; gap over the size\n",
+        "family", "answers", "error", "gap", "witness", "depth", "wrong");
   for (const auto& [family, figures] : families_) print_row(family, figures);
   const Figures sum = total();
   print_row("all", sum);
-  if (without_ > 0) std::fprintf(stderr, "%zu lines carry no exact answer\n", without_);
-  std::fprintf(stderr, "%s\n",
-               sum.answers == 0 ? "nothing was checked"
-               : sum.wrong == 0
-                   ? "every bound holds and is as near as promised, every answer is within the "
-                     "tolerance"
-                   : "some answers are wrong");
+  if (without_ > 0) print(stderr, "{} lines carry no exact answer\n", without_);
+  print(stderr, "{}\n",
+        sum.answers == 0 ? "nothing was checked"
+        : sum.wrong == 0
+            ? "every bound holds and is as near as promised, every answer is within the "
+              "tolerance"
+            : "some answers are wrong");
 }
 
 bool ExactCheck::good() const {

@@ -1,5 +1,7 @@
 #include "tools/record/stream_gaps.hpp"
 
+#include <fmt/format.h>
+
 namespace clearance {
 
 void StreamGaps::note(const std::string& kind, const std::string& stream, std::uint64_t number) {
@@ -12,15 +14,15 @@ void StreamGaps::note(const std::string& kind, const std::string& stream, std::u
 std::vector<std::string> StreamGaps::notes() const {
   std::vector<std::string> notes;
   for (const auto& [name, stream] : streams_) {
-    const std::string what = stream.kind + " " + name;
+    const std::string what = fmt::format("{} {}", stream.kind, name);
     if (stream.first > 1) {
-      notes.push_back("the first of the " + what + " here is number " +
-                      std::to_string(stream.first) +
-                      ": those before it were sent before this recorder was known");
+      notes.push_back(
+          fmt::format("the first of the {} here is number {}: those before it were sent before "
+                      "this recorder was known",
+                      what, stream.first));
     }
     if (stream.missing > 0) {
-      notes.push_back(std::to_string(stream.missing) + " of the " + what +
-                      " are missing in between");
+      notes.push_back(fmt::format("{} of the {} are missing in between", stream.missing, what));
     }
   }
   return notes;

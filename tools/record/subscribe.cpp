@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <unistd.h>
@@ -8,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/recording/writer.hpp"
@@ -28,11 +31,8 @@ class Subscription {
  public:
   Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer)
       : writer_(writer) {
-    for (const TopicKind kind : kTopicKinds) {
-      const bool stream = kind == TopicKind::kPoses || kind == TopicKind::kDistances;
-      readers_[index(kind)] =
-          participant.reader(descriptor(kind), topic_name(topics, kind),
-                             stream ? Delivery::kStream : Delivery::kLatched, kDepth);
+    for (const Topic& topic : kTopics) {
+      readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
   }
 
@@ -57,16 +57,16 @@ class Subscription {
 
   [[nodiscard]] std::vector<std::string> gaps() const { return gaps_.notes(); }
 
-  // In the order of kTopicKinds, so that poses stand before the reports that used them.
+  // In the order of the table, so that poses stand before the reports that used them.
   void take_all() {
-    for (const TopicKind kind : kTopicKinds) {
-      while (take(kind)) {
+    for (const Topic& topic : kTopics) {
+      while (take(topic.kind)) {
       }
       // Cyclone gives what waits source by source, zone by zone: back into the order of sending.
       std::ranges::stable_sort(taken_, {}, &Taken::source_ns);
       const std::int64_t now_ns = dds_time();
       for (const Taken& taken : taken_) {
-        record(kind, now_ns, taken);
+        record(topic.kind, now_ns, taken);
         ddsi_serdata_unref(taken.sample);
       }
       taken_.clear();
@@ -78,8 +78,6 @@ class Subscription {
     std::int64_t source_ns;
     ddsi_serdata* sample;
   };
-
-  static std::size_t index(TopicKind kind) { return static_cast<std::size_t>(kind); }
 
   bool take(TopicKind kind) {
     std::array<ddsi_serdata*, kAtOnce> samples{};
@@ -109,16 +107,15 @@ class Subscription {
     if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue_)) {
       writer_.describe(*catalogue_);
     } else if (kind == TopicKind::kPoses && decoder_.decode(bytes_, batch_)) {
-      gaps_.note("batches", "of source '" + std::string(batch_->source) + "'",
-                 batch_->sequence_number);
+      gaps_.note("batches", fmt::format("of source '{}'", batch_->source), batch_->sequence_number);
     } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
     }
   }
 
   RecordingWriter& writer_;
-  std::array<dds_entity_t, kTopicKinds.size()> readers_{};
-  std::array<std::uint64_t, kTopicKinds.size()> counts_{};
+  std::array<dds_entity_t, kTopics.size()> readers_{};
+  std::array<std::uint64_t, kTopics.size()> counts_{};
   std::vector<Taken> taken_;
   std::vector<std::byte> bytes_;
   CdrDecoder decoder_;
@@ -129,12 +126,10 @@ class Subscription {
 };
 
 void show(const Subscription& subscription, const RecordingWriter& writer, const char* end) {
-  std::fprintf(stderr, "%llu poses, %llu distances, %llu zones, %llu health; %.1f MB%s",
-               static_cast<unsigned long long>(subscription.count(TopicKind::kPoses)),
-               static_cast<unsigned long long>(subscription.count(TopicKind::kDistances)),
-               static_cast<unsigned long long>(subscription.count(TopicKind::kZones)),
-               static_cast<unsigned long long>(subscription.count(TopicKind::kHealth)),
-               static_cast<double>(writer.bytes()) * 1e-6, end);
+  print(stderr, "{} poses, {} distances, {} zones, {} health; {:.1f} MB{}",
+        subscription.count(TopicKind::kPoses), subscription.count(TopicKind::kDistances),
+        subscription.count(TopicKind::kZones), subscription.count(TopicKind::kHealth),
+        static_cast<double>(writer.bytes()) * 1e-6, end);
 }
 
 // Until stopped, the time is up or the file cannot be written.
@@ -151,10 +146,10 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
     shown_ns = dds_time();
     writer.flush();
     if (!terminal) continue;
-    std::fputc('\r', stderr);
+    print(stderr, "\r");
     show(subscription, writer, " ");
   }
-  if (terminal) std::fputc('\n', stderr);
+  if (terminal) print(stderr, "\n");
 }
 
 }  // namespace
@@ -173,23 +168,22 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
                                   : std::numeric_limits<std::int64_t>::max();
   record_until(end_ns, subscription, participant, writer, stop);
   if (!writer.close()) {
-    std::fprintf(stderr, "clearance-record: %s\n", writer.error().c_str());
+    print(stderr, "clearance-record: {}\n", writer.error());
     return kFailed;
   }
-  std::fprintf(stderr, "%s: ", arguments.out.c_str());
+  print(stderr, "{}: ", arguments.out);
   show(subscription, writer, "\n");
   if (subscription.lost() > 0) {
-    std::fprintf(stderr, "clearance-record: %llu samples were lost on the way here\n",
-                 static_cast<unsigned long long>(subscription.lost()));
+    print(stderr, "clearance-record: {} samples were lost on the way here\n", subscription.lost());
   }
   for (const std::string& gap : subscription.gaps()) {
-    std::fprintf(stderr, "clearance-record: %s\n", gap.c_str());
+    print(stderr, "clearance-record: {}\n", gap);
   }
   if (subscription.total() > 0) return kOk;
-  std::fprintf(stderr,
-               "clearance-record: nothing was heard on %s; does the daemon run there, with these "
-               "topic names?\n",
-               participant.where().c_str());
+  print(stderr,
+        "clearance-record: nothing was heard on {}; does the daemon run there, with these topic "
+        "names?\n",
+        participant.where());
   return kFailed;
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
@@ -15,7 +17,7 @@
 namespace clearance {
 namespace {
 
-void say(const std::string& text) { std::fprintf(stderr, "clearance-replay: %s\n", text.c_str()); }
+void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
 
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
@@ -49,25 +51,22 @@ OfflineReplayOptions options_of(const ReplayArguments& arguments) {
 void print_summary(const Scene& scene, const OfflineReplay& replay, double tolerance,
                    double elapsed_s) {
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
-  std::printf("%llu ticks, %.3f s recorded, replayed in %.3f s (%.0f times as fast)\n",
-              static_cast<unsigned long long>(replay.ticks), recorded_s, elapsed_s,
-              elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
+  print(stdout, "{} ticks, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
+        replay.ticks, recorded_s, elapsed_s, elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
-    std::printf("closest: %s, %.9g m (%.9g to %.9g) at %s\n", pair_name(scene, pair).c_str(),
-                pair.distance, pair.lower, pair.upper, replay.closest_tick.text().c_str());
+    print(stdout, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", pair_name(scene, pair),
+          pair.distance, pair.lower, pair.upper, replay.closest_tick.text());
   }
   if (replay.compared > 0) {
-    std::printf("%llu reports compared\n", static_cast<unsigned long long>(replay.compared));
+    print(stdout, "{} reports compared\n", replay.compared);
   }
   if (replay.reference) {
     const ReferenceTotals& totals = *replay.reference;
-    std::printf(
-        "%llu reference distances compared, largest difference %.2g m; %llu off by more than "
-        "%g m, %llu outside of the bounds\n",
-        static_cast<unsigned long long>(totals.compared), totals.largest,
-        static_cast<unsigned long long>(totals.off), tolerance,
-        static_cast<unsigned long long>(totals.outside));
+    print(stdout,
+          "{} reference distances compared, largest difference {:.2g} m; {} off by more than {:g} "
+          "m, {} outside of the bounds\n",
+          totals.compared, totals.largest, totals.off, tolerance, totals.outside);
   }
 }
 
@@ -144,7 +143,7 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
                      [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
-  std::fputs(replay.text().c_str(), stderr);
+  print(stderr, "{}", replay.text());
   if (!replay.error.empty()) return kFailed;
   print_summary(scene, replay, arguments.tolerance, elapsed.count());
   return finish(replay, outputs);

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string>
 
+#include "monitor/app/print.hpp"
+
 namespace clearance {
 
 class ProgressBar {
@@ -22,14 +24,12 @@ class ProgressBar {
     if (!shown_) return;
     constexpr int kWidth = 40;
     const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * kWidth);
-    std::fprintf(stderr, "\r[%s%s] %3.0f %% %s",
-                 std::string(static_cast<std::size_t>(filled), '#').c_str(),
-                 std::string(static_cast<std::size_t>(kWidth - filled), '.').c_str(), share * 100.0,
-                 text.c_str());
+    print(stderr, "\r[{}{}] {:3.0f} % {}", std::string(static_cast<std::size_t>(filled), '#'),
+          std::string(static_cast<std::size_t>(kWidth - filled), '.'), share * 100.0, text);
     started_ = true;
   }
   void finish() {
-    if (started_) std::fputc('\n', stderr);
+    if (started_) print(stderr, "\n");
     started_ = false;
   }
 

@@ -1,15 +1,18 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <set>
 #include <variant>
 
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/daemon/realtime.hpp"
 #include "monitor/dds/participant.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/loop/realtime.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/replay/arguments.hpp"
@@ -18,14 +21,9 @@
 namespace clearance {
 namespace {
 
-constexpr std::int32_t kDepth = 64;
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-std::int64_t monotonic_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * std::int64_t{1'000'000'000} + now.tv_nsec;
-}
+std::int64_t monotonic_ns() { return SystemClock().monotonic_ns(); }
 
 // The writers of a recording's channels, made when a channel is first met.
 class Writers {
@@ -34,12 +32,7 @@ class Writers {
 
   dds_entity_t of(const RecordedMessage& message) {
     const auto [writer, added] = writers_.try_emplace(message.channel->topic, 0);
-    if (added) {
-      const bool stream =
-          message.kind == TopicKind::kPoses || message.kind == TopicKind::kDistances;
-      writer->second = participant_.writer(descriptor(message.kind), message.channel->topic,
-                                           stream ? Delivery::kStream : Delivery::kLatched, kDepth);
-    }
+    if (added) writer->second = participant_.writer(message.kind, message.channel->topic);
     return writer->second;
   }
   // How many of the writers have a reader.
@@ -91,7 +84,7 @@ class Sender {
       if (restamp_) stamp_ns = moved_to_now(message, *sample);
     }
     check_dds(dds_write_ts(writer, &*sample, std::max<std::int64_t>(stamp_ns, 0)),
-              "writing to " + message.channel->topic);
+              fmt::format("writing to {}", message.channel->topic));
     return true;
   }
 
@@ -120,9 +113,7 @@ bool wait_until(std::int64_t due_ns, StopSignal& stop) {
     if (left <= kPatienceNs) break;
     if (stop.wait((left - kPatienceNs / 2) / kMillisecond)) return false;
   }
-  const timespec due{.tv_sec = due_ns / 1'000'000'000, .tv_nsec = due_ns % 1'000'000'000};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
-  }
+  SystemClock().sleep_until(due_ns);
   return true;
 }
 
@@ -195,8 +186,8 @@ bool Publishing::prepare() {
     if (stop_.wait(5)) return false;
   }
   if (writers_.heard() == 0) {
-    std::fprintf(stderr, "clearance-replay: nobody listens on %s; publishing all the same\n",
-                 participant_.where().c_str());
+    print(stderr, "clearance-replay: nobody listens on {}; publishing all the same\n",
+          participant_.where());
   }
   return true;
 }
@@ -225,11 +216,9 @@ int Publishing::run() {
     if (!publish(message)) break;
     if (monotonic_ns() - shown_ns_ < 100 * kMillisecond) continue;
     shown_ns_ = monotonic_ns();
-    char text[64];
-    std::snprintf(text, sizeof text, "%.1f s, %llu messages",
-                  static_cast<double>(message.log_ns - first_ns_) * 1e-9,
-                  static_cast<unsigned long long>(published_));
-    bar_.show(reader.progress(), text);
+    bar_.show(reader.progress(),
+              fmt::format("{:.1f} s, {} messages",
+                          static_cast<double>(message.log_ns - first_ns_) * 1e-9, published_));
   }
   return finish(reader);
 }
@@ -239,24 +228,23 @@ int Publishing::finish(const RecordingReader& reader) {
   bar_.finish();
   const double took_s =
       began_log_ns_ < 0 ? 0.0 : static_cast<double>(monotonic_ns() - began_ns_) * 1e-9;
-  std::printf("%llu messages published in %.3f s on %s\n",
-              static_cast<unsigned long long>(published_), took_s, participant_.where().c_str());
+  print(stdout, "{} messages published in {:.3f} s on {}\n", published_, took_s,
+        participant_.where());
   if (undecodable_ > 0) {
-    std::fprintf(stderr,
-                 "clearance-replay: %llu messages do not decode as what their channel says\n",
-                 static_cast<unsigned long long>(undecodable_));
+    print(stderr, "clearance-replay: {} messages do not decode as what their channel says\n",
+          undecodable_);
   }
   if (published_ == 0 && !stop_.wait(0)) {
     std::string met;
     for (const std::string& topic : topics_) met += (met.empty() ? "" : ", ") + topic;
-    std::fprintf(stderr,
-                 "clearance-replay: no message of these topics lies between the start and the end; "
-                 "found there: %s\n",
-                 met.empty() ? "none at all" : met.c_str());
+    print(stderr,
+          "clearance-replay: no message of these topics lies between the start and the end; found "
+          "there: {}\n",
+          met.empty() ? "none at all" : met);
     return kFailed;
   }
   if (!reader.error().empty()) {
-    std::fprintf(stderr, "clearance-replay: %s\n", reader.error().c_str());
+    print(stderr, "clearance-replay: {}\n", reader.error());
     return reader.readable() ? kIncomplete : kFailed;
   }
   return kOk;
@@ -267,7 +255,7 @@ int Publishing::finish(const RecordingReader& reader) {
 int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
   const RecordingOutline found = outline(arguments.recording);
   if (!found.error.empty()) {
-    std::fprintf(stderr, "clearance-replay: %s\n", found.error.c_str());
+    print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;
   }
   DdsOptions dds = arguments.dds.resolve(0, "");

@@ -156,7 +156,7 @@ std::string model_json(const Scene& scene) {
     object["full"]["error"] = m.full_error;
     all.push_back(std::move(object));
   }
-  return all.dump(1) + "\n";
+  return fmt::format("{}\n", all.dump(1));
 }
 
 }  // namespace clearance

@@ -1,5 +1,7 @@
 #include "tools/watch/feed.hpp"
 
+#include <fmt/format.h>
+
 #include "monitor/pair_name.hpp"
 
 namespace clearance::watch {
@@ -21,14 +23,11 @@ bool take_one(dds_entity_t reader, T& sample) {
 }  // namespace
 
 Feed::Feed(Participant& participant, const Topics& topics)
-    : distances_reader_(participant.reader(topic_descriptor<clearance_msg_Distances>(),
-                                           topics.distances, Delivery::kStream, kDistancesDepth)),
-      catalogue_reader_(participant.reader(topic_descriptor<clearance_msg_Catalogue>(),
-                                           topics.catalogue, Delivery::kLatched, 1)),
-      health_reader_(participant.reader(topic_descriptor<clearance_msg_Health>(), topics.health,
-                                        Delivery::kLatched, 1)),
-      zones_reader_(participant.reader(topic_descriptor<clearance_msg_ZoneState>(), topics.zones,
-                                       Delivery::kLatched, 1)) {}
+    : distances_reader_(
+          participant.reader(TopicKind::kDistances, topics.distances, kDistancesDepth)),
+      catalogue_reader_(participant.reader(TopicKind::kCatalogue, topics.catalogue)),
+      health_reader_(participant.reader(TopicKind::kHealth, topics.health)),
+      zones_reader_(participant.reader(TopicKind::kZones, topics.zones)) {}
 
 void Feed::take(std::int64_t now_ns) {
   while (take_one(catalogue_reader_, *catalogue_)) has_catalogue_ = true;
@@ -83,15 +82,15 @@ std::uint32_t Feed::publishers() const {
 
 std::string Feed::part_name(std::uint32_t object, std::uint32_t part) const {
   const auto& objects = catalogue_->objects;
-  if (object >= objects._length) return "object " + std::to_string(object);
+  if (object >= objects._length) return fmt::format("object {}", object);
   const clearance_msg_CatalogueObject& found = objects._buffer[object];
   if (found.parts._length < 2 || part >= found.parts._length) return found.name;
-  return std::string(found.name) + "." + found.parts._buffer[part];
+  return fmt::format("{}.{}", found.name, found.parts._buffer[part]);
 }
 
 std::string Feed::pair_name(const clearance_msg_PairDistance& pair) const {
   if (catalogue() == nullptr || pair.pair >= catalogue_->pairs._length) {
-    return "pair " + std::to_string(pair.pair);
+    return fmt::format("pair {}", pair.pair);
   }
   const clearance_msg_CataloguePair& objects = catalogue_->pairs._buffer[pair.pair];
   return clearance::pair_name(part_name(objects.object_a, pair.part_a),

@@ -1,5 +1,7 @@
 #include "tools/watch/terminal.hpp"
 
+#include <fmt/format.h>
+
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -93,10 +95,10 @@ Size Screen::size() const {
 void Screen::draw(const std::vector<Line>& lines) const {
   std::string frame = "\x1b[H";
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    frame += lines[i].text() + "\x1b[K";
+    frame += fmt::format("{}\x1b[K", lines[i].text());
     if (i + 1 < lines.size()) frame += "\r\n";
   }
-  put(frame + "\x1b[J");
+  put(fmt::format("{}\x1b[J", frame));
 }
 
 bool Screen::quit_key() const {

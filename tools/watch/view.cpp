@@ -94,7 +94,7 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add("          ")
       .add(fmt::format("in [{:.6f}, {:.6f}] m, since the last tick at least {:.6f} m  ", pair.lower,
                        pair.upper, pair.swept_lower))
-      .add(report.minimum_proved ? "proved the smallest" : "not proved the smallest",
+      .add(report.minimum_proved ? "certified" : "not certified",
            report.minimum_proved ? Style::kGood : Style::kWarning);
   lines.emplace_back(width).add(fmt::format("          {}  normal ({:.2f} {:.2f} {:.2f})",
                                             approach(pair), pair.normal.x, pair.normal.y,
@@ -199,10 +199,11 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   Line line(width);
   line.add(metres(pair.distance), Style::kBold)
       .add(metres(pair.lower) + metres(pair.upper))
-      .add("  " + speed(pair.closing_speed) + "  " + contact_time(pair.time_to_contact) + "  ")
+      .add(fmt::format("  {}  {}  ", speed(pair.closing_speed), contact_time(pair.time_to_contact)))
       .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status))
       .add(fmt::format("{:9}  ", pair.refresh_age_cycles), Style::kDim);
-  if (width >= kWideColumns) line.add(point(pair.witness_a) + "  " + point(pair.witness_b) + "  ");
+  if (width >= kWideColumns)
+    line.add(fmt::format("{}  {}  ", point(pair.witness_a), point(pair.witness_b)));
   return line.add(feed.pair_name(pair));
 }
 
@@ -251,7 +252,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
 }
 
 std::string plain_line(const Feed& feed, const ViewContext& context) {
-  if (!feed.any()) return "waiting for clearanced on " + context.where;
+  if (!feed.any()) return fmt::format("waiting for clearanced on {}", context.where);
   if (silent(feed, context.now_ns)) {
     return fmt::format("clearanced is silent for {:.1f} s, last cycle {}",
                        1e-9 * static_cast<double>(context.now_ns - feed.last_ns()),

@@ -25,7 +25,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   side.place_inside(Vec3::Zero());
   // On the plane of the facet that is said to block, a metre beside it.
   advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
-  ASSERT_EQ(side.feature(), Feature::kFacet);
+  ASSERT_EQ(side.feature(), FeatureKind::kFacet);
   EXPECT_EQ(side.facet().normal, Vec3::UnitY());
   EXPECT_EQ(side.own(), Vec3(0.5, 0.5, 0.0));
 }
@@ -33,7 +33,8 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
 TEST(ActiveFeature, OfABodyWithoutEndStartsNoFartherOutThanAnyClosestPoint) {
   const ConvexPolyhedron floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
   const ActiveFeature other(box, nullptr);
-  const TrackingState::Side near{2, false, 0, {1.0, 2.0, 0.0}}, far{2, false, 0, {1e17, 2.0, 0.0}};
+  const TrackingState::Side near{FeatureKind::kFacet, false, 0, {1.0, 2.0, 0.0}},
+      far{FeatureKind::kFacet, false, 0, {1e17, 2.0, 0.0}};
   ActiveFeature side(floor, nullptr);
   side.place_near(near, other, 2.0);
   EXPECT_EQ(side.own(), near.point);

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/construction/exact_polyhedron.hpp"
-#include "core/model/lean.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/vertex_enumeration.hpp"
 
@@ -123,25 +121,6 @@ TEST(ExactRounding, OppositeDirectionsStayOpposite) {
                          back = nearest_direction({-large, 3, -7 * large});
   EXPECT_FALSE(there.exact);
   EXPECT_EQ(there.vector, -back.vector);
-  EXPECT_EQ(there.rest, -back.rest);
-}
-
-// The longest ones: to the last bit, and back.
-TEST(ExactRounding, DirectionsAreKeptExactlyAsFarAsThereIsRoom) {
-  const Integer3 longest = {Integer(Integer(1) << 6299), 1, -3};
-  ASSERT_TRUE(has_exact_direction(longest));
-  EXPECT_FALSE(has_exact_direction({Integer(Integer(1) << 6300), 1, 0}));
-  EXPECT_TRUE(has_exact_direction({Integer(Integer(1) << 9000), Integer(Integer(5) << 9000), 0}));
-  LongVec<3> sum = long_vec(exact_direction(longest));
-  EXPECT_EQ(sum[0].scaled(-2999).high, 1.0);
-  EXPECT_EQ(sum[1].scaled(3300).high, 1.0);
-  EXPECT_EQ(sum[2].scaled(3300).high, -3.0);
-}
-
-TEST(ExactRounding, ABodyIsRefusedWhoseRaysThereIsNoRoomFor) {
-  const Integer3 plane = {0, 0, 1}, ray = {Integer(Integer(1) << 6300), 1, 0};
-  const Solid solid{{{plane[0], plane[1], plane[2], 0}}, {}, {ray}, {}, {0, 0, -1, 1}};
-  EXPECT_TRUE(std::holds_alternative<ShapeError>(rounded_polyhedron(solid)));
 }
 
 }  // namespace

@@ -11,19 +11,22 @@
 namespace clearance {
 namespace {
 
-using test::expect_as_enumerated;
 using test::made;
 using ::testing::IsEmpty;
 
-TEST(UnboundedShapes, PlanesAlmostParallelMayMeetFarAway) {
-  const std::vector<HalfSpace> rows = {
-      {{-0x1p-60, 1, 0}, 0}, {{0, -1, 0}, -1}, {{0, 0, 1}, 1}, {{0, 0, -1}, 1}};
-  const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
-  expect_as_enumerated(body, rows);
-  ASSERT_EQ(body.vertices.size(), 2U);
-  EXPECT_EQ(body.vertices[0].position.x(), 0x1p60);
-  for (const Facet& facet : body.facets) {
-    EXPECT_LE(facet.normal.dot(body.interior), facet.offset);
+TEST(UnboundedShapes, AreRefusedWhoseDirectionsAllButLieInOneLine) {
+  const auto is_refused = [](const std::vector<HalfSpace>& rows) {
+    const ShapeResult result = polyhedron_from_halfspaces(rows);
+    const auto* error = std::get_if<ShapeError>(&result);
+    return error != nullptr && error->reason.find("1e-6 rad") != std::string::npos;
+  };
+  for (const double angle : {1e-300, 1e-15, 0.9e-6}) {
+    EXPECT_TRUE(is_refused({{{0, angle, 1}, 1}, {{0, 0, -1}, 1}})) << angle;
+    EXPECT_TRUE(is_refused({{{0, angle, 1}, 1}, {{0, 0, 1}, 1}})) << angle;
+  }
+  for (const double angle : {0.0, 1e-6, 1.0}) {
+    EXPECT_FALSE(is_refused({{{0, angle, 1}, 1}, {{0, 0, -1}, 1}})) << angle;
+    EXPECT_FALSE(is_refused({{{0, angle, 1}, 1}, {{0, 0, 1}, 1}})) << angle;
   }
 }
 

@@ -17,12 +17,12 @@ namespace {
 using Quat = Eigen::Quaterniond;
 using test::turned;
 
-constexpr std::uint64_t kLevelSeeds = 40;
+constexpr std::uint64_t kSeeds = 40;
 
 // B above A, which is a box, and moving along it.
-struct LevelPair {
+struct ParallelPair {
   const char* name;
-  std::uint8_t dimension_a, dimension_b;  // of what is closest
+  FeatureKind kind_a, kind_b;  // of what is closest
   Vec3 half_b{0.5, 0.4, 0.3};
   Quat turn = Quat::Identity();  // of B as seen from A
   Vec3 offset{0.0, 0.0, 2.0};    // of B's centre, in A
@@ -31,58 +31,71 @@ struct LevelPair {
   [[nodiscard]] DistanceJudge judge() const { return {hard::box(half_a), hard::box(half_b)}; }
 };
 
-const LevelPair kPairs[] = {
-    {"facets", 2, 2},
-    {"facets that cross", 2, 2, {2.0, 0.1, 0.3}, turned(Vec3::UnitZ(), 0.7)},
-    {"edge on facet", 2, 1, {0.5, 0.4, 0.3}, turned(Vec3::UnitX(), 0.7)},
+const ParallelPair kPairs[] = {
+    {"facets", FeatureKind::kFacet, FeatureKind::kFacet},
+    {"facets that cross",
+     FeatureKind::kFacet,
+     FeatureKind::kFacet,
+     {2.0, 0.1, 0.3},
+     turned(Vec3::UnitZ(), 0.7)},
+    {"edge on facet",
+     FeatureKind::kFacet,
+     FeatureKind::kEdge,
+     {0.5, 0.4, 0.3},
+     turned(Vec3::UnitX(), 0.7)},
     {"facet on edge",
-     1,
-     2,
+     FeatureKind::kEdge,
+     FeatureKind::kFacet,
      {0.5, 0.4, 0.3},
      turned(Vec3::UnitX(), 0.7),
      {0.0, -2.0 * std::sin(0.7), 2.0 * std::cos(0.7)}},
-    {"parallel edges", 1, 1, {0.5, 0.4, 0.3}, Quat::Identity(), {0.1, 1.5, 2.0}},
+    {"parallel edges",
+     FeatureKind::kEdge,
+     FeatureKind::kEdge,
+     {0.5, 0.4, 0.3},
+     Quat::Identity(),
+     {0.1, 1.5, 2.0}},
     {"parallel edges, turned round",
-     1,
-     1,
+     FeatureKind::kEdge,
+     FeatureKind::kEdge,
      {0.5, 0.4, 0.3},
      turned(Vec3::UnitZ(), std::acos(-1.0)),
      {0.1, 1.5, 2.0}},
-    {"flush boxes of one size", 2, 2, {0.7, 0.6, 0.5}},
+    {"flush boxes of one size", FeatureKind::kFacet, FeatureKind::kFacet, {0.7, 0.6, 0.5}},
 };
 
 // Both turned anywhere, B after what rounding leaves of a tilt.
-std::pair<Pose, Pose> anywhere(const LevelPair& pair, Random& random, double tilt) {
+std::pair<Pose, Pose> anywhere(const ParallelPair& pair, Random& random, double tilt) {
   const Quat world = random.rotation();
   const Vec3 origin = random.in_box(3.0);
   const Quat b = world * (turned(random.direction(), tilt) * pair.turn);
   return {{origin, world}, {origin + world * pair.offset, b}};
 }
 
-TEST(LevelWalk, SettlesWhatItWasLastTimeInOneStep) {
-  for (const LevelPair& pair : kPairs) {
+TEST(ParallelTransitions, SettlesWhatItWasLastTimeInOneStep) {
+  for (const ParallelPair& pair : kPairs) {
     DistanceJudge judge = pair.judge();
-    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
       const auto [a, b] = anywhere(pair, random, seed % 2 == 0 ? 0.0 : 1e-16);
       TrackingState state;
       (void)judge.ask(a, b, state);
-      EXPECT_EQ(state.a.dimension, pair.dimension_a) << pair.name << " seed " << seed;
-      EXPECT_EQ(state.b.dimension, pair.dimension_b) << pair.name << " seed " << seed;
+      EXPECT_EQ(state.a.kind, pair.kind_a) << pair.name << " seed " << seed;
+      EXPECT_EQ(state.b.kind, pair.kind_b) << pair.name << " seed " << seed;
       DistanceResult result;
       EXPECT_EQ(walk_features(judge.a(), judge.b(), relative_pose(a, b), state, result),
-                WalkEnd::kProved)
+                WalkEnd::kCertified)
           << pair.name << " seed " << seed;
       EXPECT_EQ(result.iterations, 1) << pair.name << " seed " << seed;
     }
   }
 }
 
-TEST(LevelWalk, BoundsHoldAtEveryTilt) {
-  for (const LevelPair& pair : kPairs) {
+TEST(ParallelTransitions, BoundsHoldAtEveryTilt) {
+  for (const ParallelPair& pair : kPairs) {
     DistanceJudge judge = pair.judge();
     TrackingState state;  // of the tilt before, which is another's
-    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
       const double tilt = seed % 4 == 0 ? 0.0 : random.log_uniform(1e-17, 1e-9);
       const auto [a, b] = anywhere(pair, random, tilt);
@@ -94,8 +107,8 @@ TEST(LevelWalk, BoundsHoldAtEveryTilt) {
   }
 }
 
-TEST(LevelWalk, HasTheSameBitsAtEveryVectorWidth) {
-  for (const LevelPair& pair : kPairs) {
+TEST(ParallelTransitions, HasTheSameBitsAtEveryVectorWidth) {
+  for (const ParallelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
     Random random(5);
     const auto [a, b] = anywhere(pair, random, 1e-16);
@@ -110,10 +123,10 @@ TEST(LevelWalk, HasTheSameBitsAtEveryVectorWidth) {
 }
 
 // From beside the other to beyond it: over its face, along its edge, past its corner.
-TEST(LevelWalk, WitnessesMoveNoFasterThanTheBodies) {
-  for (const LevelPair& pair : kPairs) {
+TEST(ParallelTransitions, WitnessesMoveNoFasterThanTheBodies) {
+  for (const ParallelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
-    for (std::uint64_t seed = 0; seed < kLevelSeeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
       const Quat world = random.rotation();
       const double angle = random.uniform(0.0, 6.3), step = 0.01;
@@ -134,8 +147,8 @@ TEST(LevelWalk, WitnessesMoveNoFasterThanTheBodies) {
 }
 
 // But for an ulp or two of coordinates of a few metres a query.
-TEST(LevelWalk, StandsStillWhileTheBodiesDo) {
-  for (const LevelPair& pair : kPairs) {
+TEST(ParallelTransitions, StandsStillWhileTheBodiesDo) {
+  for (const ParallelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
     Random random(7);
     const auto [a, b] = anywhere(pair, random, 0.0);
@@ -148,15 +161,15 @@ TEST(LevelWalk, StandsStillWhileTheBodiesDo) {
 
 // Halfway between points of bodies of 1e84 m rounding left a point half a metre inside a box, and
 // the bounds of boxes face to face were 0.5 m too high.
-TEST(LevelWalk, HoldsWithTheStateOfAPairThatIsFarLarger) {
+TEST(ParallelTransitions, HoldsWithTheStateOfAPairThatIsFarLarger) {
   DistanceJudge judge(hard::box({1.0, 0.5, 0.25}), hard::box({1.0, 0.5, 0.25}));
   const Pose beside{{0.0, -1.1, -0.14}, Quat::Identity()};
   const oracle::ExactDistance truth = judge.truth(Pose{}, beside);
   for (double far = 1.0; far < 1e300; far *= 8.0) {
-    for (std::uint8_t dimension = 0; dimension < 3; ++dimension) {
+    for (const FeatureKind kind : {FeatureKind::kVertex, FeatureKind::kEdge, FeatureKind::kFacet}) {
       TrackingState state;
-      state.a = {dimension, false, 3, Vec3(-far, 0.7 * far, far)};
-      state.b = {dimension, false, 2, Vec3(far, 0.2 * far, -far)};
+      state.a = {kind, false, 3, Vec3(-far, 0.7 * far, far)};
+      state.b = {kind, false, 2, Vec3(far, 0.2 * far, -far)};
       const DistanceResult result = judge.ask(Pose{}, beside, state);
       const auto faults = judge.faults(result, truth, Pose{}, beside);
       EXPECT_TRUE(faults.empty()) << far << ": " << faults.front();

@@ -34,8 +34,8 @@ TEST(Footprint, IsWhatABodyAndItsTablesTake) {
   expect_counted(made(segment({0, 0, 0}, {0, 0, 1}, 0.1)), "capsule");
   expect_counted(made(hard::facet_ball(4)), "facet-ball");
   expect_counted(half_space({0, 0, 1}, 0.0), "floor");
-  const hard::Body leaning{{{{0, 1e-9, 1}, 1}, {{0, 0, 1}, 1}, {{1, 0, 0}, 1}}, {}};
-  expect_counted(made(leaning), "corner whose edges all but go on as one line");
+  const hard::Body corner{{{{0, 1, 1}, 1}, {{0, 0, 1}, 1}, {{1, 0, 0}, 1}}, {}};
+  expect_counted(made(corner), "corner");
 }
 
 }  // namespace

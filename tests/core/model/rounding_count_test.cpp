@@ -148,7 +148,7 @@ ConvexPolyhedron at_point(const Vec3& p) { return made(point(p, 0.0)); }
 
 struct Kind {
   const char* name;
-  std::uint8_t dimension_a, dimension_b;
+  FeatureKind kind_a, kind_b;
   Pair (*pair)(const Made&);
   Counted (*apart)(const Pair&, const CountedPlace&);
 };
@@ -161,21 +161,21 @@ Counted3 corner(const ConvexPolyhedron& body) { return counted(body.vertices[0].
 double farthest(const ConvexPolyhedron& body) { return body.bounding_radius; }
 
 constexpr Kind kKinds[] = {
-    {"vertex, vertex", 0, 0,
+    {"vertex, vertex", FeatureKind::kVertex, FeatureKind::kVertex,
      [](const Made& m) {
        return Pair{at_point(m.on_a), at_point(m.on_b), m.pose_a, m.pose_b, 0, 0};
      },
      [](const Pair& p, const CountedPlace& at) {
        return norm(at.point(corner(p.b)) - corner(p.a));
      }},
-    {"edge, vertex", 1, 0,
+    {"edge, vertex", FeatureKind::kEdge, FeatureKind::kVertex,
      [](const Made& m) {
        return Pair{through(m.on_a, m.edge_a, m.from_a), at_point(m.on_b), m.pose_a, m.pose_b, 0, 0};
      },
      [](const Pair& p, const CountedPlace& at) {
        return norm(cross(at.point(corner(p.b)) - start_of(p.a), along(p.a)));
      }},
-    {"vertex, edge", 0, 1,
+    {"vertex, edge", FeatureKind::kVertex, FeatureKind::kEdge,
      [](const Made& m) {
        return Pair{at_point(m.on_a), through(m.on_b, m.edge_b, m.from_b), m.pose_a, m.pose_b, 0, 0};
      },
@@ -183,7 +183,7 @@ constexpr Kind kKinds[] = {
        const Counted3 e = at.direction(along(p.b)), start = at.point(start_of(p.b));
        return over_norm(e) * norm(cross(corner(p.a) - start, e));
      }},
-    {"facet, vertex", 2, 0,
+    {"facet, vertex", FeatureKind::kFacet, FeatureKind::kVertex,
      [](const Made& m) {
        return Pair{below(m.on_a, m.n), at_point(m.on_b), m.pose_a, m.pose_b, m.on_a.norm(), 0};
      },
@@ -191,7 +191,7 @@ constexpr Kind kKinds[] = {
        const Facet& facet = p.a.facets[0];
        return dot(counted(facet.normal), at.point(corner(p.b))) - facet.offset;
      }},
-    {"vertex, facet", 0, 2,
+    {"vertex, facet", FeatureKind::kVertex, FeatureKind::kFacet,
      [](const Made& m) {
        const Vec3 out = -m.own_n;
        return Pair{at_point(m.on_a), below(m.on_b, out), m.pose_a, m.pose_b, 0, m.on_b.norm()};
@@ -201,7 +201,7 @@ constexpr Kind kKinds[] = {
        const Counted3 n = at.direction(counted(facet.normal));
        return over_norm(n) * dot(n, corner(p.a) - at.translation) - facet.offset;
      }},
-    {"edge, edge", 1, 1,
+    {"edge, edge", FeatureKind::kEdge, FeatureKind::kEdge,
      [](const Made& m) {
        return Pair{through(m.on_a, m.edge_a, m.from_a),
                    through(m.on_b, m.edge_b, m.from_b),
@@ -251,7 +251,7 @@ struct Evaluated {
     const CountedPlace at(pair.pose_a, pair.pose_b);
     const Counted apart = kind.apart(pair, at);
     double by_roundings = apart.worst();
-    if (kind.dimension_a == 1 && kind.dimension_b == 1) {
+    if (kind.kind_a == FeatureKind::kEdge && kind.kind_b == FeatureKind::kEdge) {
       const double lengths = pair.a.edges[0].end + pair.b.edges[0].end;
       by_roundings = std::max(by_roundings, lower_across(pair, at).worst() + 2.5 * lengths);
     }
@@ -282,11 +282,11 @@ TEST_P(RoundingCounts, AreOfTheOperationsOfTheWalk) {
   int proved = 0;
   for (int k = 0; k < 300; ++k) {
     const Pair pair = GetParam().pair(made_of(random_genes(random)));
-    TrackingState state{{GetParam().dimension_a, false, 0}, {GetParam().dimension_b, false, 0}};
+    TrackingState state{{GetParam().kind_a, false, 0}, {GetParam().kind_b, false, 0}};
     DistanceResult r;
     const RelativePose at_pose = relative_pose(pair.pose_a, pair.pose_b);
     const WalkEnd end = walk_features(pair.a, pair.b, at_pose, state, r);
-    if (end != WalkEnd::kProved || r.iterations != 1) continue;
+    if (end != WalkEnd::kCertified || r.iterations != 1) continue;
     ++proved;
     Counted::forget_all();
     const CountedPlace at(pair.pose_a, pair.pose_b);

@@ -102,8 +102,8 @@ TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
   const RelativePose pose = relative_pose(along_x, along_y);
   const DistanceResult r = distance(bar, bar, pose, state);
   expect_depth(r, std::numbers::sqrt2 - 1.3, 20.0);
-  EXPECT_EQ(state.a.dimension, 1);
-  EXPECT_EQ(state.b.dimension, 1);
+  EXPECT_EQ(state.a.kind, FeatureKind::kEdge);
+  EXPECT_EQ(state.b.kind, FeatureKind::kEdge);
   const Vec3 in_world = along_x.orientation * r.normal;
   EXPECT_LT((in_world - Vec3::UnitZ()).norm(), 1e-14);
 }
@@ -213,9 +213,9 @@ TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
       }
       if (k == 0) continue;
       for (TrackingState::Side* side : {&state.a, &state.b}) {
-        side->dimension = static_cast<std::uint8_t>(random.integer(0, 3));
+        side->kind = static_cast<FeatureKind>(random.integer(0, 3));
         side->feature = random.integer(-1, 30);
-        side->deep = random.chance(0.7);
+        side->penetrating = random.chance(0.7);
         side->point = random.in_box(2.0);
         if (random.chance(0.2)) side->point.x() = std::nan("");
       }

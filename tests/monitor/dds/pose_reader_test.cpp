@@ -1,7 +1,7 @@
 // The poses topic as the tick thread sees it, through real DDS on loopback.
 #include <gtest/gtest.h>
 
-#include "monitor/daemon/health.hpp"
+#include "monitor/dds/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -15,7 +15,7 @@ Scene two_movers() {
       {test::moving("a", {test::ball(0.1)}), test::moving("b", {test::ball(0.1)})});
 }
 
-LoopStatistics no_vitals(const Scene& scene) {
+LoopStatistics no_statistics(const Scene& scene) {
   LoopStatistics statistics;
   statistics.rejected.resize(scene.objects.size());
   statistics.ages.resize(scene.objects.size());
@@ -27,8 +27,7 @@ class Sender {
   Sender(const Scene& scene, const DdsOptions& dds, std::string_view source,
          std::size_t room = 4096)
       : participant_(dds),
-        writer_(participant_.writer(topic_descriptor<clearance_msg_PoseBatch>(), scene.topics.poses,
-                                    Delivery::kStream, 64)),
+        writer_(participant_.writer(TopicKind::kPoses, scene.topics.poses)),
         sample_(make_batch(room)) {
     batch_.source = SourceName(source);
   }
@@ -139,7 +138,7 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
     EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{100 + i});
   }
   EXPECT_TRUE(test::eventually([&] { return !port.poses.refused_sources().empty(); }));
-  const auto health = make_health(port.scene, no_vitals(port.scene), port.poses, 0);
+  const auto health = make_health(port.scene, no_statistics(port.scene), port.poses, 0);
   ASSERT_EQ(health->rejected._length, 1u);
   EXPECT_STREQ(health->rejected._buffer[0].object, "source 'source16'");
   EXPECT_STREQ(health->rejected._buffer[0].cause, "one source too many");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "tests/monitor/small_cells.hpp"
@@ -19,11 +20,18 @@ Scene watched_cell() {
   return scene;
 }
 
+// The topic that has this type.
+template <class T>
+TopicKind kind_of() {
+  const auto of_type = [](const Topic& each) { return each.type == &topic_descriptor<T>(); };
+  return std::ranges::find_if(kTopics, of_type)->kind;
+}
+
 template <class T>
 class Reader {
  public:
-  Reader(Participant& participant, const std::string& topic, Delivery delivery)
-      : reader_(participant.reader(topic_descriptor<T>(), topic, delivery, 64)) {}
+  Reader(Participant& participant, const Scene& scene)
+      : reader_(participant.reader(kind_of<T>(), scene.topics.*topic(kind_of<T>()).name)) {}
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
   // The next sample, or null when none comes.
   const T* next() {
@@ -69,8 +77,7 @@ struct Publisher {
 TEST(ReportWriter, PublishesEveryTickAsItWas) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_Distances> reader(client, publisher.scene.topics.distances,
-                                         Delivery::kStream);
+  Reader<clearance_msg_Distances> reader(client, publisher.scene);
   ASSERT_TRUE(test::eventually([&] { return test::matched_writers(reader.handle()) == 1; }));
   // A writer that does not know of the reader yet would send it nothing.
   ASSERT_TRUE(test::eventually([&] { return publisher.reports->distance_readers() == 1; }));
@@ -94,16 +101,15 @@ TEST(ReportWriter, PublishesEveryTickAsItWas) {
 TEST(ReportWriter, TellsALateClientNamesAndZones) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_ZoneState> early(client, publisher.scene.topics.zones, Delivery::kLatched);
+  Reader<clearance_msg_ZoneState> early(client, publisher.scene);
   publisher.tick(0.0);
   publisher.tick(0.6);  // 0.2 m away: inside the zone
   // Both reports are only queued so far: the client is late when they have been published.
   const clearance_msg_ZoneState* seen = early.next();
   while (seen != nullptr && !seen->active) seen = early.next();
   ASSERT_NE(seen, nullptr);
-  Reader<clearance_msg_Catalogue> catalogue(client, publisher.scene.topics.catalogue,
-                                            Delivery::kLatched);
-  Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
+  Reader<clearance_msg_Catalogue> catalogue(client, publisher.scene);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.scene);
   const clearance_msg_Catalogue* names = catalogue.next();
   ASSERT_NE(names, nullptr);
   ASSERT_EQ(names->objects._length, 2u);
@@ -118,7 +124,7 @@ TEST(ReportWriter, TellsALateClientNamesAndZones) {
 TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_ZoneState> zones(client, publisher.scene.topics.zones, Delivery::kLatched);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.scene);
   const auto expect_next = [&](bool active, std::uint64_t cycle) {
     const clearance_msg_ZoneState* zone = zones.next();
     ASSERT_NE(zone, nullptr);
@@ -139,7 +145,7 @@ TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
 TEST(ReportWriter, SaysHowTheDaemonIs) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_Health> reader(client, publisher.scene.topics.health, Delivery::kLatched);
+  Reader<clearance_msg_Health> reader(client, publisher.scene);
   LoopStatistics statistics;
   statistics.rejected.resize(2);
   statistics.ages.resize(2);

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "monitor/csv/pose_log.hpp"
-#include "monitor/recording/build.hpp"
+#include "monitor/build_info/build_info.hpp"
+#include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"
 #include "tests/monitor/replay/offline_replay_run.hpp"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "monitor/csv/pose_log.hpp"
+#include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"

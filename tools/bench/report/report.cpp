@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "monitor/recording/build.hpp"
+#include "monitor/build_info/build_info.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -1,0 +1,101 @@
+// The directional derivatives of what lies beside a vertex or an edge, and a facet's limits, four
+// at a time. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+//
+// A body's support value along g is highest at a vertex where every edge has a negative directional
+// derivative along g: all edges recede. So is an edge across g beside which both facets recede.
+// These are the tests that certify a pair.
+#if defined(CLEARANCE_CORE_EDGE_SCAN) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_EDGE_SCAN
+#undef CLEARANCE_CORE_EDGE_SCAN
+#else
+#define CLEARANCE_CORE_EDGE_SCAN
+#endif
+
+#include "core/model/edge_scan.hpp"
+#include "core/numerics/vec4-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+
+// The first lanes of four, at most.
+HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
+
+// The directional derivatives along g of up to four of a row's n vectors, from number i on.
+HWY_INLINE Vec4 derivatives(const double* row, std::int32_t n, std::int32_t i, const Vec4 (&g)[3]) {
+  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
+}
+
+// Is the directional derivative along g of every edge of a vertex below `limit`, per unit length?
+HWY_INLINE bool all_edges_recede(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g,
+                                 double limit) {
+  const double* row = body.outgoing.row(vertex.first_edge);
+  const std::int32_t n = vertex.edges;
+  const Vec4 along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
+  unsigned others = ~less(derivatives(row, n, 0, along), spread(limit)) & first_lanes(n);
+  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
+    others |= ~less(derivatives(row, n, i, along), spread(limit)) & first_lanes(n - i);
+  }
+  return others == 0;
+}
+
+// In the order of the sums of Vec4, and of a batch's lanes.
+HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
+  return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
+}
+
+inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex,
+                                          const Vec3& g) {
+  const std::int32_t n = vertex.edges;
+  if (HWY_UNLIKELY(n > 4)) return steepest_edge(body, vertex, g);
+  SteepestEdge best;
+  const auto take = [&](double derivative, std::int32_t i) HWY_ATTR {
+    if (derivative > best.derivative) best = {derivative, vertex.first_edge + i};
+  };
+  const Vec4 along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
+  const Vec4 rise = derivatives(body.outgoing.row(vertex.first_edge), n, 0, along);
+  if (n > 0) take(lane(rise, 0), 0);
+  if (n > 1) take(lane(rise, 1), 1);
+  if (n > 2) take(lane(rise, 2), 2);
+  if (n > 3) take(lane(rise, 3), 3);
+  return best;
+}
+HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g) {
+  return steepest(body, vertex, vec3(g));
+}
+
+// The directional derivatives along g of the facets beside an edge, left and right; a segment's
+// only edge has none.
+HWY_INLINE Vec2 facet_derivatives(const Edge& edge, Vec4 g) {
+  const double* inward = edge.inward.data();
+  return (load2(inward) * vec2(lane(g, 0)) + load2(inward + 2) * vec2(lane(g, 1))) +
+         load2(inward + 4) * vec2(lane(g, 2));
+}
+
+// Are both below `limit`, per unit length?
+HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
+  return edge.facet[0] == kNone || both_less(facet_derivatives(edge, g), vec2(limit));
+}
+
+// What limits the facet's polygon, as an edge, beyond which the tip lies farthest; kNone: it lies
+// within.
+HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Vec4 tip) {
+  const double* row = body.facet_limits.row(facet.first_side);
+  const std::int32_t n = facet.limits;
+  const Vec4 at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
+  double least = 0.0;
+  std::int32_t beyond = kNone;
+  for (std::int32_t i = 0; i < n; i += 4) {
+    const Vec4 within = derivatives(row, n, i, at) - load4(row + 3 * n + i);
+    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
+    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
+      if (!(lane(within, k) < least)) continue;
+      least = lane(within, k);
+      beyond = body.facet_edges[facet.first_side + i + k].edge;
+    }
+  }
+  return beyond;
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

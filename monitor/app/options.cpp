@@ -1,0 +1,63 @@
+#include "monitor/app/options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace clearance {
+namespace {
+
+std::string unexpected(const std::string& found, const std::string& expected) {
+  return fmt::format("found '{}'; expected {}", found, expected);
+}
+
+// CLI11 converts what it can ("1e3", "nan"); this adds the condition and one kind of message.
+CLI::Validator number(bool (*accepts)(double), const char* expected) {
+  const auto fault = [accepts, expected](const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && accepts(value)) return std::string();
+    return unexpected(text, expected);
+  };
+  return {fault, ""};
+}
+
+}  // namespace
+
+CLI::Validator finite_number() {
+  return number([](double value) { return std::isfinite(value); }, "a finite number");
+}
+CLI::Validator positive_number() {
+  return number([](double value) { return std::isfinite(value) && value > 0.0; },
+                "a number above 0");
+}
+CLI::Validator number_from_zero() {
+  return number([](double value) { return std::isfinite(value) && value >= 0.0; },
+                "a number, 0 or more");
+}
+
+// Stricter than CLI11: "1e3", "0x10" and " 7" are no whole numbers here.
+CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
+  const auto fault = [=](const std::string& text) {
+    std::int64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, value);
+    const bool whole = read.ec == std::errc{} && read.ptr == end;
+    if (whole && value >= smallest && value <= largest) return std::string();
+    return unexpected(text, fmt::format("a whole number from {} to {}", smallest, largest));
+  };
+  return {fault, ""};
+}
+
+void add_force(CLI::App& app, bool& force) {
+  app.add_flag("--force", force, "Overwrite files that exist");
+}
+
+void add_log_level(CLI::App& app, std::string& level) {
+  app.add_option("--log-level", level, "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+}
+
+}  // namespace clearance

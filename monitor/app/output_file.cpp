@@ -1,0 +1,43 @@
+#include "monitor/app/output_file.hpp"
+
+#include <cstdio>
+#include <system_error>
+
+#include "monitor/app/print.hpp"
+
+namespace clearance {
+
+bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
+                            std::initializer_list<std::filesystem::path> inputs) {
+  std::error_code missing;  // a file that does not exist is no other one
+  for (const std::filesystem::path& input : inputs) {
+    if (!std::filesystem::equivalent(output, input, missing)) continue;
+    print(stderr, "{}: {} is a file that is read; expected another one to write\n", program,
+          output.string());
+    return false;
+  }
+  return true;
+}
+
+bool can_create(const char* program, const std::filesystem::path& file, bool force) {
+  std::error_code unknown;
+  if (file.has_parent_path() && !std::filesystem::exists(file.parent_path(), unknown)) {
+    print(stderr, "{}: cannot create {}: there is no folder {}\n", program, file.string(),
+          file.parent_path().string());
+    return false;
+  }
+  if (force || file.empty() || !std::filesystem::exists(file, unknown)) return true;
+  print(stderr, "{}: {} exists; --force overwrites it\n", program, file.string());
+  return false;
+}
+
+void remove_unfinished(const char* program, const std::filesystem::path& file) {
+  std::error_code failed;
+  const bool regular =
+      std::filesystem::is_regular_file(std::filesystem::symlink_status(file, failed));
+  const bool removed = regular && std::filesystem::remove(file, failed);
+  print(stderr, "{}: {} was not finished{}\n", program, file.string(),
+        removed ? " and is removed" : "; its content is incomplete");
+}
+
+}  // namespace clearance

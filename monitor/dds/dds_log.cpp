@@ -1,0 +1,41 @@
+#include "monitor/dds/dds_log.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsrt/log.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <cstdint>
+#include <string_view>
+
+namespace clearance {
+namespace {
+
+constexpr int kLinesASecond = 5;
+
+// Called from any of Cyclone's threads. A link that is down makes it complain at every write, so
+// lines beyond the rate are counted and left out.
+void log_dds(void*, const dds_log_data_t* message) {
+  static std::atomic<std::int64_t> second{0};
+  static std::atomic<int> lines{0}, left_out{0};
+  const std::int64_t now = dds_time() / DDS_NSECS_IN_SEC;
+  if (second.exchange(now) != now) {
+    lines = 0;
+    if (const int count = left_out.exchange(0))
+      spdlog::warn("dds: {} more messages left out", count);
+  }
+  if (lines.fetch_add(1) >= kLinesASecond) {
+    ++left_out;
+    return;
+  }
+  std::string_view text(message->message, message->size);
+  while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
+  const bool severe = (message->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
+  spdlog::log(severe ? spdlog::level::err : spdlog::level::warn, "dds: {}", text);
+}
+
+}  // namespace
+
+void route_dds_log() { dds_set_log_sink(log_dds, nullptr); }
+
+}  // namespace clearance

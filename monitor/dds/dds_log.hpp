@@ -1,0 +1,10 @@
+// Cyclone's own messages in the program's log.
+#pragma once
+
+namespace clearance {
+
+// Sends Cyclone's warnings and errors to spdlog, a few a second at most. Call it before the first
+// participant is made.
+void route_dds_log();
+
+}  // namespace clearance

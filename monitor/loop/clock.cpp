@@ -1,0 +1,28 @@
+#include <cerrno>
+#include <ctime>
+
+#include "monitor/loop/ports.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::int64_t kNsPerS = 1'000'000'000;
+
+std::int64_t read(clockid_t clock) noexcept {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::int64_t{time.tv_sec} * kNsPerS + time.tv_nsec;
+}
+
+}  // namespace
+
+std::int64_t SystemClock::realtime_ns() noexcept { return read(CLOCK_REALTIME); }
+std::int64_t SystemClock::monotonic_ns() noexcept { return read(CLOCK_MONOTONIC); }
+
+void SystemClock::sleep_until(std::int64_t monotonic_ns) noexcept {
+  const timespec until{.tv_sec = monotonic_ns / kNsPerS, .tv_nsec = monotonic_ns % kNsPerS};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,39 @@
+// How the loop is doing: what the health topic says of the tick thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "monitor/loop/histogram.hpp"
+#include "monitor/monitor.hpp"
+#include "monitor/pose_batch.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+// The smallest distance that any report has shown.
+struct MinimumSeen {
+  bool known = false;
+  PairReport pair;
+  std::uint64_t cycle = 0;
+  std::int64_t now_ns = 0;
+};
+
+// All figures are since the start unless they say otherwise.
+struct LoopStatistics {
+  std::uint64_t cycle = 0;
+  std::int64_t now_ns = 0;
+  Histogram tick;                       // from waking up to the report handed over
+  Histogram wakeup;                     // how late the tick thread woke
+  std::int64_t tick_second_max_ns = 0;  // since the statistics before
+  std::int64_t wakeup_second_max_ns = 0;
+  std::uint64_t overruns = 0;        // ticks that ended after the next deadline
+  std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick
+  MinimumSeen minimum;
+  std::vector<std::array<std::uint64_t, kRejects>> rejected;  // one an object, by cause
+  std::array<std::uint64_t, kRejects> rejected_total{};       // those of unknown ids as well
+  std::vector<InputAge> ages;                                 // one an object
+};
+
+}  // namespace clearance

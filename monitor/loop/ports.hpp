@@ -1,0 +1,52 @@
+// The three seams of the fixed-rate loop: where poses come from, where reports go, what time it is.
+//
+// The daemon puts Cyclone DDS and the kernel's clocks behind them, the tests a list of batches and
+// a clock of their own. All are called from the tick thread: none may block (but for sleep_until),
+// allocate or throw.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "monitor/loop/loop_statistics.hpp"
+#include "monitor/pose_batch.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+class PoseSource {
+ public:
+  virtual ~PoseSource() = default;
+  // The next batch in the order of arrival, or null when none is waiting. Valid until the next
+  // call.
+  virtual const PoseBatch* next() noexcept = 0;
+};
+
+class ReportSink {
+ public:
+  virtual ~ReportSink() = default;
+  // A batch that the coming tick takes in; called in the order in which it does.
+  virtual void input(const PoseBatch& batch) noexcept = 0;
+  // `sources`: the last batch of each source that this tick took in; empty when there was none.
+  virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
+  // Once a second, and after the last tick.
+  virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
+};
+
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  virtual std::int64_t realtime_ns() noexcept = 0;   // stamps: CLOCK_REALTIME
+  virtual std::int64_t monotonic_ns() noexcept = 0;  // deadlines: CLOCK_MONOTONIC
+  virtual void sleep_until(std::int64_t monotonic_ns) noexcept = 0;
+};
+
+// The kernel's clocks.
+class SystemClock final : public Clock {
+ public:
+  std::int64_t realtime_ns() noexcept override;
+  std::int64_t monotonic_ns() noexcept override;
+  void sleep_until(std::int64_t monotonic_ns) noexcept override;
+};
+
+}  // namespace clearance

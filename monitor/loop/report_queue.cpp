@@ -1,0 +1,76 @@
+#include "monitor/loop/report_queue.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kStatisticsSlots = 4;  // one a second
+
+void count(std::atomic<std::uint64_t>& counter) noexcept {
+  counter.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
+    : reports_(options.reports),
+      inputs_(std::max<std::size_t>(options.inputs, 1)),
+      statistics_(kStatisticsSlots),
+      keeps_inputs_(options.inputs > 0) {
+  const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
+                                       [](const ObjectPair& pair) { return pair.publish; });
+  reports_.prepare([&](QueuedReport& slot) {
+    slot.report.pairs.resize(static_cast<std::size_t>(published));
+    slot.report.zones.resize(scene.zones.size());
+  });
+  statistics_.prepare([&](LoopStatistics& slot) {
+    slot.rejected.resize(scene.objects.size());
+    slot.ages.resize(scene.objects.size());
+  });
+  if (keeps_inputs_) {
+    inputs_.prepare([&](PoseBatch& slot) { slot.samples.resize(options.samples_a_batch); });
+  }
+}
+
+void ReportQueue::input(const PoseBatch& batch) noexcept {
+  if (!keeps_inputs_) return;
+  PoseBatch* slot = inputs_.back();
+  if (slot == nullptr || batch.samples.size() > slot->samples.capacity()) {
+    count(dropped_inputs_);
+    return;
+  }
+  *slot = batch;
+  inputs_.push();
+}
+
+// Copies into a slot that was made beforehand; a full queue drops the report and counts it.
+void ReportQueue::report(const Report& report, std::span<const SourceUse> sources) noexcept {
+  QueuedReport* slot = reports_.back();
+  if (slot == nullptr) {
+    count(dropped_reports_);
+    return;
+  }
+  slot->report = report;
+  std::copy(sources.begin(), sources.end(), slot->sources_used.begin());
+  slot->source_count = sources.size();
+  reports_.push();
+  ready_.post();
+}
+
+// Losing them costs nothing: figures are totals.
+void ReportQueue::statistics(const LoopStatistics& statistics) noexcept {
+  LoopStatistics* slot = statistics_.back();
+  if (slot == nullptr) return;  // the next ones say it all again
+  *slot = statistics;
+  statistics_.push();
+  ready_.post();
+}
+
+// Wakes the consumer, who then finds the queue closed.
+void ReportQueue::close() noexcept {
+  closed_.store(true, std::memory_order_release);
+  ready_.post();
+}
+
+}  // namespace clearance

@@ -1,0 +1,68 @@
+// Carries reports out of the tick thread: copies each into a slot made beforehand and wakes the
+// thread that publishes or records it. Never blocks: when the other side is too slow, reports are
+// dropped and counted.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+
+#include "config/scene.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/loop/semaphore.hpp"
+#include "monitor/loop/spsc_ring.hpp"
+
+namespace clearance {
+
+struct QueuedReport {
+  Report report;
+  std::array<SourceUse, kMaxSources> sources_used;
+  std::size_t source_count = 0;
+
+  [[nodiscard]] std::span<const SourceUse> sources() const noexcept {
+    return std::span(sources_used).first(source_count);
+  }
+};
+
+struct ReportQueueOptions {
+  std::size_t reports = 64;
+  std::size_t inputs = 0;  // batches kept beside the reports; 0: none, for who does not need them
+  std::size_t samples_a_batch = 0;  // a batch larger than that is dropped and counted
+};
+
+class ReportQueue final : public ReportSink {
+ public:
+  ReportQueue(const Scene& scene, const ReportQueueOptions& options);
+
+  // Tick thread.
+  void input(const PoseBatch& batch) noexcept override;
+  void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
+  void statistics(const LoopStatistics& statistics) noexcept override;
+
+  // After the last tick, from any one thread: the consumer's wait ends, and closed() is true.
+  void close() noexcept;
+
+  // The one consuming thread. Inputs that a report used are in the queue before the report is.
+  void wait() noexcept { ready_.wait(); }
+  [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
+  SpscRing<QueuedReport>& reports() noexcept { return reports_; }
+  SpscRing<PoseBatch>& inputs() noexcept { return inputs_; }
+  SpscRing<LoopStatistics>& statistics() noexcept { return statistics_; }
+
+  // Any thread.
+  [[nodiscard]] std::uint64_t dropped_reports() const noexcept { return dropped_reports_.load(); }
+  [[nodiscard]] std::uint64_t dropped_inputs() const noexcept { return dropped_inputs_.load(); }
+
+ private:
+  SpscRing<QueuedReport> reports_;
+  SpscRing<PoseBatch> inputs_;
+  SpscRing<LoopStatistics> statistics_;
+  bool keeps_inputs_;
+  Semaphore ready_;
+  std::atomic<bool> closed_{false};
+  std::atomic<std::uint64_t> dropped_reports_{0};
+  std::atomic<std::uint64_t> dropped_inputs_{0};
+};
+
+}  // namespace clearance

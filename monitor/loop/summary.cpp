@@ -1,0 +1,31 @@
+#include "monitor/loop/summary.hpp"
+
+#include <fmt/format.h>
+
+#include "monitor/pair_name.hpp"
+
+namespace clearance {
+std::string percentiles(const Histogram& histogram) {
+  constexpr double kUsPerNs = 1e-3;
+  return fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us",
+                     kUsPerNs * static_cast<double>(histogram.percentile_ns(0.5)),
+                     kUsPerNs * static_cast<double>(histogram.percentile_ns(0.999)),
+                     kUsPerNs * static_cast<double>(histogram.max_ns()));
+}
+
+std::string run_summary(const Scene& scene, const LoopStatistics& statistics, double seconds,
+                        std::uint64_t dropped_reports) {
+  std::string text = fmt::format(
+      "{} ticks in {:.2f} s, {} overruns, {} skipped cycles, {} reports dropped\n"
+      "tick     {}\n"
+      "wake-up  {}\n",
+      statistics.cycle, seconds, statistics.overruns, statistics.skipped_cycles, dropped_reports,
+      percentiles(statistics.tick), percentiles(statistics.wakeup));
+  const MinimumSeen& minimum = statistics.minimum;
+  if (!minimum.known) return fmt::format("{}minimum  none: no pair was ever evaluated\n", text);
+  return text + fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n",
+                            minimum.pair.distance, minimum.pair.lower, minimum.pair.upper,
+                            pair_name(scene, minimum.pair), minimum.cycle);
+}
+
+}  // namespace clearance

@@ -1,0 +1,18 @@
+// What a person reads: figures of a run.
+#pragma once
+
+#include <string>
+
+#include "config/scene.hpp"
+#include "monitor/loop/loop_statistics.hpp"
+
+namespace clearance {
+
+// "p50 12.3 us  p99.9 45.6 us  max 78.9 us"
+[[nodiscard]] std::string percentiles(const Histogram& histogram);
+
+// Ticks, overruns, tick and wake-up times, the smallest distance seen. Ends with a newline.
+[[nodiscard]] std::string run_summary(const Scene& scene, const LoopStatistics& statistics,
+                                      double seconds, std::uint64_t dropped_reports);
+
+}  // namespace clearance

@@ -1,0 +1,125 @@
+#include "monitor/loop/tick_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+
+// Everything that a tick fills is sized here: the loop itself allocates nothing.
+TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
+                   Clock& clock, const TickLoopOptions& options)
+    : scene_(scene),
+      monitor_(scene, options.monitor),
+      source_(source),
+      sinks_(std::move(sinks)),
+      clock_(clock),
+      options_(options),
+      period_ns_(std::llround(1e9 / scene.rate_hz)),
+      ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))) {
+  samples_.reserve(options_.max_samples);
+  statistics_.rejected.resize(scene.objects.size());
+  statistics_.ages.resize(scene.objects.size());
+}
+
+// Times are measured around the tick: how late the thread woke, and how long it took until the
+// report was handed over.
+void TickLoop::run(const std::atomic<bool>& stop) noexcept {
+  std::int64_t deadline = clock_.monotonic_ns() + period_ns_;
+  std::uint64_t ticks = 0;
+  while (!stop.load(std::memory_order_relaxed)) {
+    clock_.sleep_until(deadline);
+    const std::int64_t started = clock_.monotonic_ns();
+    tick_once();
+    const std::int64_t ended = clock_.monotonic_ns();
+
+    statistics_.wakeup.add(started - deadline);
+    statistics_.tick.add(ended - started);
+    statistics_.wakeup_second_max_ns =
+        std::max(statistics_.wakeup_second_max_ns, started - deadline);
+    statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
+    deadline = next_deadline(deadline, ended);
+    ++ticks;
+    if (options_.max_ticks != 0 && ticks == options_.max_ticks) break;
+    if (ticks % ticks_a_second_ == 0) hand_over_statistics();
+  }
+  hand_over_statistics();
+}
+
+// Deadlines stay on the grid of the first one. Missed ones are counted, not made up for: a loop
+// that tried to catch up would stay late.
+std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) noexcept {
+  const std::int64_t next = deadline + period_ns_;
+  if (ended <= next) return next;
+  ++statistics_.overruns;
+  const std::int64_t missed = (ended - next) / period_ns_;
+  statistics_.skipped_cycles += static_cast<std::uint64_t>(missed);
+  return next + missed * period_ns_;
+}
+
+// One tick, and its report to every sink.
+void TickLoop::tick_once() noexcept {
+  take_in();
+  const Report& report = monitor_.tick(samples_, clock_.realtime_ns());
+  statistics_.cycle = report.cycle;
+  statistics_.now_ns = report.now_ns;
+  statistics_.rejected_total = report.rejected;
+  note_minimum(report);
+  for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
+}
+
+// Batches are used whole: one that no longer fits waits for the next tick.
+void TickLoop::take_in() noexcept {
+  samples_.clear();
+  used_count_ = 0;
+  for (;;) {
+    if (waiting_ == nullptr) waiting_ = source_.next();
+    if (waiting_ == nullptr) return;
+    if (samples_.size() + waiting_->samples.size() > options_.max_samples) return;
+    use(*waiting_);
+    for (ReportSink* sink : sinks_) sink->input(*waiting_);
+    waiting_ = nullptr;
+  }
+}
+
+// Poses for another scene have ids that mean other objects: they are counted, never used.
+void TickLoop::use(const PoseBatch& batch) noexcept {
+  note_source(batch);
+  if (!made_for(batch, scene_.revision)) {
+    for (const PoseSample& sample : batch.samples) {
+      monitor_.refuse(sample.object, Reject::kWrongRevision);
+    }
+    return;
+  }
+  samples_.insert(samples_.end(), batch.samples.begin(), batch.samples.end());
+}
+
+// The last batch of each source goes into the report, which is what makes a replay exact.
+void TickLoop::note_source(const PoseBatch& batch) noexcept {
+  const auto end = used_.begin() + static_cast<std::ptrdiff_t>(used_count_);
+  const auto found = std::find_if(
+      used_.begin(), end, [&batch](const SourceUse& use) { return use.source == batch.source; });
+  if (found == used_.end()) return;  // the port lets no more than kMaxSources in
+  if (found == end) ++used_count_;
+  *found = {.source = batch.source, .sequence_number = batch.sequence_number};
+}
+
+// The smallest distance of the run, for the summary at its end.
+void TickLoop::note_minimum(const Report& report) noexcept {
+  MinimumSeen& seen = statistics_.minimum;
+  if (!report.minimum_known) return;
+  if (seen.known && !(report.minimum.distance < seen.pair.distance)) return;
+  seen = {.known = true, .pair = report.minimum, .cycle = report.cycle, .now_ns = report.now_ns};
+}
+
+// Once a second, with the figures of that second reset afterwards.
+void TickLoop::hand_over_statistics() noexcept {
+  for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
+    statistics_.rejected[object] = monitor_.rejected(object);
+    statistics_.ages[object] = monitor_.input_age(object);
+  }
+  for (ReportSink* sink : sinks_) sink->statistics(statistics_);
+  statistics_.tick_second_max_ns = 0;
+  statistics_.wakeup_second_max_ns = 0;
+}
+
+}  // namespace clearance

@@ -1,0 +1,64 @@
+// The fixed-rate loop: on each deadline it takes in what has arrived, runs Monitor::tick and hands
+// the report on. Knows no DDS and no kernel clock: both come through the seams.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "monitor/loop/ports.hpp"
+#include "monitor/monitor.hpp"
+
+namespace clearance {
+
+struct TickLoopOptions {
+  std::uint64_t max_ticks = 0;  // 0: until told to stop
+  std::size_t max_samples =
+      4096;  // that one tick can take in; what is left waits for the next tick
+  MonitorOptions monitor = {};
+};
+
+// Deadlines are absolute, start + k * period. A tick that ends after the next deadline is an
+// overrun: the next one starts at once. Deadlines that are missed by a whole period or more are
+// skipped and counted, so that the loop is back on its grid instead of running after it. Cycle
+// numbers count ticks and have no gaps.
+class TickLoop {
+ public:
+  // Allocates all it will ever need. Everything given must outlive the loop.
+  TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks, Clock& clock,
+           const TickLoopOptions& options = {});
+
+  // Runs in the calling thread until `stop` is set or `max_ticks` are done.
+  void run(const std::atomic<bool>& stop) noexcept;
+
+  // The figures of the last time that they were handed to the sinks; after run(): final.
+  [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
+
+ private:
+  void take_in() noexcept;
+  void tick_once() noexcept;
+  void use(const PoseBatch& batch) noexcept;
+  void note_source(const PoseBatch& batch) noexcept;
+  void note_minimum(const Report& report) noexcept;
+  void hand_over_statistics() noexcept;
+  [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;
+
+  const Scene& scene_;
+  Monitor monitor_;
+  PoseSource& source_;
+  std::vector<ReportSink*> sinks_;
+  Clock& clock_;
+  TickLoopOptions options_;
+  std::int64_t period_ns_;
+  std::uint64_t ticks_a_second_;
+
+  const PoseBatch* waiting_ = nullptr;  // taken from the source, did not fit into the last tick
+  std::vector<PoseSample> samples_;
+  std::array<SourceUse, kMaxSources> used_;
+  std::size_t used_count_ = 0;
+  LoopStatistics statistics_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,14 @@
+// How much of a replayed report must agree with the recorded one.
+#pragma once
+
+#include <cstdint>
+
+namespace clearance {
+
+enum class Comparison : std::uint8_t {
+  kBits,    // every field of the tick, to the bit
+  kBounds,  // only what is certain: bounds of one pair overlap; for other builds, or without the
+            // history
+};
+
+}  // namespace clearance

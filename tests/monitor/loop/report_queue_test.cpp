@@ -1,0 +1,89 @@
+#include "monitor/loop/report_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/allocation_count.hpp"
+
+namespace clearance {
+namespace {
+
+Scene published_cell() {
+  Scene scene =
+      test::cell_of({test::moving("a", {test::ball(0.1)}), test::moving("b", {test::ball(0.1)}),
+                     test::fixed("c", {test::ball(0.1)}, test::at(1, 0, 0))});
+  for (ObjectPair& pair : scene.pairs) pair.publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.1, 0.2));
+  return scene;
+}
+
+PoseBatch batch_of(std::uint64_t sequence_number, std::size_t samples) {
+  PoseBatch batch;
+  batch.source = SourceName("arm");
+  batch.sequence_number = sequence_number;
+  batch.samples.resize(samples);
+  return batch;
+}
+
+TEST(ReportQueue, CarriesReportsWithTheirSourcesInOrder) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  ReportQueue queue(scene, {.reports = 4});
+  const SourceUse use{.source = SourceName("arm"), .sequence_number = 5};
+  queue.report(monitor.tick({}, test::kStart), {&use, 1});
+  queue.report(monitor.tick({}, test::kStart + test::kTick), {});
+  ASSERT_NE(queue.reports().front(), nullptr);
+  EXPECT_EQ(queue.reports().front()->report.cycle, 1u);
+  EXPECT_EQ(queue.reports().front()->report.pairs.size(), 3u);
+  ASSERT_EQ(queue.reports().front()->sources().size(), 1u);
+  EXPECT_EQ(queue.reports().front()->sources()[0].sequence_number, 5u);
+  queue.reports().pop();
+  EXPECT_EQ(queue.reports().front()->report.cycle, 2u);
+  EXPECT_TRUE(queue.reports().front()->sources().empty());
+}
+
+TEST(ReportQueue, DropsAndCountsWhatFindsItFull) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  ReportQueue queue(scene, {.reports = 2, .inputs = 2, .samples_a_batch = 4});
+  for (int i = 0; i < 5; ++i) {
+    queue.input(batch_of(1, 4));
+    queue.report(monitor.tick({}, test::kStart + i), {});
+  }
+  EXPECT_EQ(queue.dropped_reports(), 3u);
+  EXPECT_EQ(queue.dropped_inputs(), 3u);
+  queue.reports().pop();
+  queue.report(monitor.tick({}, test::kStart + 5), {});
+  EXPECT_EQ(queue.dropped_reports(), 3u);
+  EXPECT_EQ(queue.reports().front()->report.cycle, 2u);
+}
+
+TEST(ReportQueue, RefusesABatchThatIsLargerThanItsSlots) {
+  const Scene scene = published_cell();
+  ReportQueue queue(scene, {.inputs = 2, .samples_a_batch = 4});
+  queue.input(batch_of(1, 5));
+  EXPECT_EQ(queue.dropped_inputs(), 1u);
+  EXPECT_EQ(queue.inputs().front(), nullptr);
+}
+
+TEST(ReportQueue, AllocatesNothingInTheTickThread) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  ReportQueue queue(scene, {.reports = 8, .inputs = 8, .samples_a_batch = 4});
+  const PoseBatch batch = batch_of(1, 4);
+  LoopStatistics statistics;
+  statistics.rejected.resize(scene.objects.size());
+  statistics.ages.resize(scene.objects.size());
+  const Report& report = monitor.tick({}, test::kStart);
+  const SourceUse use{};
+  const std::uint64_t before = allocations();
+  for (int i = 0; i < 20; ++i) {  // full slots and dropped ones
+    queue.input(batch);
+    queue.report(report, {&use, 1});
+    queue.statistics(statistics);
+  }
+  EXPECT_EQ(allocations() - before, 0u);
+}
+
+}  // namespace
+}  // namespace clearance

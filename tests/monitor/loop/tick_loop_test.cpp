@@ -1,0 +1,245 @@
+// The fixed-rate loop through its seams: a list of batches, a clock that the test turns, a list of
+// reports.
+#include "monitor/loop/tick_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/allocation_count.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+
+// Time passes only in sleep_until and where a test says that work takes long.
+class TurnedClock final : public Clock {
+ public:
+  std::int64_t realtime_ns() noexcept override { return kStart + now_; }
+  std::int64_t monotonic_ns() noexcept override { return now_; }
+  void sleep_until(std::int64_t monotonic_ns) noexcept override {
+    now_ = std::max(now_, monotonic_ns + late_);
+    ++sleeps_;
+  }
+  void pass(std::int64_t ns) noexcept { now_ += ns; }
+  void wake_late_by(std::int64_t ns) noexcept { late_ = ns; }
+  [[nodiscard]] int sleeps() const noexcept { return sleeps_; }
+
+ private:
+  std::int64_t now_ = 0, late_ = 0;
+  int sleeps_ = 0;
+};
+
+class ListedPoses final : public PoseSource {
+ public:
+  void add(std::string_view source, std::uint64_t sequence_number, std::size_t samples,
+           std::uint64_t revision = 0) {
+    PoseBatch& batch = batches_.emplace_back();
+    batch.source = SourceName(source);
+    batch.sequence_number = sequence_number;
+    batch.scene_revision = revision;
+    for (std::size_t i = 0; i < samples; ++i) {
+      batch.samples.push_back(test::sample(0, test::at(1, 0, 0), kStart));
+    }
+  }
+  const PoseBatch* next() noexcept override {
+    return given_ == batches_.size() ? nullptr : &batches_[given_++];
+  }
+
+ private:
+  std::deque<PoseBatch> batches_;
+  std::size_t given_ = 0;
+};
+
+class ListedReports final : public ReportSink {
+ public:
+  explicit ListedReports(TurnedClock& clock) : clock_(clock) { cycles.reserve(100); }
+  void input(const PoseBatch& batch) noexcept override { inputs.push_back(batch.sequence_number); }
+  void report(const Report& report, std::span<const SourceUse> sources) noexcept override {
+    cycles.push_back(report.cycle);
+    times_ns.push_back(report.now_ns - kStart);
+    used.emplace_back(sources.begin(), sources.end());
+    inputs_before.push_back(inputs.size());
+    rejected = report.rejected;
+    if (report.cycle == slow_cycle) clock_.pass(slow_ns);
+  }
+  void statistics(const LoopStatistics& statistics) noexcept override {
+    all_statistics.push_back(statistics);
+  }
+
+  std::uint64_t slow_cycle = 0;
+  std::int64_t slow_ns = 0;
+  std::vector<std::uint64_t> cycles, inputs;
+  std::vector<std::size_t> inputs_before;
+  std::vector<std::int64_t> times_ns;
+  std::vector<std::vector<SourceUse>> used;
+  std::vector<LoopStatistics> all_statistics;
+  std::array<std::uint64_t, kRejects> rejected{};
+
+ private:
+  TurnedClock& clock_;
+};
+
+Scene ball_over_floor() {
+  Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
+                               test::fixed("floor", {test::floor()}, test::at(0, 0, -1))});
+  scene.pairs[0].publish = true;
+  return scene;
+}
+
+struct Loop {
+  Scene scene = ball_over_floor();
+  TurnedClock clock;
+  ListedPoses poses;
+  ListedReports reports{clock};
+  std::atomic<bool> stop{false};
+
+  void run(const TickLoopOptions& options) {
+    TickLoop loop(scene, poses, {&reports}, clock, options);
+    loop.run(stop);
+    statistics = loop.statistics();
+  }
+  LoopStatistics statistics;
+};
+
+TEST(TickLoop, TicksOnItsDeadlines) {
+  Loop loop;
+  loop.run({.max_ticks = 5});
+  EXPECT_EQ(loop.reports.cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(loop.reports.times_ns,
+            (std::vector<std::int64_t>{kTick, 2 * kTick, 3 * kTick, 4 * kTick, 5 * kTick}));
+  EXPECT_EQ(loop.statistics.overruns, 0u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 0u);
+}
+
+TEST(TickLoop, StartsTheNextTickAtOnceAfterAShortOverrun) {
+  Loop loop;
+  loop.reports.slow_cycle = 2;
+  loop.reports.slow_ns = kTick + kTick / 4;
+  loop.run({.max_ticks = 4});
+  EXPECT_EQ(loop.statistics.overruns, 1u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 0u);
+  EXPECT_EQ(loop.reports.times_ns,
+            (std::vector<std::int64_t>{kTick, 2 * kTick, 3 * kTick + kTick / 4, 4 * kTick}));
+}
+
+TEST(TickLoop, SkipsMissedDeadlinesAndIsBackOnItsGridWithoutAGapInTheCycles) {
+  Loop loop;
+  loop.reports.slow_cycle = 2;
+  loop.reports.slow_ns =
+      5 * kTick + kTick / 2;  // from 2 to 7.5: deadlines 3 to 6 have passed, 7 is late
+  loop.run({.max_ticks = 5});
+  EXPECT_EQ(loop.statistics.overruns, 1u);
+  EXPECT_EQ(loop.statistics.skipped_cycles, 4u);
+  EXPECT_EQ(loop.reports.cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
+  EXPECT_EQ(
+      loop.reports.times_ns,
+      (std::vector<std::int64_t>{kTick, 2 * kTick, 7 * kTick + kTick / 2, 8 * kTick, 9 * kTick}));
+}
+
+TEST(TickLoop, CountsHowLateItWakesAndHowLongTicksTake) {
+  Loop loop;
+  loop.clock.wake_late_by(20'000);
+  loop.reports.slow_cycle = 3;
+  loop.reports.slow_ns = 400'000;
+  loop.run({.max_ticks = 10});
+  EXPECT_EQ(loop.statistics.wakeup.count(), 10u);
+  EXPECT_EQ(loop.statistics.wakeup.max_ns(), 20'000);
+  EXPECT_EQ(loop.statistics.tick.max_ns(), 400'000);
+  EXPECT_EQ(loop.statistics.tick_second_max_ns, 0) << "begins again once it was handed over";
+  EXPECT_EQ(loop.reports.all_statistics.back().tick_second_max_ns, 400'000);
+}
+
+TEST(TickLoop, HandsVitalsOverOnceASecondAndAtTheEnd) {
+  Loop loop;
+  loop.scene.rate_hz = 10.0;
+  loop.run({.max_ticks = 25});
+  ASSERT_EQ(loop.reports.all_statistics.size(), 3u);
+  EXPECT_EQ(loop.reports.all_statistics[0].cycle, 10u);
+  EXPECT_EQ(loop.reports.all_statistics[1].cycle, 20u);
+  EXPECT_EQ(loop.reports.all_statistics[2].cycle, 25u);
+}
+
+TEST(TickLoop, TakesInAllThatWaitsInOrderAndNamesTheLastOfEachSource) {
+  Loop loop;
+  loop.poses.add("left", 7, 1);
+  loop.poses.add("right", 1, 1);
+  loop.poses.add("left", 8, 1);
+  loop.run({.max_ticks = 2});
+  EXPECT_EQ(loop.reports.inputs, (std::vector<std::uint64_t>{7, 1, 8}));
+  EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{3, 3}));
+  ASSERT_EQ(loop.reports.used[0].size(), 2u);
+  EXPECT_EQ(loop.reports.used[0][0].source.view(), "left");
+  EXPECT_EQ(loop.reports.used[0][0].sequence_number, 8u);
+  EXPECT_EQ(loop.reports.used[0][1].source.view(), "right");
+  EXPECT_EQ(loop.reports.used[0][1].sequence_number, 1u);
+  EXPECT_TRUE(loop.reports.used[1].empty());
+}
+
+TEST(TickLoop, LeavesWhatDoesNotFitForTheNextTick) {
+  Loop loop;
+  for (std::uint64_t i = 1; i <= 4; ++i) loop.poses.add("arm", i, 3);
+  loop.run({.max_ticks = 3, .max_samples = 7});
+  EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{2, 4, 4}));
+  EXPECT_EQ(loop.reports.inputs, (std::vector<std::uint64_t>{1, 2, 3, 4}));
+}
+
+TEST(TickLoop, RefusesBatchesMadeForAnotherSceneAndCountsThem) {
+  Loop loop;
+  loop.poses.add("arm", 1, 2, loop.scene.revision + 1);
+  loop.poses.add("arm", 2, 1, loop.scene.revision);
+  loop.run({.max_ticks = 2});
+  const auto cause = static_cast<std::size_t>(Reject::kWrongRevision);
+  EXPECT_EQ(loop.reports.rejected[cause], 2u);
+  EXPECT_EQ(loop.statistics.rejected[0][cause], 2u);
+  EXPECT_EQ(loop.reports.used[0].at(0).sequence_number, 2u);
+}
+
+TEST(TickLoop, RemembersTheSmallestDistanceSeen) {
+  Loop loop;
+  loop.poses.add("arm", 1, 1);
+  loop.run({.max_ticks = 3});
+  ASSERT_TRUE(loop.statistics.minimum.known);
+  EXPECT_EQ(loop.statistics.minimum.cycle, 1u);
+  EXPECT_NEAR(loop.statistics.minimum.pair.distance, 0.9, 1e-12);
+}
+
+TEST(TickLoop, StopsWhenTold) {
+  Loop loop;
+  loop.stop = true;
+  loop.run({});
+  EXPECT_TRUE(loop.reports.cycles.empty());
+  EXPECT_EQ(loop.clock.sleeps(), 0);
+}
+
+// A sink that only counts what a tick allocates.
+class CountingSink final : public ReportSink {
+ public:
+  void input(const PoseBatch&) noexcept override {}
+  void report(const Report& report, std::span<const SourceUse>) noexcept override {
+    if (report.cycle == 1) first_ = allocations();
+    last_ = allocations();
+  }
+  void statistics(const LoopStatistics&) noexcept override {}
+  [[nodiscard]] std::uint64_t allocated() const noexcept { return last_ - first_; }
+
+ private:
+  std::uint64_t first_ = 0, last_ = 0;
+};
+
+TEST(TickLoop, AllocatesNothingOnceItRuns) {
+  Loop loop;
+  loop.scene.rate_hz = 10.0;  // statistics are handed over on the way
+  for (std::uint64_t i = 1; i <= 300; ++i) loop.poses.add("arm", i, 3);
+  CountingSink sink;
+  TickLoop ticking(loop.scene, loop.poses, {&sink}, loop.clock,
+                   {.max_ticks = 200, .max_samples = 8});
+  ticking.run(loop.stop);
+  EXPECT_EQ(sink.allocated(), 0u);
+}
+
+}  // namespace
+}  // namespace clearance

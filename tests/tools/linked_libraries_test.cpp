@@ -1,0 +1,36 @@
+// What programs need to be installed: those that talk to no daemon do without DDS.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// The libraries that a program names for the loader, and all that these need in turn.
+std::string libraries_of(const std::string& program) {
+  const std::string command = "ldd " CLEARANCE_BIN "/" + program;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  for (int c = std::getc(output.get()); c != EOF; c = std::getc(output.get())) {
+    text += static_cast<char>(c);
+  }
+  return text;
+}
+
+TEST(LinkedLibraries, ProgramsThatTalkToNoDaemonDoWithoutDds) {
+  for (const char* program : {"clearance-distance", "clearance-scene"}) {
+    const std::string libraries = libraries_of(program);
+    EXPECT_THAT(libraries, HasSubstr("libgmp")) << program;
+    EXPECT_THAT(libraries, Not(HasSubstr("libddsc"))) << program;
+  }
+  EXPECT_THAT(libraries_of("clearance-watch"), HasSubstr("libddsc"));
+}
+
+}  // namespace
+}  // namespace clearance
