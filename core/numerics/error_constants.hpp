@@ -13,13 +13,6 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 // For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
 inline constexpr double kNearlyUnit = 0x1p-28;
 
-// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its
-// reciprocal over- or underflow, and the quaternions are brought to about unit length first.
-inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
-[[nodiscard]] constexpr bool is_in_range(double square) noexcept {
-  return square >= kLeastSquare && square <= kMostSquare;
-}
-
 // What follows is to first order; the second is 2^-50 of it, and every count is rounded up by more.
 // tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at once are
 // worst.

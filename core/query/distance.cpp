@@ -26,7 +26,7 @@ inline HWY_NOINLINE DistanceResult tracked_overlap(const ConvexPolyhedron& a,
   const RelativeQuads a_from_b = relative_quads(world_from_a, world_from_b);
   Walk w(a, b, a_from_b, state);
   if (!walk_overlap(w)) {
-    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
+    return by_depth(a, b, pose_of(a_from_b), state);
   }
   DistanceResult result = overlap_result_of(w);
   add_radii(result, a, b);
@@ -43,7 +43,7 @@ HWY_INLINE DistanceResult walked_anyhow(const ConvexPolyhedron& a, const ConvexP
   w.steps = start.steps;
   w.levels = start.levels;
   if (walk(w) == WalkEnd::kProved) return rounded_result_of(w);
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
 // After a first step that has ended so; with a walk of its own, as above.
@@ -55,7 +55,7 @@ inline HWY_NOINLINE DistanceResult walked_on(const ConvexPolyhedron& a, const Co
   w.steps = at.steps;
   w.levels = at.levels;
   if (first == Step::kMoved && walk_on(w) == WalkEnd::kProved) return rounded_result_of(w);
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
 // A walk's first step where that is straight-line code: nothing here needs the walk in memory, so
@@ -175,6 +175,10 @@ const char* name(DistanceStatus status) noexcept {
       return "overlapping";
     case DistanceStatus::kIterationLimit:
       return "iteration_limit";
+    case DistanceStatus::kDepthNotAsked:
+      return "depth_not_asked";
+    case DistanceStatus::kBadPose:
+      return "bad_pose";
   }
   return "";
 }
@@ -182,7 +186,7 @@ const char* name(DistanceStatus status) noexcept {
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known();
+  if (!is_good(a_from_b)) return of_bad_pose();
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
   if (state.a.deep && options.depth) {
@@ -190,7 +194,7 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kProved) {
     return by_search(a, b, a_from_b, state, options.depth);
   }
-  finish(a, b, result);
+  add_radii(result, a, b);
   return result;
 }
 

@@ -6,13 +6,10 @@
 
 namespace clearance {
 
-// Whether a pose says where a body is.
-[[nodiscard]] bool is_a_place(const RelativePose& pose) noexcept;
-// The answer where it does not.
-[[nodiscard]] DistanceResult nothing_known() noexcept;
-
-// Adds the radii to an answer about the cores. Of lengths that overflowed nothing is known.
-void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& result) noexcept;
+// Is it finite, and are the frames no more than kLargestCoordinate apart?
+[[nodiscard]] bool is_good(const RelativePose& pose) noexcept;
+// The answer of one that is not.
+[[nodiscard]] DistanceResult of_bad_pose() noexcept;
 
 // distance() by the loop from the features of the state on, and if need be by the robust path; if
 // `depth`, of bodies that overlap by the depth as well.

@@ -47,9 +47,12 @@ Pose read_pose(const Json& list, const std::string& where) {
     throw BadLine(where + " is not finite");
   }
   if (!(pose.position.cwiseAbs().maxCoeff() <= kFarthest)) {
-    throw BadLine(where + " lies more than 1e100 m from the origin");
+    throw BadLine(where + " lies more than 1e12 m from the origin");
   }
-  if (norm == 0.0) throw BadLine(where + ": the quaternion has length zero");
+  if (!is_unit(pose.orientation)) {
+    throw BadLine(where + ": the quaternion has length " + std::to_string(norm) +
+                  "; expected 1 to within 1e-6");
+  }
   return pose;
 }
 
@@ -81,7 +84,7 @@ ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
     if (!found->is_number() || !(found->get<double>() >= 0.0) ||
         !(found->get<double>() <= kFarthest)) {
-      throw BadLine(where + ".radius: expected a length in metres, at most 1e100, found " +
+      throw BadLine(where + ".radius: expected a length in metres, at most 1e12, found " +
                     shown(*found));
     }
     radius = found->get<double>();
