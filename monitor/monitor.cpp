@@ -1,60 +1,86 @@
+// A tick as its stages, each of which reads what those before it have written:
+//
+//   ingest      samples                        -> Inputs: the pose in use of each object
+//   displace    Inputs                         -> Displacements, parts posed in the world
+//   cull        Displacements                  -> Culling: pairs seen, with bounds of this tick
+//   schedule    pairs seen, budget             -> Schedule: what is evaluated at once, what is kept
+//   evaluate    Schedule                       -> PairTable: tight bounds; zone crossings found
+//   sweep       zone crossings                 -> ZoneCrossings: bounds since the last tick
+//   conclude    PairTable, ZoneCrossings       -> Zones, Conclusion: minimum, published pairs
+//   report      all of these                   -> Report, which nothing reads
 #include "monitor/monitor.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
+#include "config/refresh_share.hpp"
+#include "monitor/conclude.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/objects/input_summary.hpp"
-#include "monitor/objects/tracked_object.hpp"
-#include "monitor/pairs/global_minimum.hpp"
-#include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/objects/displacements.hpp"
+#include "monitor/objects/ingest.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/pairs/worker_pool.hpp"
 #include "monitor/schedule/scheduler.hpp"
+#include "monitor/zones/zone_levels.hpp"
 #include "monitor/zones/zones.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint32_t kNoLimit = std::numeric_limits<std::uint32_t>::max();  // of queries
+constexpr Budget kNoLimit(std::numeric_limits<std::uint32_t>::max());
+
+std::vector<std::uint8_t> published_flags(const Scene& scene) {
+  std::vector<std::uint8_t> flags;
+  for (const ObjectPair& pair : scene.pairs) flags.push_back(pair.publish);
+  return flags;
+}
+
+std::vector<std::uint32_t> published_pairs(const Scene& scene) {
+  std::vector<std::uint32_t> published;
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    if (scene.pairs[p].publish) published.push_back(p);
+  }
+  return published;
+}
 
 }  // namespace
 
+// Everything that one tick leaves to the next stands in one of these; each is changed by one stage.
 struct Monitor::State {
   const Scene& scene;
-  std::vector<TrackedObject> objects;
-  std::vector<PosedPart> parts;
-  std::vector<std::uint32_t> first_part;  // object i: parts first_part[i] .. first_part[i + 1]
-  std::vector<std::uint32_t> moving;      // objects that are not fixed
-  std::vector<std::uint32_t> changed;     // objects of which this tick knows something else
-  InputSummary inputs;                    // of this tick
-  PairTable table;
+  const ZoneLevels zone_levels;
+  const RefreshShare share;
+  const std::vector<std::uint32_t> moving;       // objects that are not fixed
+  const std::vector<std::uint32_t> first_part;   // by object
+  const std::vector<std::uint32_t> published;    // pairs
+  const std::vector<std::uint8_t> is_published;  // by pair
   WorkerPool pool;
-  Scheduler triage;
-  Zones zones;
-  GlobalMinimum closest;  // of this tick
-  Report report;
+
+  Inputs inputs;            // ingest, and displace
+  Displacements displaced;  // displace
+  std::vector<PosedPart> parts;
+  PairTable table;          // cull and evaluate
+  Scheduler scheduler;      // schedule and evaluate
+  Culling culling;          // cull and evaluate
+  Schedule schedule;        // schedule
+  ZoneCrossings crossings;  // evaluate and sweep
+  Zones zones;              // conclude
+  Conclusion conclusion;    // conclude
+  Report report;            // report
 
   State(const Scene& the_scene, const MonitorOptions& options);
 
-  void begin(std::int64_t now_ns) noexcept;
-  void take_in(std::span<const PoseSample> samples) noexcept;
-  void move() noexcept;
-  void report_pairs() noexcept;
-  void report_counts() noexcept;
-  void report_whole() noexcept;
-  void count_in(std::uint32_t pair, const PairBounds& state) noexcept;
-
-  void refuse(std::uint32_t object, Reject cause) noexcept;
-  [[nodiscard]] PairReport report_pair(std::uint32_t pair) const noexcept;
-  void write_report(std::uint32_t pair, const PairBounds& state,
-                    PairReport& written) const noexcept;
-  [[nodiscard]] PairBounds summary(std::uint32_t pair, bool published) const noexcept;
-  [[nodiscard]] Clearance rest() const noexcept;
-  [[nodiscard]] Clearance pending() const noexcept;
+  [[nodiscard]] Evaluation evaluation(Budget budget) noexcept {
+    return {inputs.objects, parts, inputs.cycle, table, budget};
+  }
+  void displace() noexcept;
+  void write_report(std::uint32_t queries) noexcept;
+  void write_minimum() noexcept;
+  void write_pair(std::uint32_t pair, const PairBounds& bounds, PairReport& written) const noexcept;
+  [[nodiscard]] PairBounds bounds(std::uint32_t pair) noexcept;
+  [[nodiscard]] PairReport pair_report(std::uint32_t pair) noexcept;
 };
 
 Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
@@ -63,211 +89,130 @@ Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept {
   State& s = *state_;
-  s.begin(now_ns);
-  s.take_in(samples);  // samples  -> objects: the pose in use of each
-  s.move();            // objects  -> parts: where each is, how far it moved
-  s.inputs = look_at_inputs(s.objects, s.moving, s.report);
-  // parts    -> table: every bound true for these poses, or provably not worth a look
-  s.zones.begin(s.report.zones);
-  s.report.queries =
-      s.triage.evaluate_due(s.objects, s.changed, s.parts, s.report.cycle, s.zones, s.table);
-  s.report_pairs();  // table    -> report
-  s.report_counts();
-  s.report_whole();
+  ingest(samples, now_ns, s.scene, s.inputs);
+  s.displace();
+  Evaluation tick = s.evaluation(Budget(s.scene.budget));
+  s.culling.cull(s.displaced.changed, s.scheduler.minimum_upper(), tick);
+  s.schedule = s.scheduler.schedule(s.culling, tick);
+  s.scheduler.evaluate(s.schedule, s.zones, s.culling, s.crossings, tick);
+  s.crossings.sweep(s.culling.seen(), s.zones, tick);
+  conclude(s.published, s.is_published, s.displaced, s.culling, s.zone_levels, s.crossings, tick,
+           s.zones, s.conclusion);
+  s.write_report(s.scene.budget - tick.budget.left());
   return s.report;
 }
 
-void Monitor::refuse(std::uint32_t object, Reject cause) noexcept { state_->refuse(object, cause); }
+void Monitor::refuse(std::uint32_t object, Reject cause) noexcept {
+  clearance::refuse(object, cause, state_->inputs);
+}
 
-PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->report_pair(pair); }
+PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
 
-SweptBounds Monitor::passage(std::uint32_t pair, double level) const noexcept {
+SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
   State& s = *state_;
-  const PairBounds known = s.summary(pair, s.scene.pairs[pair].publish);
+  const PairBounds known = s.bounds(pair);
   SweptBounds bounds{known.swept_lower, known.swept_upper};
   if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
-  Evaluation evaluation{s.objects, s.parts, s.report.cycle, s.table, kNoLimit};
-  const SweptBounds found = passage_of(pair, level, evaluation);
+  Evaluation evaluation = s.evaluation(kNoLimit);
+  const SweptBounds found = swept_bounds_of(pair, level, evaluation);
   bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
   bounds.upper = std::min(bounds.upper, found.upper);
   return bounds;
 }
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
-  const TrackedObject& state = state_->objects[object];
+  const TrackedObject& state = state_->inputs.objects[object];
   return {.age_ns = state.age_ns, .stale = state.late};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {
-  return state_->objects[object].rejected;
+  return state_->inputs.objects[object].rejected;
 }
 
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
-  return state_->objects[object].stamp_ns;
+  return state_->inputs.objects[object].stamp_ns;
 }
 
 Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
     : scene(the_scene),
-      parts(parts_of(the_scene)),
-      first_part(the_scene.objects.size() + 1, 0),
-      table(the_scene, parts),
+      zone_levels(the_scene),
+      share(refresh_share(the_scene)),
+      moving(moving_objects(the_scene)),
+      first_part(first_parts(the_scene)),
+      published(published_pairs(the_scene)),
+      is_published(published_flags(the_scene)),
       pool(options.workers, options.on_worker_start),
-      triage(the_scene, parts, table, pool),
-      zones(the_scene) {
-  const std::vector<BoundingSphere> balls = bounding_spheres(scene.objects.size(), parts);
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    objects.push_back(initial_state(scene.objects[i]));
-    objects[i].reach = balls[i].reach;
-    if (!scene.objects[i].fixed) moving.push_back(i);
-    first_part[i + 1] = first_part[i] + static_cast<std::uint32_t>(scene.objects[i].parts.size());
-  }
-  changed.reserve(objects.size());
+      inputs(initial_inputs(the_scene)),
+      parts(parts_of(the_scene)),
+      table(the_scene, parts),
+      scheduler(the_scene, share, parts, table, zone_levels, pool),
+      culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
+              scheduler.left_out(), share),
+      crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
+      zones(the_scene, zone_levels) {
+  const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
+  for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
+  displaced.changed.reserve(scene.objects.size());
+  conclusion.published.resize(published.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
-  report.now_ns = std::numeric_limits<std::int64_t>::min();
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (scene.pairs[p].publish) report.pairs.push_back(report_pair(p));
-  }
-  report.zones.resize(scene.zones.size());
-  for (std::size_t z = 0; z < scene.zones.size(); ++z) {
-    if (!scene.zones[z].pairs.empty()) report.zones[z].pair = scene.zones[z].pairs.front();
-  }
+  for (const std::uint32_t pair : published) report.pairs.push_back(pair_report(pair));
+  report.zones.assign(zones.reports().begin(), zones.reports().end());
 }
 
-void Monitor::State::begin(std::int64_t now_ns) noexcept {
-  ++report.cycle;
-  report.now_ns = std::max(report.now_ns, now_ns);
+void Monitor::State::displace() noexcept {
+  clearance::displace(scene, moving, inputs, displaced);
+  pose_parts(inputs.objects, displaced.changed, first_part, parts);
 }
 
-void Monitor::State::take_in(std::span<const PoseSample> samples) noexcept {
-  for (const PoseSample& sample : samples) {
-    if (sample.object >= objects.size() || scene.objects[sample.object].fixed) {
-      refuse(sample.object, Reject::kUnknownObject);
-      continue;
-    }
-    TrackedObject& object = objects[sample.object];
-    const auto cause = refusal(sample, object, report.now_ns, scene.future_limit_ns);
-    if (cause) {
-      refuse(sample.object, *cause);
-    } else {
-      accept(scene.objects[sample.object], sample, object);
-    }
+void Monitor::State::write_report(std::uint32_t queries) noexcept {
+  report.cycle = inputs.cycle;
+  report.now_ns = inputs.now_ns;
+  report.newest_pose_ns = displaced.newest_pose_ns;
+  report.oldest_pose_ns = displaced.oldest_pose_ns;
+  report.rejected = inputs.rejected;
+  for (std::size_t i = 0; i < published.size(); ++i) {
+    write_pair(published[i], conclusion.published[i], report.pairs[i]);
   }
-}
+  std::ranges::copy(zones.reports(), report.zones.begin());
 
-void Monitor::State::refuse(std::uint32_t object, Reject cause) noexcept {
-  const auto index = static_cast<std::size_t>(cause);
-  ++report.rejected[index];
-  if (object < objects.size()) ++objects[object].rejected[index];
-}
-
-void Monitor::State::move() noexcept {
-  changed.clear();
-  if (report.cycle == 1) {
-    for (std::uint32_t i = 0; i < objects.size(); ++i) changed.push_back(i);
-  }
-  // One loop for each step: no object has to wait for the roots and quotients of the one before.
-  for (const std::uint32_t i : moving) {
-    TrackedObject& object = objects[i];
-    const bool was_late = object.late;
-    const double might_have_moved = object.may_have_moved;
-    advance(scene.objects[i], report.now_ns, object);
-    const bool stirs =
-        object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
-    if (stirs && report.cycle > 1) changed.push_back(i);
-  }
-  for (const std::uint32_t i : moving) travel(objects[i].reach, objects[i]);
-  for (const std::uint32_t i : changed) {
-    if (!objects[i].seen) continue;
-    for (std::uint32_t part = first_part[i]; part < first_part[i + 1]; ++part) {
-      place(objects[i], parts[part]);
-    }
-  }
-}
-
-// Every pair that was looked at is summed up once.
-void Monitor::State::report_pairs() noexcept {
-  closest = {};
-  report.evaluated = 0;
-  for (PairReport& published : report.pairs) {
-    const std::uint32_t pair = published.pair;
-    const PairBounds state = summary(pair, true);
-    write_report(pair, state, published);
-    if (table.entries[pair].carried_cycle == report.cycle) count_in(pair, state);
-  }
-  for (const std::uint32_t pair : triage.current()) {
-    if (!scene.pairs[pair].publish) count_in(pair, summary(pair, false));
-  }
-}
-
-void Monitor::State::count_in(std::uint32_t pair, const PairBounds& state) noexcept {
-  closest.add(pair, state);
-  zones.add(pair, state);
-  report.evaluated += is_evaluated(state.status);
-}
-
-void Monitor::State::report_counts() noexcept {
-  const auto known = static_cast<std::uint32_t>(triage.counts().known());
-  const auto fresh = static_cast<std::uint32_t>(triage.counts().fresh());
-  report.unknown = report.pairs_total - known;
+  const auto known = static_cast<std::uint32_t>(culling.known_pairs().known());
+  const auto fresh = static_cast<std::uint32_t>(culling.known_pairs().fresh());
+  report.evaluated = conclusion.evaluated;
+  report.carried = fresh - conclusion.evaluated;
   report.stale = known - fresh;
-  report.carried = fresh - report.evaluated;
-  report.oldest_evaluation_cycles = report.cycle - triage.oldest_refresh();
+  report.unknown = report.pairs_total - known;
+  report.queries = queries;
+  report.oldest_evaluation_cycles =
+      inputs.cycle - scheduler.oldest_refresh(schedule, culling, evaluation(Budget(0)));
+  write_minimum();
 }
 
-void Monitor::State::report_whole() noexcept {
-  if (triage.current().size() < triage.counts().known()) {
-    const Clearance others = rest();
-    closest.add_rest(others.now, others.since);
-  }
-  zones.finish(
-      inputs.any_lost ? std::span<const TrackedObject>(objects) : std::span<const TrackedObject>(),
-      pending(), report.cycle, report.zones);
-
-  report.lower_all = report.unknown > 0 ? -kInfinity : closest.lower();
-  report.swept_lower_all = report.unknown > 0 ? -kInfinity : closest.swept_lower();
-  report.minimum_known = closest.known();
-  report.minimum_proved = closest.proved() && report.stale == 0 && report.unknown == 0;
-  report.minimum = closest.known() ? report_pair(closest.pair()) : unknown_report();
+void Monitor::State::write_minimum() noexcept {
+  const GlobalMinimum& minimum = conclusion.minimum;
+  report.lower_all = report.unknown > 0 ? -kInfinity : minimum.lower();
+  report.swept_lower_all = report.unknown > 0 ? -kInfinity : minimum.swept_lower();
+  report.minimum_known = minimum.known();
+  report.minimum_proved = minimum.proved() && report.stale == 0 && report.unknown == 0;
+  report.minimum = minimum.known() ? pair_report(minimum.pair()) : unknown_report();
 }
 
-// How far apart the pairs that are asleep, or that wait to be looked at, are for where their
-// objects may be; no margins subtracted.
-Clearance Monitor::State::rest() const noexcept {
-  const Clearance waiting = pending();
-  const double asleep = triage.horizon();
-  return {.now = std::min(rounded_down(asleep - inputs.most_unseen), waiting.now),
-          .since = std::min(rounded_down(asleep - inputs.most_strayed), waiting.since)};
+void Monitor::State::write_pair(std::uint32_t pair, const PairBounds& bounds,
+                                PairReport& written) const noexcept {
+  report_on(pair, bounds, inputs.objects, parts, table, written);
+  written.refresh_age_cycles = inputs.cycle - scheduler.refreshed_cycle(pair, culling, table);
 }
 
-Clearance Monitor::State::pending() const noexcept {
-  if (!triage.pending()) return {};
-  const double lower = triage.pending_lower();
-  return {.now = rounded_down(lower - inputs.most_unseen),
-          .since = rounded_down(lower - inputs.most_strayed)};
+PairBounds Monitor::State::bounds(std::uint32_t pair) noexcept {
+  const bool closely = is_published[pair] || zone_levels.has(pair);
+  const auto precision =
+      closely ? SweptPrecision::kByRelativeDisplacement : SweptPrecision::kByDisplacement;
+  return bounds_in_tick(pair, precision, crossings, evaluation(Budget(0)));
 }
 
-PairBounds Monitor::State::summary(std::uint32_t pair, bool published) const noexcept {
-  // Of other pairs nobody asks how near they came, but for the least of all.
-  const bool closely = published || zones.has(pair);
-  PairBounds summary = summary_of(pair, objects, parts, report.cycle, table,
-                                  closely ? Since::kByRelative : Since::kByTravel);
-  if (!triage.any_passage()) return summary;
-  const SweptBounds passage = triage.passage(pair);
-  summary.swept_lower = std::min(summary.lower, std::max(summary.swept_lower, passage.lower));
-  summary.swept_upper = std::min(summary.swept_upper, passage.upper);
-  return summary;
-}
-
-void Monitor::State::write_report(std::uint32_t pair, const PairBounds& state,
-                                  PairReport& written) const noexcept {
-  report_on(pair, state, objects, parts, table, written);
-  written.refresh_age_cycles = report.cycle - triage.refreshed_cycle(pair, table);
-}
-
-PairReport Monitor::State::report_pair(std::uint32_t pair) const noexcept {
+PairReport Monitor::State::pair_report(std::uint32_t pair) noexcept {
   PairReport written;
-  write_report(pair, summary(pair, scene.pairs[pair].publish), written);
+  write_pair(pair, bounds(pair), written);
   return written;
 }
 

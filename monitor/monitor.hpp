@@ -48,7 +48,7 @@ class Monitor {
 
   // How near a pair came between the last two ticks: PairReport::swept_lower, and where that is
   // below `level`, m, looked at closer until it is decided, whatever that takes. Changes nothing.
-  [[nodiscard]] SweptBounds passage(std::uint32_t pair, double level) const noexcept;
+  [[nodiscard]] SweptBounds sweep(std::uint32_t pair, double level) const noexcept;
 
   // How old an object's pose was at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;

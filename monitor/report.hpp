@@ -1,4 +1,8 @@
 // What comes out of a tick.
+//
+// One rule for what is not known: a figure is NaN, a lower bound -infinity, an upper bound
+// +infinity, and the status says why. An age, which is an integer, is negative then. A signed
+// distance of -infinity is known: no translation parts the two.
 #pragma once
 
 #include <array>
@@ -17,7 +21,7 @@ enum class PairStatus : std::uint8_t {
   kOverlapping = 2,  // evaluated: they share a point
   kLoose = 3,        // evaluated: the bounds hold but are wider than rounding
   // Not evaluated this tick: bounds carried over by the motion bound. A pair that has not been
-  // evaluated yet (evaluated_cycle 0) has its bounds from bounding balls and NaN for the rest.
+  // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
   kCarried = 4,
   kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
   // An object has never been seen, or is late without a stated maximum speed: all NaN,
@@ -38,12 +42,12 @@ struct PairReport {
   double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
   // Holds at every instant since the last tick, for objects that went from the pose in use then to
   // this one's straight and evenly, turning evenly about one axis, the shorter way (README.md,
-  // "Between two ticks"); less e for objects that strayed from that way by e, both together. A late
-  // object also strays by what it may have moved unseen. Of a pair that was not known at the last
-  // tick: as `lower`. -infinity when unknown, or when an object leapt 10 km.
+  // "Between two ticks"); less e for objects that displaced from that way by e, both together. A
+  // late object is also off it by what it may have moved unseen. Of a pair that was not known at
+  // the last tick: as `lower`. -infinity when unknown, or after a discontinuity of 10 km.
   double swept_lower = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  // unit, from A to B; zero where no translation parts them
+  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where no translation parts them
   // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
   // when either velocity is not known: after a first pose without twist, or one that follows a gap
   // longer than twice the age limit, and while a pose is late. Fixed objects are at rest.
@@ -55,8 +59,8 @@ struct PairReport {
   std::int64_t age_a_ns = 0, age_b_ns = 0;
   std::uint64_t evaluated_cycle = 0;  // the tick in which distance and witnesses were computed
   // Ticks since its bounds were last found afresh from the poses of a tick: by an evaluation, or by
-  // balls or hulls around its objects where these prove it out of question. 0: in this one. Counted
-  // from the start where that never was; also while it is unknown.
+  // spheres or hulls around its objects where these prove it out of question. 0: in this one.
+  // Counted from the start where that never was; also while it is unknown.
   std::uint64_t refresh_age_cycles = 0;
 };
 

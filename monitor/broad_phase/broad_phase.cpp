@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/invariant.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
 
-// A pair with less slack than this is cheaper awake: it would be back within a few ticks.
-constexpr double kLeastSlack = 16.0 * MotionWheels::kUnit;  // 4 mm
-constexpr double kLeastTicks = 4.0;                         // of both objects' usual travel
+// A pair with a smaller allowance than this is cheaper active: it would be back within a few ticks.
+constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
+constexpr double kLeastTicks = 4.0;  // of both objects' usual displacement
 // Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
-// balls' own rounding takes over.
+// spheres' own rounding takes over.
 constexpr double kSumError = 1e-9;
-constexpr double kSmoothing = 0.125;  // of usual travel: eight ticks
-constexpr double kRest = 1e-12;       // m a tick: none
-// The slower object's part of the slack is no less than this, in case it darts.
+constexpr double kSmoothing = 0.125;   // of usual displacement: eight ticks
+constexpr double kStandstill = 1e-12;  // m a tick: none
+// The slower object's part of the allowance is no less than this, in case it darts.
 constexpr double kLeastShare = 0.125;
 
 double share_of_a(double usual_a, double usual_b) noexcept {
@@ -24,50 +25,40 @@ double share_of_a(double usual_a, double usual_b) noexcept {
   return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
 }
 
-// How far from where it is now the object may have been since the last tick, m. After a leap every
-// zone of it says so itself.
-double strayed_since(const TrackedObject& object) noexcept {
-  return object.unseen_since + (object.leapt ? 0.0 : object.travel_since());
+// How far from where it is now the object may have been since the last tick, m. After a
+// discontinuity every zone of it says so itself.
+double displacement_since_last_tick(const TrackedObject& object) noexcept {
+  return object.unseen_since + (object.discontinuous ? 0.0 : object.known_displacement());
 }
 
 }  // namespace
 
-BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, Levels levels,
-                       std::span<const std::uint32_t> left_out, std::size_t most_woken)
-    : most_woken_(most_woken),
-      most_met_(most_woken / 2),
+BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts,
+                       const ZoneLevels& zone_levels, std::vector<double> urgent,
+                       std::span<const std::uint32_t> left_out, std::size_t most_activated)
+    : most_activated_(most_activated),
+      most_met_(most_activated / 2),
       bodies_(scene.objects.size()),
-      usual_travel_(scene.objects.size(), 0.0),
+      usual_displacement_(scene.objects.size(), 0.0),
       left_out_(scene.pairs.size(), 0),
-      levels_(std::move(levels)),
-      first_pair_(scene.objects.size() + 1, 0),
-      pairs_(2 * scene.pairs.size()),
-      others_(2 * scene.pairs.size()),
+      zone_levels_(zone_levels),
+      urgent_(std::move(urgent)),
+      by_object_(scene),
       wheels_(scene.objects.size(), scene.pairs.size()) {
-  const std::vector<BoundingSphere> balls = bounding_spheres(scene.objects.size(), parts);
+  const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    bodies_[i].ball = balls[i];
+    bodies_[i].sphere = spheres[i];
     bodies_[i].fixed = scene.objects[i].fixed;
   }
   for (const std::uint32_t pair : left_out) left_out_[pair] = 1;
   object_a_.reserve(scene.pairs.size());
   object_b_.reserve(scene.pairs.size());
-  for (const ObjectPair& pair : scene.pairs) {
-    object_a_.push_back(pair.first);
-    object_b_.push_back(pair.second);
-    ++first_pair_[pair.first + 1];
-    ++first_pair_[pair.second + 1];
-  }
-  for (std::size_t i = 0; i < bodies_.size(); ++i) first_pair_[i + 1] += first_pair_[i];
-  std::vector<std::uint32_t> next(first_pair_.begin(), first_pair_.end() - 1);
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    const std::uint32_t a = object_a_[p], b = object_b_[p];
-    others_[next[a]] = b;
-    others_[next[b]] = a;
-    pairs_[next[a]++] = pairs_[next[b]++] = p;
-    if (!left_out_[p]) bodies_[a].idle = bodies_[b].idle = false;
+    object_a_.push_back(scene.pairs[p].first);
+    object_b_.push_back(scene.pairs[p].second);
+    if (!left_out_[p]) bodies_[object_a_[p]].idle = bodies_[object_b_[p]].idle = false;
   }
-  woken_.reserve(scene.pairs.size());
+  activated_.reserve(scene.pairs.size());
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     if (!bodies_[i].idle) busy_.push_back(i);
   }
@@ -77,20 +68,21 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, 
 
 void BroadPhase::begin(const std::vector<TrackedObject>& objects,
                        std::span<const std::uint32_t> changed, PairTable& table) noexcept {
-  farthest_travel_ = 0.0;
+  largest_advance_ = 0.0;
   advanced_.clear();
   const std::size_t arrived_before = arrived_.size();
-  for (double& usual : usual_travel_) usual = usual > kRest ? (1.0 - kSmoothing) * usual : 0.0;
+  for (double& usual : usual_displacement_)
+    usual = usual > kStandstill ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : changed) {
     const TrackedObject& object = objects[i];
     if (!object.seen) continue;
     Body& body = bodies_[i];
-    if (!(object.travel < kInfinity)) jump(i, table);
+    if (!(object.displacement < kInfinity)) jump(i, table);
     if (body.idle) continue;
     if (object.moved) body.placed = false;
     if (!body.arrival.here()) arrive(i, object);
-    double by = object.travel < kInfinity ? object.travel : 0.0;
-    usual_travel_[i] += kSmoothing * by;
+    double by = object.displacement < kInfinity ? object.displacement : 0.0;
+    usual_displacement_[i] += kSmoothing * by;
     if (object.may_have_moved < kInfinity) {
       by += std::max(0.0, object.may_have_moved - body.may_have_moved);
       body.may_have_moved = object.may_have_moved;
@@ -98,7 +90,7 @@ void BroadPhase::begin(const std::vector<TrackedObject>& objects,
     if (!(by > 0.0)) continue;
     wheels_.advance(i, rounded_up(by));
     advanced_.push_back(i);
-    farthest_travel_ = std::max(farthest_travel_, rounded_up(by));
+    largest_advance_ = std::max(largest_advance_, rounded_up(by));
   }
   take_due(overdue_ ? busy_ : advanced_);
   // To take in an object that arrives costs as much as to meet a pair.
@@ -113,34 +105,32 @@ void BroadPhase::arrive(std::uint32_t object, const TrackedObject& state) noexce
 }
 
 void BroadPhase::jump(std::uint32_t object, PairTable& table) noexcept {
-  for (const std::uint32_t pair : pairs_of(object)) {
+  for (const std::uint32_t pair : by_object_.pairs_of(object)) {
     forget(pair, table);
-    if (wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1)) wake(pair);
+    if (is_culled(pair)) activate(pair);
   }
 }
 
-void BroadPhase::wake(std::uint32_t pair) noexcept {
+void BroadPhase::activate(std::uint32_t pair) noexcept {
   wheels_.cancel(2 * pair);
   wheels_.cancel(2 * pair + 1);
-  woken_.push_back(pair);
+  activated_.push_back(pair);
 }
 
 // Every pair is met once: in the turn of the first of its objects, if the other is there by then;
 // so that pairs are met in the order in which they lie in memory when all objects come at once.
 void BroadPhase::meet_arrivals(std::size_t most) noexcept {
-  for (most += woken_.size(); !everyone_met();) {
+  for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
     Arrival& own = bodies_[object].arrival;
     if (met_pairs_ == 0) own.met = static_cast<std::uint32_t>(arrived_.size());
-    const std::uint32_t first = first_pair_[object];
-    const std::uint32_t count = first_pair_[object + 1] - first;
-    for (; met_pairs_ < count; ++met_pairs_) {
-      if (woken_.size() >= most) return;
-      const Arrival& other = bodies_[others_[first + met_pairs_]].arrival;
+    const auto pairs = by_object_.pairs_of(object), others = by_object_.others_of(object);
+    for (; met_pairs_ < pairs.size(); ++met_pairs_) {
+      if (activated_.size() >= most) return;
+      const Arrival& other = bodies_[others[met_pairs_]].arrival;
       const bool met_before = other.rank < own.rank && own.rank < other.met;
       if (met_before || other.rank >= own.met) continue;
-      const std::uint32_t pair = pairs_[first + met_pairs_];
-      if (!left_out_[pair]) woken_.push_back(pair);
+      if (!left_out_[pairs[met_pairs_]]) activated_.push_back(pairs[met_pairs_]);
     }
     met_pairs_ = 0;
     ++met_;
@@ -150,75 +140,109 @@ void BroadPhase::meet_arrivals(std::size_t most) noexcept {
 // Of these objects, and there are none due of others.
 void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
-    return wheels_.take_due(object, most_woken_, woken_);
+    return wheels_.take_due(object, most_activated_, activated_);
   });
   // A hook that is due has been so for no longer than its pair has been overdue.
-  const double overtaken = rounded_up(2.0 * farthest_travel_);
+  const double overtaken = rounded_up(2.0 * largest_advance_);
   const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
   if (!all) overdue_lower_ = rounded_down(lower - overtaken);
   overdue_ = !all;
 }
 
-double BroadPhase::pending_lower() const noexcept {
-  return everyone_met() ? overdue_lower_ : -kInfinity;
+double BroadPhase::waiting_lower() const noexcept {
+  if (!everyone_met()) return -kInfinity;
+  return overdue_ ? overdue_lower_ : kInfinity;
 }
 
+// How far two objects are apart that are out of question, m: max(H, Z + U), where Z + U counts the
+// way since the last tick as well, and each with as much more as the pair needs to be looked at
+// well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
-  const double near = std::max(horizon_, levels_.urgent[a] + levels_.urgent[b]);
-  const double since = strayed_since(*bodies_[a].state) + strayed_since(*bodies_[b].state);
-  return std::max(near, levels_.zones[pair] + since) + kSumError;
+  const double urgent = urgent_[a] + urgent_[b];
+  const double since = displacement_since_last_tick(*bodies_[a].state) +
+                       displacement_since_last_tick(*bodies_[b].state);
+  const double zones = zone_levels_.outside_from(pair) + urgent;
+  return std::max(std::max(horizon_, urgent), zones + since) + kSumError;
 }
 
 bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
   return horizon_ > -kInfinity && lower > level_of(pair);
 }
 
-bool BroadPhase::sleep(std::uint32_t pair, double lower) noexcept {
+bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   if (!(horizon_ > -kInfinity)) return false;
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
-  const double slack = lower - level_of(pair);
-  const double usual = usual_travel_[a] + usual_travel_[b];
-  if (!(slack >= kLeastSlack + kLeastTicks * usual)) return false;
-  if (body_b.fixed) return wheels_.set(2 * pair, a, slack);  // two fixed ones: the horizon's moves
-  if (body_a.fixed) return wheels_.set(2 * pair + 1, b, slack);
-  const double part_a = rounded_down(slack * share_of_a(usual_travel_[a], usual_travel_[b]));
+  const double allowance = lower - level_of(pair);  // s = L - max(H, Z + U)
+  const double usual = usual_displacement_[a] + usual_displacement_[b];
+  if (!(allowance >= kLeastAllowance + kLeastTicks * usual)) return false;
+  CLEARANCE_INVARIANT(lower - allowance >= std::max(horizon_, zone_level(pair)));
+  // Of two fixed objects only the horizon moves.
+  if (body_b.fixed) return wheels_.set(2 * pair, a, allowance);
+  if (body_a.fixed) return wheels_.set(2 * pair + 1, b, allowance);
+  const double share = share_of_a(usual_displacement_[a], usual_displacement_[b]);
+  const double part_a = rounded_down(allowance * share);
+  const double part_b = rounded_down(allowance - part_a);
+  CLEARANCE_INVARIANT(part_a > 0.0 && part_b > 0.0 && part_a + part_b <= allowance);
   if (!wheels_.set(2 * pair, a, part_a)) return false;
-  if (wheels_.set(2 * pair + 1, b, rounded_down(slack - part_a))) return true;
+  if (wheels_.set(2 * pair + 1, b, part_b)) return true;
   wheels_.cancel(2 * pair);
   return false;
 }
 
-const Ball& BroadPhase::ball_of(Body& body) noexcept {
-  if (!body.placed) body.ball_in_world = placed(body.ball, body.state->pose);
-  body.placed = true;
-  return body.ball_in_world;
+// Z + U, m.
+double BroadPhase::zone_level(std::uint32_t pair) const noexcept {
+  return zone_levels_.outside_from(pair) + bodies_[object_a_[pair]].state->may_have_moved +
+         bodies_[object_b_[pair]].state->may_have_moved;
 }
 
-RowBounds BroadPhase::by_balls(std::uint32_t pair) noexcept {
-  const Ball& a = ball_of(bodies_[object_a_[pair]]);
-  const Ball& b = ball_of(bodies_[object_b_[pair]]);
+bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
+  return wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1);
+}
+
+// D >= H and D - U >= Z, and of pairs whose hooks are due D >= W.
+bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
+  if (!is_culled(pair)) return true;
+  const TrackedObject& a = *bodies_[object_a_[pair]].state;
+  const TrackedObject& b = *bodies_[object_b_[pair]].state;
+  if (!a.known() || !b.known()) return true;
+  return overdue_ ? upper >= std::min(horizon_, overdue_lower_)
+                  : upper >= std::max(horizon_, zone_level(pair));
+}
+
+void BroadPhase::check_some() noexcept {
+  for (std::uint32_t i = 0; i < std::min<std::size_t>(kCheckedPerTick, left_out_.size()); ++i) {
+    next_checked_ = next_checked_ + 1 < left_out_.size() ? next_checked_ + 1 : 0;
+    if (!is_culled(next_checked_)) continue;
+    CLEARANCE_INVARIANT(may_be_culled(next_checked_, by_spheres(next_checked_).upper));
+  }
+}
+
+const Sphere& BroadPhase::sphere_of(Body& body) noexcept {
+  if (!body.placed) body.sphere_in_world = placed(body.sphere, body.state->pose);
+  body.placed = true;
+  return body.sphere_in_world;
+}
+
+DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
+  const Sphere& a = sphere_of(bodies_[object_a_[pair]]);
+  const Sphere& b = sphere_of(bodies_[object_b_[pair]]);
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 
-// Raising the horizon is every object travelling that far at once.
+// Raising the horizon counts as if every object had moved that far at once.
 void BroadPhase::move_horizon(double to) noexcept {
   if (to > horizon_ && horizon_ > -kInfinity) {
     const double by = rounded_up(to - horizon_);
     for (const std::uint32_t i : busy_) wheels_.advance(i, by);
-    farthest_travel_ = by;
+    largest_advance_ = by;
     horizon_ = to;
     take_due(busy_);
     return;
   }
   horizon_ = to;
-}
-
-std::span<const std::uint32_t> BroadPhase::pairs_of(std::uint32_t object) const noexcept {
-  return std::span(pairs_).subspan(first_pair_[object],
-                                   first_pair_[object + 1] - first_pair_[object]);
 }
 
 }  // namespace clearance

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "monitor/invariant.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -12,8 +13,8 @@ namespace {
 // What is farther ahead is due at this: far beyond any cell, and within the widest ring.
 constexpr double kFarthest = 512.0;  // m
 
-std::int64_t units(double travelled) noexcept {
-  return static_cast<std::int64_t>(std::floor(travelled / MotionWheels::kUnit));
+std::int64_t units(double length) noexcept {
+  return static_cast<std::int64_t>(std::floor(length / MotionWheels::kUnit));
 }
 
 }  // namespace
@@ -21,14 +22,15 @@ std::int64_t units(double travelled) noexcept {
 MotionWheels::MotionWheels(std::size_t objects, std::size_t pairs)
     : wheels_(objects), first_(objects * kLevels * kRing, kNobody), hooks_(2 * pairs) {}
 
-bool MotionWheels::set(std::uint32_t hook, std::uint32_t object, double travel) noexcept {
-  const double travelled = wheels_[object].travelled;
-  const std::int64_t now = units(travelled);
-  const std::int64_t due = units(rounded_down(travelled + std::min(travel, kFarthest)));
+bool MotionWheels::set(std::uint32_t hook, std::uint32_t object, double displacement) noexcept {
+  const double accumulated = wheels_[object].accumulated;
+  const std::int64_t now = units(accumulated);
+  const std::int64_t due = units(rounded_down(accumulated + std::min(displacement, kFarthest)));
   if (due <= now) return false;
   const auto width = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(due - now)));
   int level = std::max(0, width - 3);
   if ((due >> level) - (now >> level) >= kRing) ++level;
+  CLEARANCE_INVARIANT((due >> level) > (wheels_[object].done >> level));  // its bucket is to come
   const auto place = static_cast<std::uint32_t>((due >> level) & (kRing - 1));
   const std::uint32_t bucket =
       (object * kLevels + static_cast<std::uint32_t>(level)) * kRing + place;
@@ -52,13 +54,13 @@ void MotionWheels::cancel(std::uint32_t hook) noexcept {
 }
 
 void MotionWheels::advance(std::uint32_t object, double by) noexcept {
-  if (by > 0.0) wheels_[object].travelled = rounded_up(wheels_[object].travelled + by);
+  if (by > 0.0) wheels_[object].accumulated = rounded_up(wheels_[object].accumulated + by);
 }
 
 bool MotionWheels::take_due(std::uint32_t object, std::size_t most,
                             std::vector<std::uint32_t>& pairs) noexcept {
   Wheel& wheel = wheels_[object];
-  const std::int64_t now = units(wheel.travelled);
+  const std::int64_t now = units(wheel.accumulated);
   for (std::uint32_t level = 0; level < kLevels; ++level) {
     const std::int64_t last = now >> level;
     const std::int64_t passed = std::min<std::int64_t>(last - (wheel.done >> level), kRing);
@@ -69,6 +71,7 @@ bool MotionWheels::take_due(std::uint32_t object, std::size_t most,
       if (!empty_bucket(ring + place, most, pairs)) return false;
     }
   }
+  CLEARANCE_INVARIANT(wheel.done <= now);  // what accumulates never decreases
   wheel.done = now;
   return true;
 }

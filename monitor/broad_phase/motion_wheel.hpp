@@ -1,12 +1,14 @@
-// Alarm clocks that run on motion instead of time: one wheel an object, one hook a pair and side.
+// Timing wheels that run on displacement instead of time: one wheel an object, one hook a pair and
+// side.
 //
-// A hook on an object's wheel is due before the object has travelled farther than the hook was set
-// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing,
+// A hook on an object's wheel is due before the object has moved farther than the hook was set for;
+// it may be due up to a quarter of that earlier. An object that stands still costs nothing,
 // one that moves costs as much as it has hooks due.
 //
-// A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of travel
-// wide. A hook goes where its bucket is at least three and at most seven ahead, and is never moved
-// from there: what is due early is looked at, and set again, at no more cost than moving it.
+// A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of
+// displacement wide. A hook goes where its bucket is at least three and at most seven ahead, and is
+// never moved from there: what is due early is looked at, and set again, at no more cost than
+// moving it.
 #pragma once
 
 #include <array>
@@ -17,13 +19,14 @@ namespace clearance {
 
 class MotionWheels {
  public:
-  static constexpr double kUnit = 0x1p-12;  // m: what a set travel is at least, and rounded to
+  static constexpr double kUnit =
+      0x1p-12;  // m: what a set displacement is at least, and rounded to
 
   MotionWheels(std::size_t objects, std::size_t pairs);
 
-  // Hook `hook` (2 * pair + side, not set) is due by the time `object` has advanced by `travel`
-  // more. False, and nothing is set, when that is less than can be told apart.
-  bool set(std::uint32_t hook, std::uint32_t object, double travel) noexcept;
+  // Hook `hook` (2 * pair + side, not set) is due by the time `object` has advanced by
+  // `displacement` more. False, and nothing is set, when that is less than can be told apart.
+  bool set(std::uint32_t hook, std::uint32_t object, double displacement) noexcept;
 
   // Takes a hook off, set or not.
   void cancel(std::uint32_t hook) noexcept;
@@ -32,7 +35,7 @@ class MotionWheels {
     return hooks_[hook].before != kLoose;
   }
 
-  // `object` travels: `by` >= 0, finite.
+  // `object` has moved by no more than `by`, m: >= 0, finite.
   void advance(std::uint32_t object, double by) noexcept;
 
   // Appends to `pairs` those with a due hook on this wheel and takes both their hooks off. Stops
@@ -51,8 +54,8 @@ class MotionWheels {
     std::uint32_t before = kLoose;
   };
   struct Wheel {
-    double travelled = 0.0;  // m, rounded up
-    std::int64_t done = 0;   // units: buckets up to here are empty
+    double accumulated = 0.0;  // displacement, m, rounded up
+    std::int64_t done = 0;     // units: buckets up to here are empty
   };
 
   bool empty_bucket(std::uint32_t bucket, std::size_t most,

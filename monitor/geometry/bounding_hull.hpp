@@ -1,7 +1,7 @@
 // The reduced model of an object: one convex polyhedron of few facets around all its parts.
 //
-// Between the ball, which tells least and costs least, and the parts, every one of which has to be
-// asked about, or fetched from memory where it has many facets.
+// Between the sphere, which tells least and costs least, and the parts, every one of which has to
+// be queried, or fetched from memory where it has many facets.
 #pragma once
 
 #include <memory>

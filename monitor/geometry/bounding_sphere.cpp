@@ -7,26 +7,26 @@
 namespace clearance {
 namespace {
 
-// A part's ball in its object's frame.
-Ball in_object(const PosedPart& part) noexcept {
-  const Vec3& centre = part.ball_in_part.centre;
+// A part's sphere in its object's frame.
+Sphere in_object(const PosedPart& part) noexcept {
+  const Vec3& centre = part.sphere_in_part.centre;
   const double error = kPlacingError * (centre.norm() + part.object_from_part.position.norm());
   return {.centre = transform(part.object_from_part, centre),
-          .radius = rounded_up(part.ball_in_part.radius + error)};
+          .radius = rounded_up(part.sphere_in_part.radius + error)};
 }
 
-BoundingSphere around(const std::vector<Ball>& balls, double reach) {
+BoundingSphere around(const std::vector<Sphere>& spheres, double reach) {
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
-  for (const Ball& ball : balls) {
-    const double radius = std::isfinite(ball.radius) ? ball.radius : 0.0;
-    low = low.cwiseMin(ball.centre - Vec3::Constant(radius));
-    high = high.cwiseMax(ball.centre + Vec3::Constant(radius));
+  for (const Sphere& sphere : spheres) {
+    const double radius = std::isfinite(sphere.radius) ? sphere.radius : 0.0;
+    low = low.cwiseMin(sphere.centre - Vec3::Constant(radius));
+    high = high.cwiseMax(sphere.centre + Vec3::Constant(radius));
   }
   BoundingSphere all{.in_object = {.centre = 0.5 * (low + high), .radius = 0.0}, .reach = reach};
-  if (balls.size() == 1) all.in_object.centre = balls.front().centre;
-  for (const Ball& ball : balls) {
-    const double apart = rounded_up((ball.centre - all.in_object.centre).norm());
-    all.in_object.radius = std::max(all.in_object.radius, rounded_up(apart + ball.radius));
+  if (spheres.size() == 1) all.in_object.centre = spheres.front().centre;
+  for (const Sphere& sphere : spheres) {
+    const double apart = rounded_up((sphere.centre - all.in_object.centre).norm());
+    all.in_object.radius = std::max(all.in_object.radius, rounded_up(apart + sphere.radius));
   }
   all.reach = std::max(reach, rounded_up(all.in_object.centre.norm()));
   return all;
@@ -36,36 +36,36 @@ BoundingSphere around(const std::vector<Ball>& balls, double reach) {
 
 std::vector<BoundingSphere> bounding_spheres(std::size_t objects,
                                              const std::vector<PosedPart>& parts) {
-  std::vector<std::vector<Ball>> balls(objects);
+  std::vector<std::vector<Sphere>> spheres(objects);
   std::vector<double> reach(objects, 0.0);
   for (const PosedPart& part : parts) {
-    balls[part.object].push_back(in_object(part));
+    spheres[part.object].push_back(in_object(part));
     reach[part.object] = std::max(reach[part.object], part.reach);
   }
   std::vector<BoundingSphere> all(objects);
   for (std::size_t i = 0; i < objects; ++i) {
-    if (balls[i].empty()) {
+    if (spheres[i].empty()) {
       all[i].in_object.radius = 0.0;
     } else {
-      all[i] = around(balls[i], reach[i]);
+      all[i] = around(spheres[i], reach[i]);
     }
   }
   return all;
 }
 
-Ball placed(const BoundingSphere& ball, const Pose& world_from_object) noexcept {
-  const Vec3& centre = ball.in_object.centre;
+Sphere placed(const BoundingSphere& sphere, const Pose& world_from_object) noexcept {
+  const Vec3& centre = sphere.in_object.centre;
   const double error = kPlacingError * (centre.norm() + world_from_object.position.norm());
   return {.centre = transform(world_from_object, centre),
-          .radius = rounded_up(ball.in_object.radius + error)};
+          .radius = rounded_up(sphere.in_object.radius + error)};
 }
 
-double least_between(const Ball& a, const Ball& b) noexcept {
+double least_between(const Sphere& a, const Sphere& b) noexcept {
   const double centres = (a.centre - b.centre).norm();
   return rounded_down(rounded_down(centres) - rounded_up(a.radius + b.radius));
 }
 
-double most_between(const Ball& a, const Ball& b) noexcept {
+double most_between(const Sphere& a, const Sphere& b) noexcept {
   const double centres = (a.centre - b.centre).norm();
   return rounded_up(rounded_up(centres) + rounded_up(a.radius + b.radius));
 }

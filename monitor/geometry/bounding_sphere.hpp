@@ -1,4 +1,4 @@
-// The coarsest model of an object: one ball around all its parts.
+// The coarsest model of an object: one sphere around all its parts.
 #pragma once
 
 #include <vector>
@@ -8,21 +8,21 @@
 namespace clearance {
 
 struct BoundingSphere {
-  Ball in_object;  // holds every part; infinite where one is unbounded
-  // No point of the object, nor the ball's centre, is farther from the object's origin, m: what
-  // moves the object moves the ball no farther.
+  Sphere in_object;  // holds every part; infinite where one is unbounded
+  // No point of the object, nor the sphere's centre, is farther from the object's origin, m: what
+  // moves the object moves the sphere no farther.
   double reach = 0.0;
 };
 
-// One an object. An object without parts has an empty ball.
+// One an object. An object without parts has an empty sphere.
 [[nodiscard]] std::vector<BoundingSphere> bounding_spheres(std::size_t objects,
                                                            const std::vector<PosedPart>& parts);
 
 // In the world, rounding included.
-[[nodiscard]] Ball placed(const BoundingSphere& ball, const Pose& world_from_object) noexcept;
+[[nodiscard]] Sphere placed(const BoundingSphere& sphere, const Pose& world_from_object) noexcept;
 
-// Whatever is in two balls is at least, and at most, this far apart, m.
-[[nodiscard]] double least_between(const Ball& a, const Ball& b) noexcept;
-[[nodiscard]] double most_between(const Ball& a, const Ball& b) noexcept;
+// Whatever is in two spheres is at least, and at most, this far apart, m.
+[[nodiscard]] double least_between(const Sphere& a, const Sphere& b) noexcept;
+[[nodiscard]] double most_between(const Sphere& a, const Sphere& b) noexcept;
 
 }  // namespace clearance

@@ -12,21 +12,21 @@ bool is_identity(const Eigen::Quaterniond& q) noexcept {
   return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
 }
 
-Ball ball_around(const ConvexPolyhedron& shape) noexcept {
+Sphere sphere_around(const ConvexPolyhedron& shape) noexcept {
   Vec3 low = Vec3::Constant(kInfinity);
   Vec3 high = Vec3::Constant(-kInfinity);
   for (const Vec3& anchor : shape.anchors) {
     low = low.cwiseMin(anchor);
     high = high.cwiseMax(anchor);
   }
-  Ball ball{.centre = 0.5 * (low + high), .radius = kInfinity};
-  if (!shape.bounded()) return ball;
+  Sphere sphere{.centre = 0.5 * (low + high), .radius = kInfinity};
+  if (!shape.bounded()) return sphere;
   double farthest = 0.0;
   for (const Vec3& anchor : shape.anchors) {
-    farthest = std::max(farthest, (anchor - ball.centre).norm());
+    farthest = std::max(farthest, (anchor - sphere.centre).norm());
   }
-  ball.radius = rounded_up(rounded_up(farthest) + shape.position_error + shape.radius);
-  return ball;
+  sphere.radius = rounded_up(rounded_up(farthest) + shape.position_error + shape.radius);
+  return sphere;
 }
 
 // The farthest point of the part from the origin of its object.
@@ -95,14 +95,14 @@ Mat3 compose_with_error(const Pose& world_from_object, PosedPart& part) noexcept
   return offset_turns ? rotation_matrix(part.world_from_part.orientation) : turn;
 }
 
-void place_ball(const Mat3& turn, PosedPart& part) noexcept {
+void place_sphere(const Mat3& turn, PosedPart& part) noexcept {
   const Vec3& position = part.world_from_part.position;
-  Ball& ball = part.ball_in_world;
-  put(turn, part.ball_in_part.centre, position, ball.centre);
-  const double error = kPlacingError * (part.ball_offset + length_of(position)) + part.shift_error +
-                       swept(part.turn_error, part.ball_offset);
-  ball.radius = rounded_up(part.ball_in_part.radius + error);
-  part.coordinates = sum_of_sizes(ball.centre) + sum_of_sizes(position);
+  Sphere& sphere = part.sphere_in_world;
+  put(turn, part.sphere_in_part.centre, position, sphere.centre);
+  const double error = kPlacingError * (part.sphere_offset + length_of(position)) +
+                       part.shift_error + swept(part.turn_error, part.sphere_offset);
+  sphere.radius = rounded_up(part.sphere_in_part.radius + error);
+  part.coordinates = sum_of_sizes(sphere.centre) + sum_of_sizes(position);
 }
 
 // How far a wrong orientation of `part` can take the nearest points of the two apart. Turning the
@@ -131,9 +131,9 @@ std::vector<PosedPart> parts_of(const Scene& scene) {
       placed.object_from_part = part.object_from_part;
       placed.reach = reach_of(part);
       placed.extent = extent_of(part.shape);
-      placed.ball_in_part = ball_around(part.shape);
+      placed.sphere_in_part = sphere_around(part.shape);
       placed.offset_length = part.object_from_part.position.norm();
-      placed.ball_offset = placed.ball_in_part.centre.norm();
+      placed.sphere_offset = placed.sphere_in_part.centre.norm();
       placed.keeps_direction = part.shape.bounded() || is_half_space(part.shape);
       parts.push_back(placed);
     }
@@ -141,14 +141,30 @@ std::vector<PosedPart> parts_of(const Scene& scene) {
   return parts;
 }
 
+std::vector<std::uint32_t> first_parts(const Scene& scene) {
+  std::vector<std::uint32_t> first{0};
+  for (const Object& object : scene.objects) {
+    first.push_back(first.back() + static_cast<std::uint32_t>(object.parts.size()));
+  }
+  return first;
+}
+
+void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
+                std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept {
+  for (const std::uint32_t i : changed) {
+    if (!objects[i].seen) continue;
+    for (std::uint32_t part = first[i]; part < first[i + 1]; ++part) place(objects[i], parts[part]);
+  }
+}
+
 void place(const TrackedObject& object, PosedPart& part) noexcept {
-  part.turning = swept(object.turned, part.ball_in_part.radius);
+  part.turning = swept(object.accumulated_turn, part.sphere_in_part.radius);
   if (object.moved || !part.placed) place_at(object.pose, part);
 }
 
 void place_at(const Pose& world_from_object, PosedPart& part) noexcept {
   const Mat3 turn = compose_with_error(world_from_object, part);
-  place_ball(turn, part);
+  place_sphere(turn, part);
   part.world_from_part_rotation = turn;
   part.placed = true;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -13,8 +14,8 @@
 
 namespace clearance {
 
-// A ball that holds the part; where it is unbounded, the radius is infinite.
-struct Ball {
+// A sphere that holds the part; where it is unbounded, the radius is infinite.
+struct Sphere {
   Vec3 centre = Vec3::Zero();
   double radius = kInfinity;  // m, rounding of the centre included
 };
@@ -25,14 +26,14 @@ struct PosedPart {
 
   // Of this tick, once the object has been seen.
   bool placed = false;
-  Ball ball_in_world;
+  Sphere sphere_in_world;
   Pose world_from_part;      // as the queries use it
   double shift_error = 0.0;  // its position is at most this far from the exact one, m
   double turn_error = 0.0;   // |R - R_exact| is at most this
-  // How far turning, in all (TrackedObject::turned), can have moved a point of its ball about the
-  // ball's middle, m.
+  // How far turning, in all (TrackedObject::turned), can have moved a point of its sphere about the
+  // sphere's middle, m.
   double turning = 0.0;
-  double coordinates = 0.0;  // absolute, of its ball and its position, all together, m
+  double coordinates = 0.0;  // absolute, of its sphere and its position, all together, m
   Mat3 world_from_part_rotation = Mat3::Identity();
 
   // From the scene.
@@ -40,9 +41,9 @@ struct PosedPart {
   Pose object_from_part;
   double reach = kInfinity;   // no point of it is farther from its object's origin, m
   double extent = kInfinity;  // no point of it is farther from its own origin, m
-  Ball ball_in_part;
-  double offset_length = 0.0, ball_offset = 0.0;  // from its object's origin to its own, and on to
-                                                  // the ball's centre, m
+  Sphere sphere_in_part;
+  double offset_length = 0.0, sphere_offset = 0.0;  // from its object's origin to its own, and on
+                                                    // to the sphere's centre, m
   // A direction that separates it from another part goes on doing so, by as much more or less as
   // the two are shifted along it: bounded, or a half-space. Of other unbounded bodies rounding
   // leaves open how far along their rays a direction holds.
@@ -51,6 +52,13 @@ struct PosedPart {
 
 // All parts of the scene, object by object; none placed yet.
 [[nodiscard]] std::vector<PosedPart> parts_of(const Scene& scene);
+
+// The parts of object i are first[i] .. first[i + 1], the latter excluded.
+[[nodiscard]] std::vector<std::uint32_t> first_parts(const Scene& scene);
+
+// Puts the parts of these objects, as far as they have been seen, where they are in this tick.
+void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
+                std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept;
 
 // Puts a part where its object, which has been seen, is in this tick.
 void place(const TrackedObject& object, PosedPart& part) noexcept;

@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "monitor/motion/directed_rounding.hpp"
+#include "monitor/motion/displacement.hpp"
 
 namespace clearance {
 namespace {
-
-// Logarithm, sine, cosine and a product of quaternions, a sum of positions: each within a few 2^-52
-// of what it is exactly.
-constexpr double kWayError = 0x1p-47;
 
 // From one orientation to the other; either way round, where both are equally short.
 Vec3 turn_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) noexcept {
@@ -29,42 +26,31 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& orientation, const Vec3& tur
          orientation.normalized();
 }
 
-double angle_of(const InterpolatedMotion& way) noexcept {
-  return way.turns ? way.turn.norm() + kTurnRounding : 0.0;
+double angle_of(const InterpolatedMotion& motion) noexcept {
+  return motion.turns ? motion.turn.norm() + kTurnRounding : 0.0;
 }
 
 }  // namespace
 
-InterpolatedMotion way_of(const TrackedObject& object) noexcept {
-  InterpolatedMotion way{.from = object.moved ? object.pose_before : object.pose,
-                         .to = object.pose};
-  way.shift = way.to.position - way.from.position;
-  way.turns = way.from.orientation.coeffs() != way.to.orientation.coeffs();
-  if (way.turns) way.turn = turn_between(way.from.orientation, way.to.orientation);
-  return way;
+InterpolatedMotion interpolated_motion(const Pose& from, const Pose& to) noexcept {
+  InterpolatedMotion motion{.from = from, .to = to};
+  motion.shift = to.position - from.position;
+  motion.turns = from.orientation.coeffs() != to.orientation.coeffs();
+  if (motion.turns) motion.turn = turn_between(from.orientation, to.orientation);
+  return motion;
 }
 
-Pose pose_on_way(const InterpolatedMotion& way, double s) noexcept {
-  if (s <= 0.0) return way.from;
-  if (s >= 1.0) return way.to;
-  Pose pose = way.from;
-  pose.position += s * way.shift;
-  if (way.turns) pose.orientation = turned(way.from.orientation, s * way.turn);
+Pose pose_at(const InterpolatedMotion& motion, double s) noexcept {
+  if (s <= 0.0) return motion.from;
+  if (s >= 1.0) return motion.to;
+  Pose pose = motion.from;
+  pose.position += s * motion.shift;
+  if (motion.turns) pose.orientation = turned(motion.from.orientation, s * motion.turn);
   return pose;
 }
 
-void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noexcept {
-  place_at(pose_on_way(way, s), part);
-  if (s <= 0.0 || s >= 1.0) return;
-  const double reach = way.from.position.norm() + way.to.position.norm();
-  const double offset = way.turns ? part.object_from_part.position.norm() : 0.0;
-  part.shift_error += kWayError * (reach + offset);
-  if (way.turns) part.turn_error += kWayError;
-}
-
 RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMotion& moving,
-                         const PosedPart& part) noexcept {
-  const Vec3& middle = part.ball_in_world.centre;
+                         const Vec3& middle, double radius) noexcept {
   const Vec3 arm = middle - moving.from.position;
   const Vec3 from_resting = middle - resting.from.position;
   const double length = arm.norm();
@@ -84,7 +70,7 @@ RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMo
   const double turning = turns ? (moving.turn - resting.turn).norm() + 2.0 * kTurnRounding : 0.0;
 
   RelativeMotion motion;
-  motion.turning = rounded_up(swept(turning, part.ball_in_world.radius));
+  motion.turning = rounded_up(swept(turning, radius));
   motion.speed = rounded_up(of_middle + motion.turning);
   motion.bending = rounded_up(rounded_up(change + turn_of_frame * of_middle) + error);
   return motion;

@@ -1,9 +1,10 @@
 // How an object is taken to have gone from the last tick's pose to this tick's: its origin straight
-// and evenly, its orientation evenly about one axis, the shorter way. README.md, "Between two
-// ticks", says what that covers.
+// and evenly, its orientation evenly about one axis, the shorter way. monitor/swept/README.md says
+// what that covers.
 #pragma once
 
-#include "monitor/geometry/posed_part.hpp"
+#include "core/convex_polyhedron.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
@@ -14,26 +15,27 @@ struct InterpolatedMotion {
   bool turns = false;         // else the two orientations are the same to the bit
 };
 
-// None where nothing was known of the object at the last tick.
-[[nodiscard]] InterpolatedMotion way_of(const TrackedObject& object) noexcept;
+[[nodiscard]] InterpolatedMotion interpolated_motion(const Pose& from, const Pose& to) noexcept;
 
-// `s` of the way, 0 to 1; at the ends exactly.
-[[nodiscard]] Pose pose_on_way(const InterpolatedMotion& way, double s) noexcept;
+// `s` of the way, 0 to 1; at the ends exactly, in between within kInterpolationError of the exact
+// place, relative to the lengths that take part, and of the exact orientation.
+[[nodiscard]] Pose pose_at(const InterpolatedMotion& motion, double s) noexcept;
 
-// Puts a part of the object where it is at `s` of the way, 0 to 1. Its errors hold for that.
-void place_on_way(const InterpolatedMotion& way, double s, PosedPart& part) noexcept;
+// Logarithm, sine, cosine and a product of quaternions, a sum of positions: each within a few 2^-52
+// of what it is exactly.
+inline constexpr double kInterpolationError = 0x1p-47;
 
-// How one part goes as seen from the frame of the other's object, per whole way. All upper bounds,
+// How one body goes as seen from the frame of the other's object, per whole way. All upper bounds,
 // rounding included.
 struct RelativeMotion {
-  double speed = kInfinity;    // of any point of the part, m
-  double turning = kInfinity;  // of any point about the middle of the part's ball, m
+  double speed = kInfinity;    // of any point of the body, m
+  double turning = kInfinity;  // of any point about the middle of the body's sphere, m
   double bending = kInfinity;  // acceleration of that middle, m
 };
 
-// `part` goes along `moving` and has been placed at its beginning.
+// Of a body in a sphere, m, which goes along `moving` and has its middle there at the beginning.
 [[nodiscard]] RelativeMotion seen_from(const InterpolatedMotion& resting,
-                                       const InterpolatedMotion& moving,
-                                       const PosedPart& part) noexcept;
+                                       const InterpolatedMotion& moving, const Vec3& middle,
+                                       double radius) noexcept;
 
 }  // namespace clearance

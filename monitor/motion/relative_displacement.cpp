@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/convex_polyhedron.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -13,10 +14,10 @@ constexpr double kMostTurn = 1.0;
 
 // From the last pose to the one in use: 2 sin(angle / 2) along the shorter turn's axis, in the
 // world.
-Vec3 turning_of(const TrackedObject& object) noexcept {
-  if (object.motion.turn == 0.0) return Vec3::Zero();
-  const Eigen::Quaterniond q = object.pose.orientation.normalized() *
-                               object.pose_before.orientation.normalized().conjugate();
+Vec3 turning_of(const BodyMotion& body) noexcept {
+  if (body.motion.turn == 0.0) return Vec3::Zero();
+  const Eigen::Quaterniond q =
+      body.now.orientation.normalized() * body.before.orientation.normalized().conjugate();
   return std::copysign(2.0, q.w()) * q.vec();
 }
 
@@ -29,18 +30,18 @@ double turn_error(const Motion& motion) noexcept {
 
 }  // namespace
 
-double relative_travel(const TrackedObject& a, const TrackedObject& b) noexcept {
+double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept {
   const bool from_a = b.reach <= a.reach;
-  const TrackedObject& resting = from_a ? a : b;
-  const TrackedObject& moving = from_a ? b : a;
+  const BodyMotion& resting = from_a ? a : b;
+  const BodyMotion& moving = from_a ? b : a;
   const Motion& frame = resting.motion;
   const Motion& body = moving.motion;
   if (!(std::max(frame.turn, body.turn) <= kMostTurn)) return kInfinity;
 
-  const Vec3 shift = (moving.pose.position - moving.pose_before.position) -
-                     (resting.pose.position - resting.pose_before.position);
+  const Vec3 shift = (moving.now.position - moving.before.position) -
+                     (resting.now.position - resting.before.position);
   const Vec3 turning_frame = turning_of(resting), turning_body = turning_of(moving);
-  const Vec3 between = moving.pose_before.position - resting.pose_before.position;
+  const Vec3 between = moving.before.position - resting.before.position;
   const double apart = between.norm(), shifted = shift.norm() + kShiftUnderflow;
   const double frame_turn = frame.turn + turn_error(frame);
   const double turned =

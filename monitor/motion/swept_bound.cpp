@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/convex_polyhedron.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -15,22 +16,22 @@ constexpr double kSwungError = 0x1p-44;
 }  // namespace
 
 // A pair that has come `there` cannot have been nearer than its distance before less `there`, nor
-// than its distance now less what is left of `travel`.
-double lower_by_ends(double before, double now, double travel) noexcept {
-  if (!(travel < kInfinity)) return now < kInfinity ? -kInfinity : now;
-  const double halfway = 0.5 * (before + now - travel);
-  const double lower = std::max({halfway, before - travel, now - travel});
-  return std::min(now, rounded_down(lower - (std::abs(now) + travel) * 0x1p-50));
+// than its distance now less what is left of `displacement`.
+double lower_by_ends(double before, double now, double displacement) noexcept {
+  if (!(displacement < kInfinity)) return now < kInfinity ? -kInfinity : now;
+  const double halfway = 0.5 * (before + now - displacement);
+  const double lower = std::max({halfway, before - displacement, now - displacement});
+  return std::min(now, rounded_down(lower - (std::abs(now) + displacement) * 0x1p-50));
 }
 
-double lower_by_directions(const Separated& before, const Separated& now, double travel,
+double lower_by_directions(const Separated& before, const Separated& now, double displacement,
                            double bend) noexcept {
   // No shorter than the vector between the two, and no root.
   const double swung = std::abs(now.normal.x() - before.normal.x()) +
                        std::abs(now.normal.y() - before.normal.y()) +
                        std::abs(now.normal.z() - before.normal.z()) + kSwungError;
   const double least = std::min(before.lower, now.lower);
-  const double sag = swung * travel;
+  const double sag = swung * displacement;
   const double below = 0.25 * std::max(0.0, sag - std::abs(now.lower - before.lower)) + bend;
   const double lower = least - below - (std::abs(least) + sag + bend) * 0x1p-50;
   return lower >= 0.0 ? lower : -kInfinity;  // the directions' mean is no longer than 1

@@ -12,8 +12,8 @@ namespace {
 // A unit quaternion's norm is within a thousandth of 1; here squared.
 constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
 constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
-// A jump beyond any cell. Adding it to what was travelled would cost digits for good: after 1e4 km
-// of travel, 1 m/s for four months, they still tell 1e-8 m apart.
+// A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
+// after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
 
 bool usable(const Vec3& v) noexcept {
@@ -55,7 +55,7 @@ Pose as_queries_take_it(const Pose& pose) noexcept {
   return out;
 }
 
-bool same(const Pose& a, const Pose& b) noexcept {
+bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
@@ -106,13 +106,13 @@ void accept(const Object& object, const PoseSample& sample, TrackedObject& state
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
   if (object.fixed || !state.seen) return;
   const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
-  state.began = !(unseen_before < kInfinity);
-  state.moved = !state.seen_last_tick || !same(state.pose_last_tick, state.pose);
+  state.first_seen = !(unseen_before < kInfinity);
+  state.moved = !state.seen_last_tick || !same_pose(state.pose_last_tick, state.pose);
   state.motion = state.moved && state.seen_last_tick
                      ? motion_between(state.pose_last_tick, state.pose)
                      : Motion{};
   if (state.moved) {
-    state.pose_before = state.began ? state.pose : state.pose_last_tick;
+    state.pose_before = state.first_seen ? state.pose : state.pose_last_tick;
     state.pose_last_tick = state.pose;
   }
   state.seen_last_tick = true;
@@ -122,24 +122,25 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   const double age_s = static_cast<double>(state.age_ns) * 1e-9;
   state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
   state.unseen_since =
-      state.began ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
+      state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }
 
-void travel(double reach, TrackedObject& state) noexcept {
+void displace(double reach, TrackedObject& state) noexcept {
   state.reach = reach;
-  state.travel = state.moved ? moved_at_most(state.motion, reach) : 0.0;
+  state.displacement = state.moved ? moved_at_most(state.motion, reach) : 0.0;
   state.bend = state.moved ? bend_at_most(state.motion, reach) : 0.0;
-  state.travelled_before = state.travelled;
-  if (state.motion.turn > 0.0) state.turned = rounded_up(state.turned + state.motion.turn);
-  state.leapt = false;
-  if (!(state.travel < kJump)) {
-    state.leapt = !state.began && (reach < kInfinity || !(state.motion.shift < kJump));
-    state.travel = kInfinity;
-  } else if (state.travel > 0.0) {
-    state.travelled = rounded_up(state.travelled + state.travel);
+  state.accumulated_last_tick = state.accumulated;
+  if (state.motion.turn > 0.0)
+    state.accumulated_turn = rounded_up(state.accumulated_turn + state.motion.turn);
+  state.discontinuous = false;
+  if (!(state.displacement < kJump)) {
+    state.discontinuous = !state.first_seen && (reach < kInfinity || !(state.motion.shift < kJump));
+    state.displacement = kInfinity;
+  } else if (state.displacement > 0.0) {
+    state.accumulated = rounded_up(state.accumulated + state.displacement);
   }
-  state.plain =
-      state.seen && !state.began && !state.late && !state.leapt && state.unseen_since == 0.0;
+  state.plain = state.seen && !state.first_seen && !state.late && !state.discontinuous &&
+                state.unseen_since == 0.0;
 }
 
 }  // namespace clearance

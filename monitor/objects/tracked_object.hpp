@@ -8,30 +8,34 @@
 
 #include "config/scene.hpp"
 #include "monitor/motion/displacement.hpp"
+#include "monitor/motion/interpolated_motion.hpp"
+#include "monitor/motion/relative_displacement.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {
 
 struct TrackedObject {
-  // What every pair asks of both its objects each tick comes first: one cache line, to `turned`.
-  bool seen = false;   // some pose is in use; always so for a fixed object
-  bool late = false;   // that pose is older than the object's limit
-  bool moved = false;  // it is not that of the last tick
-  bool began = false;  // nothing was known of it at the last tick
-  bool leapt = false;  // something was, but that is farther off than anything moves
-  // None of the exceptions: known and on time, now and at the last tick, and no leap between.
+  // What every pair asks of both its objects each tick comes first: one cache line, to
+  // `accumulated_turn`.
+  bool seen = false;           // some pose is in use; always so for a fixed object
+  bool late = false;           // that pose is older than the object's limit
+  bool moved = false;          // it is not that of the last tick
+  bool first_seen = false;     // nothing was known of it at the last tick
+  bool discontinuous = false;  // something was, but that is farther off than anything moves
+  // None of the exceptions: known and on time, now and at the last tick, and no discontinuity
+  // between.
   bool plain = false;
   double may_have_moved = 0.0;  // since its stamp, m, at most: 0 unless late; infinity: nobody said
   double unseen_since = 0.0;    // the larger of that at the last tick, if known then, and now, m
   // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
   // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
-  // m, set by travel().
-  double travel = 0.0, travelled_before = 0.0, travelled = 0.0;
+  // m, set by displace().
+  double displacement = 0.0, accumulated_last_tick = 0.0, accumulated = 0.0;
   // At any instant since the last tick no point of it was farther than this from where it would
   // have been had it gone straight and evenly from its place then to its place now, m.
   double bend = 0.0;
-  double turned = 0.0;       // Motion::turn, in all
-  double reach = kInfinity;  // no point of it is farther from its origin, m; set by travel()
+  double accumulated_turn = 0.0;  // Motion::turn, in all
+  double reach = kInfinity;       // no point of it is farther from its origin, m; set by displace()
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
   // As sent, but for an orientation that is off unit length by more than 5e-7.
@@ -45,7 +49,7 @@ struct TrackedObject {
   std::array<std::uint64_t, kRejects> rejected{};
 
   Pose pose_last_tick;
-  Pose pose_before;  // while it has moved: the one in use at the last tick; after `began`, now
+  Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now
   bool seen_last_tick = false;
 
   // Whether anything can be said about where it is now.
@@ -53,8 +57,19 @@ struct TrackedObject {
   // Whether `twist` is how it moves now: a late object may do anything since its stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
 
-  // As `travel`, since the last tick or since something has been known of it, m.
-  [[nodiscard]] double travel_since() const noexcept { return began ? 0.0 : travel; }
+  // Since the last tick, where it was known then: as seen from another, and the way it is taken to
+  // have gone.
+  [[nodiscard]] BodyMotion body_motion() const noexcept {
+    return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
+  }
+  [[nodiscard]] InterpolatedMotion interpolated() const noexcept {
+    return interpolated_motion(moved ? pose_before : pose, pose);
+  }
+
+  // As `displacement`, since the last tick or since something has been known of it, m.
+  [[nodiscard]] double known_displacement() const noexcept {
+    return first_seen ? 0.0 : displacement;
+  }
 };
 
 // Before any input: a fixed object stands where the scene says.
@@ -73,6 +88,6 @@ void accept(const Object& object, const PoseSample& sample, TrackedObject& state
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Counts this tick's motion in; no point of the object is farther than `reach` from its origin.
-void travel(double reach, TrackedObject& state) noexcept;
+void displace(double reach, TrackedObject& state) noexcept;
 
 }  // namespace clearance

@@ -20,7 +20,7 @@ double rounding_of(double gap, double turning, const PosedPart& a, const PosedPa
 double kept_gap(double lower, const Vec3& normal, const PosedPart& a, const PosedPart& b) noexcept {
   if (!a.keeps_direction || !b.keeps_direction || normal.isZero(0.0)) return -kInfinity;
   const double turning = a.turning + b.turning;
-  const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
+  const double middles = normal.dot(b.sphere_in_world.centre - a.sphere_in_world.centre);
   const double gap = lower - middles + turning - rounding_of(lower, turning, a, b);
   return std::isfinite(gap) ? gap : -kInfinity;
 }
@@ -28,7 +28,7 @@ double kept_gap(double lower, const Vec3& normal, const PosedPart& a, const Pose
 double lower_along(const Vec3& normal, double kept_gap, const PosedPart& a,
                    const PosedPart& b) noexcept {
   const double turning = a.turning + b.turning;
-  const double middles = normal.dot(b.ball_in_world.centre - a.ball_in_world.centre);
+  const double middles = normal.dot(b.sphere_in_world.centre - a.sphere_in_world.centre);
   return kept_gap + middles - turning - rounding_of(kept_gap, turning, a, b);
 }
 

@@ -11,11 +11,11 @@ constexpr WorkerPool::Share kShare{.claim = 16, .least = 128};
 
 // How many of them the budget covers whatever each of them takes.
 std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& evaluation) noexcept {
-  std::uint32_t left = evaluation.queries_left;
+  std::uint32_t left = evaluation.budget.left();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::uint32_t rows = evaluation.table.rows_of(pairs[i]);
-    if (rows > left) return i;
-    left -= rows;
+    const std::uint32_t part_pairs = evaluation.table.part_pairs_of(pairs[i]);
+    if (part_pairs > left) return i;
+    left -= part_pairs;
   }
   return pairs.size();
 }
@@ -23,9 +23,9 @@ std::size_t covered(std::span<const std::uint32_t> pairs, const Evaluation& eval
 // That evaluating a pair once took.
 std::uint32_t queries_of(std::uint32_t pair, const Evaluation& evaluation) noexcept {
   const PairTable& table = evaluation.table;
-  if (table.rows_of(pair) == 1) return 1;
-  const auto first = table.row_evaluated_cycle.begin() + table.entries[pair].first_row;
-  const auto end = table.row_evaluated_cycle.begin() + table.entries[pair].end_row;
+  if (table.part_pairs_of(pair) == 1) return 1;
+  const auto first = table.part_pair_evaluated_cycle.begin() + table.entries[pair].first_part_pair;
+  const auto end = table.part_pair_evaluated_cycle.begin() + table.entries[pair].end_part_pair;
   return static_cast<std::uint32_t>(std::count(first, end, evaluation.cycle));
 }
 
@@ -34,7 +34,7 @@ std::uint32_t queries_of(std::uint32_t pair, const Evaluation& evaluation) noexc
 std::size_t evaluate(std::span<const std::uint32_t> pairs, WorkerPool& pool,
                      Evaluation& evaluation) noexcept {
   std::size_t done = 0;
-  while (done < pairs.size() && evaluation.queries_left > 0) {
+  while (done < pairs.size() && evaluation.budget.left() > 0) {
     const auto batch = pairs.subspan(done, covered(pairs.subspan(done), evaluation));
     if (batch.empty()) {  // whether the budget lasts for this one will be seen
       evaluate(pairs[done++], evaluation);
@@ -45,7 +45,7 @@ std::size_t evaluate(std::span<const std::uint32_t> pairs, WorkerPool& pool,
       evaluate(batch[i], own);
     };
     pool.run(static_cast<std::uint32_t>(batch.size()), kShare, one);
-    for (const std::uint32_t pair : batch) evaluation.queries_left -= queries_of(pair, evaluation);
+    for (const std::uint32_t pair : batch) evaluation.budget.spend(queries_of(pair, evaluation));
     done += batch.size();
   }
   return done;

@@ -11,7 +11,7 @@ namespace clearance {
 class GlobalMinimum {
  public:
   // In any number, also the same pair again.
-  void add(std::uint32_t pair, const PairBounds& summary) noexcept;
+  void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
   // Every pair that was not added is at least this far apart, m; and has been since the last tick.
   void add_rest(double lower, double swept_lower) noexcept;
@@ -27,13 +27,13 @@ class GlobalMinimum {
   // Every pair's distance is at least this, m.
   [[nodiscard]] double lower() const noexcept { return lower_; }
   // And has been since the last tick, m.
-  [[nodiscard]] double swept_lower() const noexcept { return lower_since_; }
+  [[nodiscard]] double swept_lower() const noexcept { return swept_lower_; }
 
  private:
   bool known_ = false;
   std::uint32_t pair_ = 0;
-  PairBounds summary_;  // of pair_
-  double lower_ = kInfinity, lower_since_ = kInfinity, rest_lower_ = kInfinity;
+  PairBounds bounds_;  // of pair_
+  double lower_ = kInfinity, swept_lower_ = kInfinity, rest_lower_ = kInfinity;
   // Of the pairs whose distance is not known to rounding, the two with the smallest lower bounds.
   std::uint32_t loose_pair_ = 0;
   double loose_lower_ = kInfinity, next_loose_lower_ = kInfinity;

@@ -41,7 +41,7 @@ double HullBound::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
   const PosedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
   const PosedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
   TrackingState cold;
-  --evaluation.queries_left;
+  evaluation.budget.spend();
   const DistanceResult found =
       distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold,
                {.depth = false});

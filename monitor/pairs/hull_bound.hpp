@@ -1,8 +1,8 @@
 // How far apart are two objects at least, by their reduced models? One query instead of one for
 // every part of the one with every part of the other.
 //
-// Starts cold each time: it is asked when a pair wakes, and what it would remember of the last time
-// would have to be fetched from memory.
+// Starts cold each time: it is queried when a pair becomes active, and what it would remember of
+// the last time would have to be fetched from memory.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class HullBound {
   [[nodiscard]] const PosedPart& model(std::uint32_t object, const Evaluation& evaluation) noexcept;
 
   std::vector<BoundingHull> hulls_;       // by object; null: the only part, if any
-  std::vector<PosedPart> placed_;         // by object: its hull, placed when it is asked
+  std::vector<PosedPart> placed_;         // by object: its hull, placed when it is queried
   std::vector<std::uint32_t> only_part_;  // by object without a hull; kNoModel: several parts
 };
 

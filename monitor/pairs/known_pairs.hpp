@@ -1,7 +1,8 @@
 // How many pairs are known, and how many of them stale, without looking at pairs.
 //
 // What is known about a pair follows from its two objects, so it is enough to count, whenever an
-// object's state changes, with how many known or fresh ones it is paired: a row of bits an object.
+// object's state changes, with how many known or fresh ones it is paired: a line of bits an
+// object.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +43,8 @@ class KnownPairs {
   // False: nothing changed.
   bool set(std::size_t object, bool is_member, Kind& kind) noexcept;
 
-  std::size_t words_;                      // of a row
-  std::vector<std::uint64_t> neighbours_;  // row by object: who makes a pair with it
+  std::size_t words_;                      // of a line
+  std::vector<std::uint64_t> neighbours_;  // a line of bits an object: who makes a pair with it
   Kind known_, fresh_;
   std::vector<std::uint32_t> regained_;
 };

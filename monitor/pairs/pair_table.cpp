@@ -27,78 +27,79 @@ PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts) {
   for (std::uint32_t part = 0; part < parts.size(); ++part) {
     parts_by_object[parts[part].object].push_back(part);
   }
-  std::size_t all_rows = 0;
+  std::size_t all_part_pairs = 0;
   for (const ObjectPair& pair : scene.pairs) {
-    all_rows += parts_by_object[pair.first].size() * parts_by_object[pair.second].size();
+    all_part_pairs += parts_by_object[pair.first].size() * parts_by_object[pair.second].size();
   }
   entries.reserve(scene.pairs.size());
-  for (auto* column : {&part_a, &part_b}) column->reserve(all_rows);
+  for (auto* column : {&part_a, &part_b}) column->reserve(all_part_pairs);
   for (const ObjectPair& pair : scene.pairs) {
     PairEntry& entry = entries.emplace_back();
     entry.object_a = pair.first;
     entry.object_b = pair.second;
-    entry.first_row = rows();
+    entry.first_part_pair = part_pairs();
     for (const std::uint32_t a : parts_by_object[pair.first]) {
       for (const std::uint32_t b : parts_by_object[pair.second]) {
         part_a.push_back(a);
         part_b.push_back(b);
       }
     }
-    entry.end_row = rows();
+    entry.end_part_pair = part_pairs();
   }
   lower_between.assign(pairs(), -kInfinity);
-  lower.assign(rows(), -kInfinity);
-  upper.assign(rows(), kInfinity);
-  row_evaluated_cycle.assign(rows(), 0);
-  status.assign(rows(), DistanceStatus::kIterationLimit);
-  tracking.resize(rows());
-  closest.resize(rows());
-  gap.assign(rows(), -kInfinity);
+  lower.assign(part_pairs(), -kInfinity);
+  upper.assign(part_pairs(), kInfinity);
+  part_pair_evaluated_cycle.assign(part_pairs(), 0);
+  status.assign(part_pairs(), DistanceStatus::kIterationLimit);
+  tracking.resize(part_pairs());
+  closest.resize(part_pairs());
+  gap.assign(part_pairs(), -kInfinity);
 }
 
-double travelled_since(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                       const PairTable& table) noexcept {
-  const Travelled& then = table.entries[pair].carried_at;
-  const double sum = between(then.a, objects[table.entries[pair].object_a].travelled) +
-                     between(then.b, objects[table.entries[pair].object_b].travelled);
+double displacement_since(std::uint32_t pair, const std::vector<TrackedObject>& objects,
+                          const PairTable& table) noexcept {
+  const AccumulatedDisplacement& then = table.entries[pair].carried_at;
+  const double sum = between(then.a, objects[table.entries[pair].object_a].accumulated) +
+                     between(then.b, objects[table.entries[pair].object_b].accumulated);
   return rounded_up(sum);
 }
 
 bool raised_this_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                       const PairTable& table) noexcept {
   const PairEntry& entry = table.entries[pair];
-  return entry.carried_at.a > objects[entry.object_a].travelled_before ||
-         entry.carried_at.b > objects[entry.object_b].travelled_before;
+  return entry.carried_at.a > objects[entry.object_a].accumulated_last_tick ||
+         entry.carried_at.b > objects[entry.object_b].accumulated_last_tick;
 }
 
 double lower_last_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                        std::uint64_t cycle, const PairTable& table) noexcept {
   if (table.entries[pair].carried_cycle == cycle) return table.entries[pair].lower_before;
-  const Travelled& then = table.entries[pair].carried_at;
-  const double before_a = objects[table.entries[pair].object_a].travelled_before;
-  const double before_b = objects[table.entries[pair].object_b].travelled_before;
+  const AccumulatedDisplacement& then = table.entries[pair].carried_at;
+  const double before_a = objects[table.entries[pair].object_a].accumulated_last_tick;
+  const double before_b = objects[table.entries[pair].object_b].accumulated_last_tick;
   const double lower = table.entries[pair].least_lower;
   if (then.a == before_a && then.b == before_b) return lower;
   if (raised_this_tick(pair, objects, table)) return -kInfinity;
-  const double travelled = between(then.a, before_a) + between(then.b, before_b);
-  return travelled > 0.0 ? rounded_down(lower - rounded_up(travelled)) : lower;
+  const double displacement = between(then.a, before_a) + between(then.b, before_b);
+  return displacement > 0.0 ? rounded_down(lower - rounded_up(displacement)) : lower;
 }
 
-RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<PosedPart>& parts,
-                     const PairTable& table) noexcept {
-  RowBounds bounds{table.lower[row], table.upper[row]};
-  if (travelled > 0.0) {
-    bounds.lower = rounded_down(bounds.lower - travelled);
-    bounds.upper = rounded_up(bounds.upper + travelled);
+DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,
+                          const std::vector<PosedPart>& parts, const PairTable& table) noexcept {
+  DistanceBounds bounds{table.lower[part_pair], table.upper[part_pair]};
+  if (displacement > 0.0) {
+    bounds.lower = rounded_down(bounds.lower - displacement);
+    bounds.upper = rounded_up(bounds.upper + displacement);
   }
-  const PosedPart& part_a = parts[table.part_a[row]];
-  const PosedPart& part_b = parts[table.part_b[row]];
-  if (travelled > 0.0 && table.gap[row] > -kInfinity) {
-    const Vec3& normal = table.closest[row].normal;
-    bounds.lower = std::max(bounds.lower, lower_along(normal, table.gap[row], part_a, part_b));
+  const PosedPart& part_a = parts[table.part_a[part_pair]];
+  const PosedPart& part_b = parts[table.part_b[part_pair]];
+  if (displacement > 0.0 && table.gap[part_pair] > -kInfinity) {
+    const Vec3& normal = table.closest[part_pair].normal;
+    bounds.lower =
+        std::max(bounds.lower, lower_along(normal, table.gap[part_pair], part_a, part_b));
   }
-  const Ball& a = part_a.ball_in_world;
-  const Ball& b = part_b.ball_in_world;
+  const Sphere& a = part_a.sphere_in_world;
+  const Sphere& b = part_b.sphere_in_world;
   const double centres = (a.centre - b.centre).norm();
   const double radii = rounded_up(a.radius + b.radius);
   bounds.lower = std::max(bounds.lower, rounded_down(rounded_down(centres) - radii));
@@ -109,14 +110,14 @@ RowBounds bounds_now(std::uint32_t row, double travelled, const std::vector<Pose
 void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
            const std::vector<PosedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept {
   if (table.entries[pair].carried_cycle == cycle) return;
-  const double travelled = travelled_since(pair, objects, table);
+  const double displacement = displacement_since(pair, objects, table);
   note_carried(pair, objects, cycle, table);
   double least = kInfinity;
-  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
-       ++row) {
-    const RowBounds now = bounds_now(row, travelled, parts, table);
-    table.lower[row] = now.lower;
-    table.upper[row] = now.upper;
+  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
+       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
+    const DistanceBounds now = bounds_now(part_pair, displacement, parts, table);
+    table.lower[part_pair] = now.lower;
+    table.upper[part_pair] = now.upper;
     least = std::min(least, now.lower);
   }
   table.entries[pair].least_lower = least;
@@ -125,34 +126,34 @@ void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
 void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
                   std::uint64_t cycle, PairTable& table) noexcept {
   table.entries[pair].lower_before = lower_last_tick(pair, objects, cycle, table);
-  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].travelled,
-                                    objects[table.entries[pair].object_b].travelled};
+  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].accumulated,
+                                    objects[table.entries[pair].object_b].accumulated};
   table.entries[pair].carried_cycle = cycle;
 }
 
 void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,
            PairTable& table) noexcept {
-  const double travelled = travelled_since(pair, objects, table);
+  const double displacement = displacement_since(pair, objects, table);
   double least = kInfinity;
-  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
-       ++row) {
-    if (travelled > 0.0) {
-      table.lower[row] = rounded_down(table.lower[row] - travelled);
-      table.upper[row] = rounded_up(table.upper[row] + travelled);
+  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
+       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
+    if (displacement > 0.0) {
+      table.lower[part_pair] = rounded_down(table.lower[part_pair] - displacement);
+      table.upper[part_pair] = rounded_up(table.upper[part_pair] + displacement);
     }
-    table.lower[row] = std::max(table.lower[row], to);
-    least = std::min(least, table.lower[row]);
+    table.lower[part_pair] = std::max(table.lower[part_pair], to);
+    least = std::min(least, table.lower[part_pair]);
   }
   table.entries[pair].least_lower = least;
-  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].travelled,
-                                    objects[table.entries[pair].object_b].travelled};
+  table.entries[pair].carried_at = {objects[table.entries[pair].object_a].accumulated,
+                                    objects[table.entries[pair].object_b].accumulated};
 }
 
 void forget(std::uint32_t pair, PairTable& table) noexcept {
-  for (std::uint32_t row = table.entries[pair].first_row; row < table.entries[pair].end_row;
-       ++row) {
-    table.lower[row] = -kInfinity;
-    table.upper[row] = kInfinity;
+  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
+       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
+    table.lower[part_pair] = -kInfinity;
+    table.upper[part_pair] = kInfinity;
   }
   table.entries[pair].least_lower = table.entries[pair].lower_before = -kInfinity;
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kGroup = 256;
 
 bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
-  return table.rows_of(pair) == 1;
+  return table.part_pairs_of(pair) == 1;
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ PublishedPairs::PublishedPairs(const Scene& scene, const std::vector<PosedPart>&
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
     if (!is_asked(scene.pairs[p], scene)) continue;
     pairs_.push_back(p);
-    rows_ += table.rows_of(p);
+    part_pairs_ += table.part_pairs_of(p);
   }
   if (every_tick_) form_groups(parts, table);
 }
@@ -48,8 +48,8 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
   };
   std::vector<BodyPair> of_bodies;
   for (const std::uint32_t pair : single) {
-    const std::uint32_t row = table.entries[pair].first_row;
-    of_bodies.push_back({body(table.part_a[row]), body(table.part_b[row])});
+    const std::uint32_t part_pair = table.entries[pair].first_part_pair;
+    of_bodies.push_back({body(table.part_a[part_pair]), body(table.part_b[part_pair])});
   }
   world_from_body_.resize(bodies.size());
   for (std::size_t first = 0; first < single.size(); first += kGroup) {
@@ -69,7 +69,7 @@ void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept
     evaluate_group(groups_[i], evaluation);
   };
   pool.run(static_cast<std::uint32_t>(groups_.size()), {.claim = 1, .least = 2}, one);
-  for (const Group& group : groups_) evaluation.queries_left -= group.known;
+  for (const Group& group : groups_) evaluation.budget.spend(group.known);
   known_.clear();
   for (const std::uint32_t pair : many_parts_) {
     if (is_known(pair, evaluation)) known_.push_back(pair);

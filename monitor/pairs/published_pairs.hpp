@@ -1,4 +1,4 @@
-// The pairs whose figures somebody asked for: those that are published, or all.
+// The pairs whose figures are published, or where a scene evaluates all, all pairs.
 //
 // They are evaluated in every tick that has room for them, in one straight loop: pairs of single
 // parts by vector code, many at once (core/batch.hpp), the others one by one.
@@ -22,7 +22,7 @@ class PublishedPairs {
 
   [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
   // How many queries they can take.
-  [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::uint32_t part_pairs() const noexcept { return part_pairs_; }
   // All of them fit into the budget, so that they are never left to the broad phase.
   [[nodiscard]] bool every_tick() const noexcept { return every_tick_; }
 
@@ -40,12 +40,12 @@ class PublishedPairs {
   void evaluate_group(Group& group, const Evaluation& evaluation) noexcept;
 
   std::vector<std::uint32_t> pairs_;
-  std::uint32_t rows_ = 0;
+  std::uint32_t part_pairs_ = 0;
   bool every_tick_;
   std::vector<Group> groups_;
   std::vector<std::uint32_t> body_parts_;  // what part each body of the groups is
   std::vector<Pose> world_from_body_;      // of this tick
-  std::vector<std::uint32_t> many_parts_;  // pairs of more than one row
+  std::vector<std::uint32_t> many_parts_;  // pairs of more than one part pair
   std::vector<std::uint32_t> known_;       // of those, in this tick
 };
 

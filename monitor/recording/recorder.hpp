@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/batch.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/written_zones.hpp"

@@ -95,7 +95,7 @@ std::optional<std::string> Expectations::check_passages(const Report& report,
                                                         const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
-    const SweptBounds found = monitor.passage(p, *min_distance_);
+    const SweptBounds found = monitor.sweep(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;
     distance_broken_ = true;
     const std::string who = pair_name(scene_, p);

@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/batch.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/reference_totals.hpp"
 #include "monitor/report.hpp"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/batch.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/wire/cdr.hpp"

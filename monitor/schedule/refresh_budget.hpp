@@ -1,9 +1,9 @@
 // How many queries of a tick are kept back so that pairs that take turns have theirs in time.
 //
-// Each tick owes (rows + 1) / ticks of a query; what a whole number of them has come to is due. Who
-// may spend due + most - 1 queries, `most` being what one pair can take, spends what is due or is
-// through with all. So over any `ticks` ticks at least `rows` are spent, and everybody has had a
-// turn. Counted in whole numbers: nothing drifts.
+// Each tick owes (part pairs + 1) / ticks of a query; what a whole number of them has come to is
+// due. Who may spend due + most - 1 queries, `most` being what one pair can take, spends what is
+// due or is through with all. So over any `ticks` ticks at least `part_pairs` are spent, and
+// everybody has had a turn. Counted in whole numbers: nothing drifts.
 #pragma once
 
 #include <algorithm>
@@ -17,18 +17,18 @@ class RefreshBudget {
  public:
   // Keeps nothing back of a budget that is too small for it.
   RefreshBudget(const TakingTurns& pairs, std::uint64_t ticks, bool affordable) noexcept
-      : rows_(affordable ? pairs.rows : 0), most_(pairs.most), ticks_(ticks) {}
+      : part_pairs_(affordable ? pairs.rows : 0), most_(pairs.most), ticks_(ticks) {}
 
-  void begin_tick() noexcept { owed_ += rows_ == 0 ? 0 : rows_ + 1; }
+  void begin_tick() noexcept { owed_ += part_pairs_ == 0 ? 0 : part_pairs_ + 1; }
   // In this tick, of the queries that pairs take at most.
   [[nodiscard]] std::uint32_t due() const noexcept {
     return static_cast<std::uint32_t>(owed_ / ticks_);
   }
   [[nodiscard]] std::uint32_t kept() const noexcept {
-    return due() == 0 ? 0 : static_cast<std::uint32_t>(std::min(rows_, due() + most_ - 1));
+    return due() == 0 ? 0 : static_cast<std::uint32_t>(std::min(part_pairs_, due() + most_ - 1));
   }
   // Every pair will find enough kept for it when its turn is due.
-  [[nodiscard]] bool is_sure() const noexcept { return rows_ > 0; }
+  [[nodiscard]] bool is_sure() const noexcept { return part_pairs_ > 0; }
   // Ends the tick: pairs that take so many at most have had their turn, or all have.
   void end_tick(std::uint32_t spent) noexcept {
     if (spent > due()) return through_with_all();
@@ -37,7 +37,7 @@ class RefreshBudget {
   void through_with_all() noexcept { owed_ = 0; }
 
  private:
-  const std::uint64_t rows_, most_, ticks_;
+  const std::uint64_t part_pairs_, most_, ticks_;
   std::uint64_t owed_ = 0;  // in parts of a query, `ticks` to the whole
 };
 

@@ -71,12 +71,12 @@ void RefreshQueue::regain(std::uint32_t object) noexcept {
   returning_.insert(returning_.begin(), object);
 }
 
-void RefreshQueue::bring_back(const BroadPhase& broad_phase,
+void RefreshQueue::bring_back(const PairsByObject& by_object,
                               const std::vector<TrackedObject>& objects,
                               const PairTable& table) noexcept {
   for (std::size_t left = kMostBroughtBack; !returning_.empty() && left > 0;) {
     const std::uint32_t object = returning_.back();
-    const auto pairs = broad_phase.pairs_of(object);
+    const auto pairs = by_object.pairs_of(object);
     for (; brought_back_ < pairs.size() && left > 0; ++brought_back_, --left) {
       const std::uint32_t pair = pairs[brought_back_];
       if (!aside_[pair]) continue;

@@ -1,7 +1,7 @@
 // Whose turn is it to be refreshed? Always that of the pair which has waited longest.
 //
 // A pair is refreshed when its bound is found afresh from the poses of a tick: by an evaluation, or
-// by balls around its objects where they prove it far. The queue is a list in the order in which
+// by spheres around its objects where they prove it far. The queue is a list in the order in which
 // that last happened. Pairs of which an object is out of sight are set aside when they come to its
 // head; when the object is known again they come back ahead of all others, which were refreshed
 // later.
@@ -11,8 +11,9 @@
 #include <limits>
 #include <vector>
 
-#include "monitor/broad_phase/broad_phase.hpp"
+#include "monitor/objects/tracked_object.hpp"
 #include "monitor/pairs/pair_table.hpp"
+#include "monitor/pairs/pairs_by_object.hpp"
 
 namespace clearance {
 
@@ -38,7 +39,7 @@ class RefreshQueue {
   void regain(std::uint32_t object) noexcept;
 
   // Goes on with that, for as many pairs as one tick has time for.
-  void bring_back(const BroadPhase& broad_phase, const std::vector<TrackedObject>& objects,
+  void bring_back(const PairsByObject& by_object, const std::vector<TrackedObject>& objects,
                   const PairTable& table) noexcept;
 
   // The tick in which a pair was last refreshed; 0: never.

@@ -1,17 +1,14 @@
 #include "monitor/schedule/urgency_bins.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
 
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
-
-// Just above a zone's upper threshold, margins included.
-double watch_level(const Zone& zone, double margins) noexcept {
-  return rounded_up(std::nextafter(zone.leave_above, kInfinity) + margins);
-}
 
 std::vector<double> stated_speeds(const Scene& scene) {
   std::vector<double> speeds;
@@ -22,38 +19,62 @@ std::vector<double> stated_speeds(const Scene& scene) {
   return speeds;
 }
 
-std::vector<double> zone_levels(const Scene& scene) {
-  std::vector<double> levels(scene.pairs.size(), -kInfinity);
-  for (const Zone& zone : scene.zones) {
-    for (const std::uint32_t pair : zone.pairs) {
-      const double margins = scene.objects[scene.pairs[pair].first].margin +
-                             scene.objects[scene.pairs[pair].second].margin;
-      levels[pair] = std::max(levels[pair], watch_level(zone, margins));
-    }
+// As many as the budget allows, the stalest first; pairs of equal age in their own order.
+void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator) noexcept {
+  const std::vector<PairEntry>& entries = evaluator.tick.table.entries;
+  const std::uint32_t queries = evaluator.tick.budget.left();
+  // A pair takes one query or more, so no more pairs than this have a turn.
+  if (pairs.size() > queries) {
+    const auto staler = [&entries](std::uint32_t left, std::uint32_t right) {
+      return std::tie(entries[left].evaluated_cycle, left) <
+             std::tie(entries[right].evaluated_cycle, right);
+    };
+    const auto end = pairs.begin() + queries;
+    std::nth_element(pairs.begin(), end, pairs.end(), staler);
+    std::sort(pairs.begin(), end, staler);
+    pairs = pairs.first(queries);
   }
-  return levels;
+  evaluator.evaluate(pairs);
 }
 
 }  // namespace
 
-UrgencyBins::UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts)
-    : pairs_(scene.pairs),
+UrgencyBins::UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts,
+                         const ZoneLevels& levels)
+    : levels_(levels),
       period_s_(1.0 / scene.rate_hz),
       reach_(scene.objects.size(), 0.0),
-      stated_speed_(stated_speeds(scene)),
-      zone_levels_(zone_levels(scene)) {
+      stated_speed_(stated_speeds(scene)) {
   for (const PosedPart& part : parts) {
     reach_[part.object] = std::max(reach_[part.object], part.reach);
   }
+  in_bin_.reserve(scene.pairs.size());
 }
 
-BroadPhase::Levels UrgencyBins::levels() const {
-  BroadPhase::Levels levels{.zones = zone_levels_, .urgent = stated_speed_};
-  for (double& level : levels.urgent) level *= kTicks * period_s_;
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    levels.zones[p] += levels.urgent[pairs_[p].first] + levels.urgent[pairs_[p].second];
+std::vector<double> UrgencyBins::distances_ahead(const Scene& scene) {
+  const double period_s = 1.0 / scene.rate_hz;
+  std::vector<double> distances = stated_speeds(scene);
+  for (double& distance : distances) distance *= kTicks * period_s;
+  return distances;
+}
+
+void UrgencyBins::evaluate(const Evaluator& evaluator) noexcept {
+  const Evaluation& tick = evaluator.tick;
+  std::array<bool, kBins> filled{};
+  for (const std::uint32_t pair : evaluator.culling.seen()) {
+    if (is_evaluated(pair, tick)) continue;
+    const std::size_t bin = bin_of(pair, tick.objects, tick.table);
+    if (bin < kBins) filled[bin] = true;
   }
-  return levels;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    if (!filled[bin]) continue;
+    in_bin_.clear();
+    for (const std::uint32_t pair : evaluator.culling.seen()) {
+      if (is_evaluated(pair, tick)) continue;
+      if (bin_of(pair, tick.objects, tick.table) == bin) in_bin_.push_back(pair);
+    }
+    evaluate_stalest(in_bin_, evaluator);
+  }
 }
 
 std::size_t UrgencyBins::bin_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
@@ -62,10 +83,10 @@ std::size_t UrgencyBins::bin_of(std::uint32_t pair, const std::vector<TrackedObj
   const std::uint32_t b = table.entries[pair].object_b;
   const double lower =
       table.entries[pair].least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
-  const double slack = lower - std::max(zone_levels_[pair], 0.0);
-  if (!(slack > 0.0)) return 0;
+  const double above = lower - std::max(levels_.outside_from(pair), 0.0);
+  if (!(above > 0.0)) return 0;
   const double speed = speed_of(a, objects[a]) + speed_of(b, objects[b]);
-  const double ticks = slack / (speed * period_s_);  // nothing moves: infinity
+  const double ticks = above / (speed * period_s_);  // nothing moves: infinity
   std::size_t bin = 0;
   for (double until = 1.0; bin < kBins && !(ticks < until); until *= 2.0) ++bin;
   return bin;

@@ -30,30 +30,43 @@ Meeting least_between(double left, double fall_right, double right, double fall_
   return least;
 }
 
+// Puts a part of the object where it is at `s` of its way, 0 to 1. Its errors hold for that.
+void place_on_the_way(const InterpolatedMotion& motion, double s, PosedPart& part) noexcept {
+  place_at(pose_at(motion, s), part);
+  if (s <= 0.0 || s >= 1.0) return;
+  const double reach = motion.from.position.norm() + motion.to.position.norm();
+  const double offset = motion.turns ? part.object_from_part.position.norm() : 0.0;
+  part.shift_error += kInterpolationError * (reach + offset);
+  if (motion.turns) part.turn_error += kInterpolationError;
+}
+
 }  // namespace
 
-SweptSearch::SweptSearch(std::uint32_t row, const Evaluation& evaluation) noexcept
-    : a_(evaluation.parts[evaluation.table.part_a[row]]),
-      b_(evaluation.parts[evaluation.table.part_b[row]]),
-      way_a_(way_of(evaluation.objects[a_.object])),
-      way_b_(way_of(evaluation.objects[b_.object])),
+SweptSearch::SweptSearch(std::uint32_t part_pair, const Evaluation& evaluation) noexcept
+    : a_(evaluation.parts[evaluation.table.part_a[part_pair]]),
+      b_(evaluation.parts[evaluation.table.part_b[part_pair]]),
+      motion_a_(evaluation.objects[a_.object].interpolated()),
+      motion_b_(evaluation.objects[b_.object].interpolated()),
       directed_(a_.keeps_direction && b_.keeps_direction),
-      tracking_(evaluation.table.tracking[row]) {
-  place_on_way(way_a_, 0.0, a_);
-  place_on_way(way_b_, 0.0, b_);
-  const RelativeMotion of_a = seen_from(way_b_, way_a_, a_);
-  const RelativeMotion of_b = seen_from(way_a_, way_b_, b_);
+      tracking_(evaluation.table.tracking[part_pair]) {
+  place_on_the_way(motion_a_, 0.0, a_);
+  place_on_the_way(motion_b_, 0.0, b_);
+  const RelativeMotion of_a =
+      seen_from(motion_b_, motion_a_, a_.sphere_in_world.centre, a_.sphere_in_world.radius);
+  const RelativeMotion of_b =
+      seen_from(motion_a_, motion_b_, b_.sphere_in_world.centre, b_.sphere_in_world.radius);
   from_b_ = of_a.speed < of_b.speed;
-  motion_ = from_b_ ? of_a : of_b;
-  for (const Vec3& place : {way_a_.from.position, way_a_.to.position, way_b_.from.position,
-                            way_b_.to.position, a_.ball_in_world.centre, b_.ball_in_world.centre}) {
+  relative_ = from_b_ ? of_a : of_b;
+  for (const Vec3& place :
+       {motion_a_.from.position, motion_a_.to.position, motion_b_.from.position,
+        motion_b_.to.position, a_.sphere_in_world.centre, b_.sphere_in_world.centre}) {
     direction_error_ += kDirectionError * place.norm();
   }
 }
 
 SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
   SweptBounds bounds;
-  if (!(motion_.speed < kInfinity) || evaluation.queries_left < kLeastQueries) return bounds;
+  if (!(relative_.speed < kInfinity) || evaluation.budget.left() < kLeastQueries) return bounds;
   insert(look(0.0, evaluation));
   insert(look(1.0, evaluation));
   while (true) {
@@ -64,23 +77,23 @@ SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
     if (bounds.lower >= level || bounds.upper < level) return bounds;
     const Instant& left = instants_[lowest.before];
     const double width = instants_[lowest.before + 1].s - left.s;
-    if (size_ == kMostInstants || evaluation.queries_left == 0 || width < kLeastGap) return bounds;
+    if (size_ == kMostQueries || evaluation.budget.left() == 0 || width < kLeastGap) return bounds;
     insert(look(left.s + width * std::clamp(lowest.deepest, 0.25, 0.75), evaluation));
   }
 }
 
 SweptSearch::Instant SweptSearch::look(double s, Evaluation& evaluation) noexcept {
-  place_on_way(way_a_, s, a_);
-  place_on_way(way_b_, s, b_);
+  place_on_the_way(motion_a_, s, a_);
+  place_on_the_way(motion_b_, s, b_);
   const DistanceResult found = distance(
       *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
-  --evaluation.queries_left;
-  const RowBounds bounds = for_exact_poses(found, a_, b_);
+  evaluation.budget.spend();
+  const DistanceBounds bounds = for_exact_poses(found, a_, b_);
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
   const PosedPart& other = from_b_ ? a_ : b_;
-  const Pose frame = pose_on_way(from_b_ ? way_b_ : way_a_, s);
+  const Pose frame = pose_at(from_b_ ? motion_b_ : motion_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
-  instant.middle = into * (other.ball_in_world.centre - frame.position);
+  instant.middle = into * (other.sphere_in_world.centre - frame.position);
   if (directed_) {
     instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
   }
@@ -117,9 +130,9 @@ SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
 // most; m, negative where it falls.
 double SweptSearch::fall(const Instant& from, const Instant& to) const noexcept {
   const double width = std::abs(to.s - from.s);
-  const double by_speed = -rounded_up(motion_.speed * width);
+  const double by_speed = -rounded_up(relative_.speed * width);
   if (from.normal.isZero(0.0)) return by_speed;
-  const double bent = motion_.turning * width + 0.5 * motion_.bending * width * width;
+  const double bent = relative_.turning * width + 0.5 * relative_.bending * width * width;
   const double along = from.normal.dot(to.middle - from.middle);
   return std::max(by_speed, along - rounded_up(bent + direction_error_));
 }

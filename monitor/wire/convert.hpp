@@ -6,7 +6,7 @@
 #include <span>
 
 #include "config/scene.hpp"
-#include "monitor/batch.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -1,25 +1,22 @@
 #include "monitor/zones/zone_hysteresis.hpp"
 
-#include <cmath>
-
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 
 ZoneHysteresis::ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept
-    : zone_(&zone),
-      was_active_(before.active),
-      outside_from_(was_active_ ? well_outside() : zone.enter_below),
+    : was_active_(before.active),
+      outside_from_(ZoneLevels::outside_from(zone, before.active)),
       pair_(before.pair),
-      pair_since_(before.pair) {}
+      swept_pair_(before.pair) {}
 
-void ZoneHysteresis::add(std::uint32_t pair, const PairBounds& summary, double margins) noexcept {
-  Clearance clearance{.now = summary.lower, .since = summary.swept_lower};
+void ZoneHysteresis::add(std::uint32_t pair, const PairBounds& bounds, double margins) noexcept {
+  Clearance clearance{.now = bounds.lower, .since = bounds.swept_lower};
   if (margins > 0.0) {
     clearance.now = rounded_down(clearance.now - margins);
     clearance.since = rounded_down(clearance.since - margins);
   }
-  if (!proves(clearance, margins, summary)) proved_ = false;
+  if (!proves(clearance, margins, bounds)) proved_ = false;
   take(clearance, pair);
 }
 
@@ -30,10 +27,10 @@ void ZoneHysteresis::add_rest(const Clearance& clearance, std::uint32_t pair) no
 
 // Outside all the time; inside now, as far as can be told; or inside at some instant in between.
 bool ZoneHysteresis::proves(const Clearance& clearance, double margins,
-                            const PairBounds& summary) const noexcept {
+                            const PairBounds& bounds) const noexcept {
   if (outside(clearance.since)) return true;
-  if (!outside(clearance.now)) return is_evaluated(summary.status);
-  return !outside(rounded_up(summary.swept_upper - margins));
+  if (!outside(clearance.now)) return is_evaluated(bounds.status);
+  return !outside(rounded_up(bounds.swept_upper - margins));
 }
 
 void ZoneHysteresis::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
@@ -41,13 +38,9 @@ void ZoneHysteresis::finish(std::uint64_t cycle, ZoneReport& report) const noexc
   report.swept_clearance = least_.since;
   report.proved = proved_;
   report.active = !outside(least_.since);
-  report.pair = report.active && outside(least_.now) ? pair_since_ : pair_;
+  report.pair = report.active && outside(least_.now) ? swept_pair_ : pair_;
   report.changed = report.active != was_active_;
   if (report.changed) report.since_cycle = cycle;
-}
-
-double ZoneHysteresis::well_outside() const noexcept {
-  return std::nextafter(zone_->leave_above, kInfinity);
 }
 
 void ZoneHysteresis::take(const Clearance& clearance, std::uint32_t pair) noexcept {
@@ -57,7 +50,7 @@ void ZoneHysteresis::take(const Clearance& clearance, std::uint32_t pair) noexce
   }
   if (clearance.since < least_.since) {
     least_.since = clearance.since;
-    pair_since_ = pair;
+    swept_pair_ = pair;
   }
 }
 

@@ -2,12 +2,12 @@
 // margins.
 #pragma once
 
-#include "config/scene.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/zones/zone_levels.hpp"
 
 namespace clearance {
 
-// What is certain of a pair or of several, both margins subtracted, m.
+// Lower bounds of one pair's distance or of several, m.
 struct Clearance {
   double now = kInfinity;
   double since = kInfinity;  // at every instant since the last tick
@@ -21,33 +21,30 @@ class ZoneHysteresis {
   ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept;
 
   // One of the zone's pairs, and what both its margins are at most, m.
-  void add(std::uint32_t pair, const PairBounds& summary, double margins) noexcept;
+  void add(std::uint32_t pair, const PairBounds& bounds, double margins) noexcept;
 
   // Pairs of the zone that need not be named one by one: each has at least this clearance. `pair`
   // is one of them.
   void add_rest(const Clearance& clearance, std::uint32_t pair) noexcept;
 
+  // `report`: that of the last tick becomes that of this one.
   void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
 
   // The least clearance that is outside, m.
   [[nodiscard]] double outside_from() const noexcept { return outside_from_; }
 
-  // The least that a pair has which is outside whatever the hysteresis says, m.
-  [[nodiscard]] double well_outside() const noexcept;
-
  private:
   // The pair could neither enter the zone nor keep it active.
   [[nodiscard]] bool outside(double clearance) const noexcept { return clearance >= outside_from_; }
   [[nodiscard]] bool proves(const Clearance& clearance, double margins,
-                            const PairBounds& summary) const noexcept;
+                            const PairBounds& bounds) const noexcept;
   void take(const Clearance& clearance, std::uint32_t pair) noexcept;
 
-  const Zone* zone_;
   bool was_active_;
   double outside_from_;
   bool proved_ = true;
   Clearance least_;
-  std::uint32_t pair_, pair_since_;  // whose clearances those are
+  std::uint32_t pair_, swept_pair_;  // whose clearances those are
 };
 
 }  // namespace clearance

@@ -13,28 +13,28 @@ TEST(MotionWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
   constexpr std::uint32_t kPairs = 500;
   Random random(81);
   MotionWheels wheels(2, kPairs);
-  std::vector<double> since(kPairs), due(kPairs);  // m, of travel of object 1
-  double travelled = 0.0;
+  std::vector<double> since(kPairs), due(kPairs);  // m, of displacement of object 1
+  double accumulated = 0.0;
   std::vector<std::uint32_t> pairs;
   const auto set = [&](std::uint32_t pair) {
-    const double travel = std::pow(10.0, random.uniform(-3.0, 2.5));
-    ASSERT_TRUE(wheels.set(2 * pair + 1, 1, travel));
-    since[pair] = travelled;
-    due[pair] = travelled + travel;
+    const double displacement = std::pow(10.0, random.uniform(-3.0, 2.5));
+    ASSERT_TRUE(wheels.set(2 * pair + 1, 1, displacement));
+    since[pair] = accumulated;
+    due[pair] = accumulated + displacement;
   };
   for (std::uint32_t p = 0; p < kPairs; ++p) set(p);
   for (int t = 0; t < 20'000; ++t) {
     const double by = std::pow(10.0, random.uniform(-5.0, t % 100 == 0 ? 1.5 : -2.0));
     wheels.advance(1, by);
-    const double before = travelled;
-    travelled += by;
+    const double before = accumulated;
+    accumulated += by;
     pairs.clear();
     ASSERT_TRUE(wheels.take_due(1, kPairs, pairs));
     for (const std::uint32_t p : pairs) {
-      EXPECT_GE(travelled - since[p], 0.74 * (due[p] - since[p]) - 2.0 * MotionWheels::kUnit);
+      EXPECT_GE(accumulated - since[p], 0.74 * (due[p] - since[p]) - 2.0 * MotionWheels::kUnit);
     }
     for (std::uint32_t p = 0; p < kPairs; ++p) {
-      const bool is_due = due[p] <= travelled;
+      const bool is_due = due[p] <= accumulated;
       ASSERT_TRUE(!is_due || std::ranges::count(pairs, p) == 1) << before;
     }
     for (const std::uint32_t p : pairs) set(p);

@@ -31,8 +31,8 @@ TEST(PosedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
       ASSERT_LE(off, part.shift_error + part.turn_error * part.extent);
       ASSERT_LE((exact - pose.position.cast<long double>()).norm() + 0.1L, part.reach);
       const long double from_centre =
-          (exact - part.ball_in_world.centre.cast<long double>()).norm();
-      ASSERT_LE(from_centre + 0.1L, part.ball_in_world.radius);
+          (exact - part.sphere_in_world.centre.cast<long double>()).norm();
+      ASSERT_LE(from_centre + 0.1L, part.sphere_in_world.radius);
     }
   }
 }

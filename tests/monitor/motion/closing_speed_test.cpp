@@ -12,18 +12,18 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Closing, SpinningPointMovesAcrossItsArm) {
+TEST(ClosingSpeed, SpinningPointMovesAcrossItsArm) {
   Pose pose = test::at(1.0, 0.0, 0.0);
   const Twist twist{.linear = Vec3(0.0, 0.0, 0.5), .angular = Vec3(0.0, 0.0, 2.0)};
   EXPECT_EQ(velocity_at(Vec3(1.3, 0.0, 0.0), pose, twist), Vec3(0.0, 2.0 * (1.3 - 1.0), 0.5));
 }
 
-TEST(Closing, IsPositiveWhenAMovesTowardsB) {
+TEST(ClosingSpeed, IsPositiveWhenAMovesTowardsB) {
   EXPECT_EQ(closing_speed(Vec3(2, 0, 0), Vec3(0.5, 0, 0), Vec3::UnitX()), 1.5);
   EXPECT_EQ(closing_speed(Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3::UnitX()), -0.5);
 }
 
-TEST(Closing, TimeToContactCountsOnlyWhatApproaches) {
+TEST(ClosingSpeed, TimeToContactCountsOnlyWhatApproaches) {
   EXPECT_EQ(time_to_contact(0.5, 2.0), 0.25);
   EXPECT_EQ(time_to_contact(0.5, 0.0), kInfinity);
   EXPECT_EQ(time_to_contact(0.5, -1.0), kInfinity);
@@ -35,7 +35,7 @@ TEST(Closing, TimeToContactCountsOnlyWhatApproaches) {
 }
 
 // Oracle: the distance itself, a moment before and after, by closed form.
-TEST(Closing, ReportedSpeedIsTheRateAtWhichTheDistanceFalls) {
+TEST(ClosingSpeed, ReportedSpeedIsTheRateAtWhichTheDistanceFalls) {
   Random random(21);
   const Scene scene = test::cell_of({
       test::moving("a", {test::capsule(1.0, 0.02, random.pose(0.2))}),

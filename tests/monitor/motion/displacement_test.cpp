@@ -15,7 +15,7 @@ Pose turned(const Pose& pose, const Vec3& axis, double angle) {
   return result;
 }
 
-TEST(MotionBound, NoPointMovesFartherThanTheBound) {
+TEST(Displacement, NoPointMovesFartherThanTheBound) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
     const Pose before = random.pose(5.0);
@@ -34,7 +34,7 @@ TEST(MotionBound, NoPointMovesFartherThanTheBound) {
   }
 }
 
-TEST(MotionBound, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
+TEST(Displacement, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
   Random random(2);
   double tightest = 1.0;
   for (int i = 0; i < 5000; ++i) {
@@ -59,7 +59,7 @@ TEST(MotionBound, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
   EXPECT_LT(tightest, 0.25);
 }
 
-TEST(MotionBound, IsTightForAPointThatMovesStraightAndForOneThatTurns) {
+TEST(Displacement, IsTightForAPointThatMovesStraightAndForOneThatTurns) {
   const Pose before = test::at(1.0, 2.0, 3.0);
   const Pose shifted = test::at(1.0, 2.5, 3.0);
   EXPECT_NEAR(moved_at_most(motion_between(before, shifted), 7.0), 0.5, 1e-12);
@@ -67,12 +67,12 @@ TEST(MotionBound, IsTightForAPointThatMovesStraightAndForOneThatTurns) {
   EXPECT_NEAR(moved_at_most(motion_between(before, spun), 7.0), 7.0 * 2.0 * std::sin(0.005), 1e-6);
 }
 
-TEST(MotionBound, EqualPosesAreExactlyNoMotionEvenOfUnboundedBodies) {
+TEST(Displacement, EqualPosesAreExactlyNoMotionEvenOfUnboundedBodies) {
   const Pose pose = Random(2).pose(3.0);
   EXPECT_EQ(moved_at_most(motion_between(pose, pose), kInfinity), 0.0);
 }
 
-TEST(MotionBound, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
+TEST(Displacement, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const Pose before = random.pose(5.0);
@@ -88,19 +88,19 @@ TEST(MotionBound, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
   }
 }
 
-TEST(MotionBound, AHalfTurnIsTwoQuarterTurnsAtMost) {
+TEST(Displacement, AHalfTurnIsTwoQuarterTurnsAtMost) {
   const Pose spun = turned({}, Vec3(1.0, -2.0, 0.5), M_PI);
   EXPECT_NEAR(motion_between({}, spun).turn, 2.0 * std::sqrt(2.0), 1e-12);
 }
 
-TEST(MotionBound, TheOppositeQuaternionIsTheSameOrientation) {
+TEST(Displacement, TheOppositeQuaternionIsTheSameOrientation) {
   const Pose pose = Random(3).pose(3.0);
   Pose opposite = pose;
   opposite.orientation.coeffs() *= -1.0;
   EXPECT_LT(moved_at_most(motion_between(pose, opposite), 1.0), 1e-14);
 }
 
-TEST(MotionBound, ANormThatIsOffCountsAsWhatItIsScaledFrom) {
+TEST(Displacement, ANormThatIsOffCountsAsWhatItIsScaledFrom) {
   Random random(5);
   for (int i = 0; i < 20'000; ++i) {
     Pose before = random.pose(1.0), after = turned(before, random.in_box(1.0), 1e-14 * (i % 7));
@@ -120,7 +120,7 @@ TEST(MotionBound, ANormThatIsOffCountsAsWhatItIsScaledFrom) {
   }
 }
 
-TEST(MotionBound, ShiftsTooSmallToSquareStillCount) {
+TEST(Displacement, ShiftsTooSmallToSquareStillCount) {
   EXPECT_GE(motion_between(test::at(0, 0, 0), test::at(1e-200, 0, 0)).shift, 1e-200);
 }
 

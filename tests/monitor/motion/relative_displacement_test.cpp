@@ -21,7 +21,7 @@ TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   for (const std::int64_t now : {kStart, kStart + kTick}) {
     accept(object, test::sample(0, now == kStart ? from : to, now), state);
     advance(object, now, state);
-    travel(reach, state);
+    displace(reach, state);
   }
   return state;
 }
@@ -52,7 +52,7 @@ double length_of_way(const Pose& from, const Pose& to, const Pose& frame_from, c
   return length;
 }
 
-TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
+TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
   Random random(91);
   int tighter = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -66,8 +66,8 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
                             turn + differ * scale * random.in_box(0.5));
     const TrackedObject of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
-    const double told = relative_travel(of_a, of_b);
-    ASSERT_EQ(told, relative_travel(of_a, of_b));
+    const double told = relative_displacement(of_a.body_motion(), of_b.body_motion());
+    ASSERT_EQ(told, relative_displacement(of_a.body_motion(), of_b.body_motion()));
     const bool b_goes = reach_b <= reach_a;
     for (int k = 0; k < 4; ++k) {
       const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? reach_b : reach_a);
@@ -75,43 +75,44 @@ TEST(RelativeTravel, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
           b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
       ASSERT_LE(way, told + 1e-13) << "case " << i;
     }
-    tighter += told < 0.9 * (of_a.travel + of_b.travel);
+    tighter += told < 0.9 * (of_a.displacement + of_b.displacement);
   }
   EXPECT_GT(tighter, 1500);
 }
 
 // A link turns by 1 mrad about an axis 0.8 m away: both go 0.8 to 1 mm.
-TEST(RelativeTravel, WhatRidesOnTheSameLinkHardlyComesNearer) {
+TEST(RelativeDisplacement, WhatRidesOnTheSameLinkHardlyComesNearer) {
   Pose link, turned;
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3(1, 2, 2).normalized());
   const auto riding = [&](const Pose& on_link) {
     return gone(compose(link, on_link), compose(turned, on_link), 0.1);
   };
   const TrackedObject a = riding(test::at(1, 0, 0)), b = riding(test::at(1.2, 0.1, 0.3));
-  EXPECT_GT(a.travel + b.travel, 1e-3);
-  EXPECT_LT(relative_travel(a, b), 1e-6);
-  EXPECT_LT(relative_travel(b, a), 1e-6);
+  EXPECT_GT(a.displacement + b.displacement, 1e-3);
+  EXPECT_LT(relative_displacement(a.body_motion(), b.body_motion()), 1e-6);
+  EXPECT_LT(relative_displacement(b.body_motion(), a.body_motion()), 1e-6);
 }
 
-TEST(RelativeTravel, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
+TEST(RelativeDisplacement, AHalfSpaceThatTurnsIsTheFrameAndNotWhatIsSeen) {
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
   const TrackedObject floor = gone({}, turned, kInfinity);
   const TrackedObject ball = gone(test::at(0, 1, 1), test::at(0, 1, 1.001), 0.1);
-  EXPECT_LT(relative_travel(floor, ball), 3e-3);
-  EXPECT_LT(relative_travel(ball, floor), 3e-3);
+  EXPECT_LT(relative_displacement(floor.body_motion(), ball.body_motion()), 3e-3);
+  EXPECT_LT(relative_displacement(ball.body_motion(), floor.body_motion()), 3e-3);
   const TrackedObject other = gone({}, turned, kInfinity);
-  EXPECT_EQ(relative_travel(floor, other), kInfinity);
+  EXPECT_EQ(relative_displacement(floor.body_motion(), other.body_motion()), kInfinity);
 }
 
-TEST(RelativeTravel, TellsNothingOfMoreThanARadian) {
+TEST(RelativeDisplacement, TellsNothingOfMoreThanARadian) {
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(1.5, Vec3::UnitX());
-  EXPECT_EQ(relative_travel(gone({}, turned, 0.1), gone({}, turned, 0.1)), kInfinity);
+  const TrackedObject both = gone({}, turned, 0.1);
+  EXPECT_EQ(relative_displacement(both.body_motion(), both.body_motion()), kInfinity);
 }
 
 // Two balls on one arm that swings at 2 m/s, 20 mm apart: neither comes nearer between two ticks.
-TEST(RelativeTravel, IsWhatAPublishedPairIsReportedBy) {
+TEST(RelativeDisplacement, IsWhatAPublishedPairIsReportedBy) {
   Scene scene = test::cell_of(
       {test::moving("hand", {test::ball(0.05)}), test::moving("tool", {test::ball(0.05)})});
   scene.pairs[0].publish = true;

@@ -69,7 +69,7 @@ struct Flight {
   }
 };
 
-TEST(BetweenEnds, NoInstantOfTheWayIsNearerThanReported) {
+TEST(SweptBound, NoInstantOfTheWayIsNearerThanReported) {
   Random random(401);
   int ways = 0, close = 0;
   for (int i = 0; i < 240; ++i) {
@@ -95,8 +95,8 @@ TEST(BetweenEnds, NoInstantOfTheWayIsNearerThanReported) {
   EXPECT_GT(close, ways / 2) << "of " << ways << ": mostly hardly less than the nearer end";
 }
 
-// 5 cm apart at 2 m/s and 2 rad/s: their travel alone would leave a millimetre open.
-TEST(BetweenEnds, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) {
+// 5 cm apart at 2 m/s and 2 rad/s: their displacement alone would leave a millimetre open.
+TEST(SweptBound, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) {
   Watched pair(test::moving("a", {test::block({0.1, 0.1, 0.1})}),
                test::moving("b", {test::block({0.2, 0.2, 0.1})}));
   double last = 0.0;
@@ -111,7 +111,7 @@ TEST(BetweenEnds, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) 
   }
 }
 
-TEST(BetweenEnds, DirectionsTellWhatLinesBetweenTheEndsCannotGoBelow) {
+TEST(SweptBound, DirectionsTellWhatLinesBetweenTheEndsCannotGoBelow) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
   const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_NEAR(lower_by_directions({x, 0.3}, {x, 0.2}, 0.1, 0.0), 0.2, 1e-14);
@@ -124,7 +124,7 @@ TEST(BetweenEnds, DirectionsTellWhatLinesBetweenTheEndsCannotGoBelow) {
   EXPECT_EQ(lower_by_directions({x, 0.2}, {x, 0.2}, kInfinity, kInfinity), -kInfinity);
 }
 
-TEST(BetweenEnds, TravelTellsHalfOfWhatItLeavesOpen) {
+TEST(SweptBound, DisplacementTellsHalfOfWhatItLeavesOpen) {
   EXPECT_NEAR(lower_by_ends(0.3, 0.2, 0.1), 0.2, 1e-14);
   EXPECT_NEAR(lower_by_ends(0.2, 0.2, 0.1), 0.15, 1e-14);
   EXPECT_EQ(lower_by_ends(0.2, 0.2, kInfinity), -kInfinity);

@@ -26,7 +26,7 @@ class AskedOnce {
 
   void move(std::size_t object, const Pose& to) {
     turned_[object] = rounded_up(turned_[object] + motion_between(poses_[object], to).turn);
-    parts_[object].turning = swept(turned_[object], parts_[object].ball_in_part.radius);
+    parts_[object].turning = swept(turned_[object], parts_[object].sphere_in_part.radius);
     poses_[object] = to;
     place_at(to, parts_[object]);
   }
@@ -40,7 +40,7 @@ class AskedOnce {
     return distance(*parts_[0].shape, *parts_[1].shape,
                     relative_pose(parts_[0].world_from_part, parts_[1].world_from_part), cold);
   }
-  [[nodiscard]] RowBounds bounds(const DistanceResult& found) const {
+  [[nodiscard]] DistanceBounds bounds(const DistanceResult& found) const {
     return for_exact_poses(found, parts_[0], parts_[1]);
   }
 
@@ -52,7 +52,7 @@ class AskedOnce {
   double kept_ = 0.0;
 };
 
-TEST(CarriedDirection, IsNeverAboveTheTruthHoweverBothMove) {
+TEST(CarriedGap, IsNeverAboveTheTruthHoweverBothMove) {
   Random random(81);
   int apart = 0;
   for (int i = 0; i < 400; ++i) {
@@ -76,7 +76,7 @@ TEST(CarriedDirection, IsNeverAboveTheTruthHoweverBothMove) {
   EXPECT_GT(apart, 2000) << "and tells something";
 }
 
-TEST(CarriedDirection, MotionAcrossItCostsNothingAndMotionApartGains) {
+TEST(CarriedGap, MotionAcrossItCostsNothingAndMotionApartGains) {
   AskedOnce pair(test::floor(), test::ball(0.1), {}, test::at(0, 0, 0.3));
   pair.move(1, test::at(5.0, -3.0, 0.3));
   EXPECT_NEAR(pair.told(), 0.2, 1e-12);
@@ -86,7 +86,7 @@ TEST(CarriedDirection, MotionAcrossItCostsNothingAndMotionApartGains) {
   EXPECT_NEAR(pair.told(), 1.1, 1e-12);
 }
 
-TEST(CarriedDirection, TurningCostsNoMoreThanTheBallAroundThePart) {
+TEST(CarriedGap, TurningCostsNoMoreThanTheSphereAroundThePart) {
   const Part off_its_origin = test::ball(0.1, test::at(2.0, 0, 0));
   AskedOnce pair(test::floor(), off_its_origin, {}, test::at(0, 0, 0.3));
   Pose turned = pair.pose(1);
@@ -95,7 +95,7 @@ TEST(CarriedDirection, TurningCostsNoMoreThanTheBallAroundThePart) {
   EXPECT_NEAR(pair.told(), 0.2 - 0.01, 1e-4) << "though its middle has moved by 20 cm";
 }
 
-TEST(CarriedDirection, AnUnboundedBodyThatTurnsLeavesNothing) {
+TEST(CarriedGap, AnUnboundedBodyThatTurnsLeavesNothing) {
   AskedOnce pair(test::floor(), test::ball(0.1), {}, test::at(0, 0, 0.3));
   Pose turned;
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());

@@ -76,9 +76,9 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
       object.pose.position = random.in_box(4.0);
     }
     for (PosedPart& part : parts) place(objects[part.object], part);
-    Evaluation evaluation{objects, parts, 1, table, 10};
+    Evaluation evaluation{objects, parts, 1, table, Budget(10)};
     const double lower = hulls.lower(0, evaluation);
-    EXPECT_EQ(evaluation.queries_left, 9u);
+    EXPECT_EQ(evaluation.budget.left(), 9u);
     const double truth = two.exact_distance(objects[0].pose.position, objects[1].pose.position);
     EXPECT_LE(lower, truth + 1e-14) << "round " << round;  // adding positions rounds in the oracle
     apart += lower > 0.0;
@@ -86,7 +86,7 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
   EXPECT_GT(apart, 30);
 }
 
-TEST(HullBound, IsAskedWhereOneObjectHasAHullAndTheOtherOneModel) {
+TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
   scene.objects.resize(5);
   const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));

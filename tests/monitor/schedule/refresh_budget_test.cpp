@@ -12,7 +12,7 @@ namespace {
 
 // The oracle takes the text by its word: pairs in a ring, whose turn comes only when all of its
 // queries are left, and nobody may wait longer than the ticks that were promised.
-TEST(RefreshBudget, LetsEveryPairHaveItsTurnInTimeFromNoMoreThanIsKept) {
+TEST(RefreshBudget, LetsEveryPairBeRefreshedInTimeFromNoMoreThanIsKept) {
   Random random(31);
   for (int run = 0; run < 200; ++run) {
     const auto ticks = static_cast<std::uint64_t>(random.integer(1, 60));

@@ -24,7 +24,7 @@ class RefreshQueueTest : public testing::Test {
   void regain(std::uint32_t object) {
     objects[object].may_have_moved = 0.0;
     queue.regain(object);
-    queue.bring_back(broad_phase, objects, table);
+    queue.bring_back(by_object, objects, table);
   }
   // Takes everyone off the head, in a tick of its own each.
   std::vector<std::uint32_t> order() {
@@ -39,7 +39,7 @@ class RefreshQueueTest : public testing::Test {
   Scene scene = four_balls();
   std::vector<PosedPart> parts = parts_of(scene);
   PairTable table{scene, parts};
-  BroadPhase broad_phase{scene, parts, {std::vector<double>(6), std::vector<double>(4)}, {}, 100};
+  PairsByObject by_object{scene};
   std::vector<TrackedObject> objects = std::vector<TrackedObject>(4);
   RefreshQueue queue{4, 6};
 };

@@ -35,16 +35,16 @@ class TwoOnTheirWay {
         const std::int64_t now = kStart + (&pose == &motion.from[i] ? 0 : kTick);
         accept(scene_.objects[i], test::sample(i, pose, now), state);
         advance(scene_.objects[i], now, state);
-        travel(parts_[i].reach, state);
+        displace(parts_[i].reach, state);
       }
       place(state, parts_[i]);
     }
   }
 
   SweptBounds decide(double level, std::uint32_t queries = 1000) {
-    Evaluation evaluation{objects_, parts_, 2, table_, queries};
+    Evaluation evaluation{objects_, parts_, 2, table_, Budget(queries)};
     const SweptBounds bounds = SweptSearch(0, evaluation).decide(level, evaluation);
-    queries_ = queries - evaluation.queries_left;
+    queries_ = queries - evaluation.budget.left();
     return bounds;
   }
   [[nodiscard]] std::uint32_t queries() const { return queries_; }
@@ -243,7 +243,7 @@ TEST_F(FlyBy, FirstPosesAndThoseAfterAGapHaveNoWayBehindThem) {
   EXPECT_EQ(back.pairs[0].swept_lower, back.pairs[0].lower);
 }
 
-TEST_F(FlyBy, ALeapOfTenKilometresEntersEveryZoneOfTheObject) {
+TEST_F(FlyBy, ADiscontinuityOfTenKilometresEntersEveryZoneOfTheObject) {
   Monitor monitor(scene_);
   tick(monitor, test::at(0, 0, 1.0));
   const Report& report = tick(monitor, test::at(2e4, 0, 0));

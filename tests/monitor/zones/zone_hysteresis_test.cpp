@@ -10,9 +10,9 @@ namespace {
 constexpr double kMargins = 0.03;
 
 // Two pairs, margins 0.01 + 0.02 each; enter below 0.1, leave above 0.15.
-class ZoneState : public testing::Test {
+class ZoneHysteresisTest : public testing::Test {
  protected:
-  ZoneState() {
+  ZoneHysteresisTest() {
     for (const char* name : {"a", "b"}) scene_.objects.push_back(test::moving(name, {}));
     scene_.objects[0].margin = 0.01;
     scene_.objects[1].margin = 0.02;
@@ -40,7 +40,7 @@ class ZoneState : public testing::Test {
   std::uint64_t cycle_ = 0;
 };
 
-TEST_F(ZoneState, EntersBelowAndLeavesAboveWithHysteresisBetween) {
+TEST_F(ZoneHysteresisTest, EntersBelowAndLeavesAboveWithHysteresisBetween) {
   EXPECT_FALSE(tick(0.2, 0.12).active);
   EXPECT_TRUE(tick(0.2, 0.09).active);
   EXPECT_TRUE(report_.changed);
@@ -54,19 +54,19 @@ TEST_F(ZoneState, EntersBelowAndLeavesAboveWithHysteresisBetween) {
   EXPECT_FALSE(tick(0.14, 0.16).active);
 }
 
-TEST_F(ZoneState, ClearanceIsTheLowerBoundLessBothMargins) {
+TEST_F(ZoneHysteresisTest, ClearanceIsTheLowerBoundLessBothMargins) {
   EXPECT_NEAR(tick(0.3, 0.4).clearance, 0.3, 1e-12);
   EXPECT_LE(report_.clearance, 0.3);
 }
 
-TEST_F(ZoneState, IsProvedByEvaluationsAndByBoundsThatLieOutside) {
+TEST_F(ZoneHysteresisTest, IsProvedByEvaluationsAndByBoundsThatLieOutside) {
   EXPECT_TRUE(tick(0.05, 0.3).proved);
   EXPECT_TRUE(tick(0.2, 0.3, PairStatus::kCarried).proved);
   EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kCarried).proved);
   EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kStale).proved);
 }
 
-TEST_F(ZoneState, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEntered) {
+TEST_F(ZoneHysteresisTest, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEntered) {
   EXPECT_TRUE(tick(0.12, 0.3, PairStatus::kCarried).proved);
   EXPECT_FALSE(report_.active);
   tick(0.05, 0.3);
@@ -74,7 +74,7 @@ TEST_F(ZoneState, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEnter
   EXPECT_TRUE(report_.active);
 }
 
-TEST_F(ZoneState, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
+TEST_F(ZoneHysteresisTest, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
   const auto status = PairStatus::kConverged;
   const PairBounds nearest{.status = status, .lower = 0.23, .swept_lower = 0.23};
   PairBounds passing{.status = status, .lower = 0.53, .swept_lower = 0.08, .swept_upper = 0.09};
@@ -90,7 +90,7 @@ TEST_F(ZoneState, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) {
   EXPECT_FALSE(report_.proved) << "it may have been there";
 }
 
-TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
+TEST_F(ZoneHysteresisTest, AnUnknownPairIsNotOutside) {
   tick(-kInfinity, 0.3, PairStatus::kUnknown);
   EXPECT_TRUE(report_.active);
   EXPECT_FALSE(report_.proved);
@@ -98,7 +98,7 @@ TEST_F(ZoneState, AnUnknownPairIsNotOutside) {
   EXPECT_EQ(report_.clearance, -kInfinity);
 }
 
-TEST_F(ZoneState, AZoneOfNoPairsIsNeverActive) {
+TEST_F(ZoneHysteresisTest, AZoneOfNoPairsIsNeverActive) {
   const ZoneHysteresis update(zone_, report_);
   update.finish(1, report_);
   EXPECT_FALSE(report_.active);

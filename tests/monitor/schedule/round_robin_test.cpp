@@ -81,7 +81,7 @@ TEST(Scheduler, EveryPublishedPairTellsHowLongAgoItWasRefreshedAndTheReportTheLo
   EXPECT_GE(longest, 6u) << "20 pairs, three a tick";
 }
 
-TEST(Scheduler, FarPairsAreRefreshedByTheirBallsWithoutAQuery) {
+TEST(Scheduler, FarPairsAreRefreshedByTheirSpheresWithoutAQuery) {
   Scene scene = far_apart(200);
   Monitor monitor(scene);
   for (int t = 0; t < 100; ++t) {
@@ -183,7 +183,7 @@ TEST(Scheduler, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
 }
 
 // A hundred published pairs are due to the last in every tick, and what is awake takes the rest.
-TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirTurns) {
+TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirRefresh) {
   Scene scene = side_by_side(150);
   for (std::size_t p = 0; p < 100; ++p) scene.pairs[p].publish = true;
   scene.refresh_s = 0.05;

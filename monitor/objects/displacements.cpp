@@ -1,0 +1,80 @@
+#include "monitor/objects/displacements.hpp"
+
+#include <algorithm>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+class LargestTwo {
+ public:
+  void add(double length) noexcept {
+    if (length <= second_) return;
+    second_ = std::min(most_, length);
+    most_ = std::max(most_, length);
+  }
+  [[nodiscard]] double sum() const noexcept { return rounded_up(most_ + second_); }
+
+ private:
+  double most_ = 0.0, second_ = 0.0;
+};
+
+// What is known of all objects together.
+void summarise(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> moving,
+               Displacements& displaced) noexcept {
+  displaced.any_lost = false;
+  bool any = false;
+  LargestTwo unseen, farthest;
+  for (const std::uint32_t i : moving) {
+    const TrackedObject& object = objects[i];
+    displaced.any_lost = displaced.any_lost || !object.known() || object.discontinuous;
+    if (!object.seen) continue;
+    displaced.newest_pose_ns =
+        any ? std::max(displaced.newest_pose_ns, object.stamp_ns) : object.stamp_ns;
+    displaced.oldest_pose_ns =
+        any ? std::min(displaced.oldest_pose_ns, object.stamp_ns) : object.stamp_ns;
+    any = true;
+    if (!object.known()) continue;
+    unseen.add(object.may_have_moved);
+    // No pair is culled of an object whose displacement nobody can bound, short of a discontinuity.
+    const double displacement = object.known_displacement();
+    const double bounded = displacement < kInfinity ? displacement : 0.0;
+    farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));
+  }
+  displaced.most_unseen = unseen.sum();
+  displaced.most_displaced = farthest.sum();
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> moving_objects(const Scene& scene) {
+  std::vector<std::uint32_t> moving;
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].fixed) moving.push_back(i);
+  }
+  return moving;
+}
+
+void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs& inputs,
+              Displacements& displaced) noexcept {
+  std::vector<TrackedObject>& objects = inputs.objects;
+  displaced.changed.clear();
+  if (inputs.cycle == 1) {
+    for (std::uint32_t i = 0; i < objects.size(); ++i) displaced.changed.push_back(i);
+  }
+  // One loop for each step: no object has to wait for the roots and quotients of the one before.
+  for (const std::uint32_t i : moving) {
+    TrackedObject& object = objects[i];
+    const bool was_late = object.late;
+    const double might_have_moved = object.may_have_moved;
+    advance(scene.objects[i], inputs.now_ns, object);
+    const bool changes =
+        object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
+    if (changes && inputs.cycle > 1) displaced.changed.push_back(i);
+  }
+  for (const std::uint32_t i : moving) displace(objects[i].reach, objects[i]);
+  summarise(objects, moving, displaced);
+}
+
+}  // namespace clearance

@@ -1,0 +1,29 @@
+// Which pairs does an object have, and with whom?
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace clearance {
+
+class PairsByObject {
+ public:
+  explicit PairsByObject(const Scene& scene);
+
+  // In ascending order, indices into Scene::pairs; and the other object of each.
+  [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept {
+    return std::span(pairs_).subspan(first_[object], first_[object + 1] - first_[object]);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> others_of(std::uint32_t object) const noexcept {
+    return std::span(others_).subspan(first_[object], first_[object + 1] - first_[object]);
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;  // by object, and one more
+  std::vector<std::uint32_t> pairs_, others_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,30 @@
+// The pair with the smallest distance: pairs are evaluated in the order of their lower bounds until
+// none left can beat the smallest upper bound, and the horizon is raised until no culled pair can.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "monitor/schedule/evaluator.hpp"
+
+namespace clearance {
+
+class MinimumSearch {
+ public:
+  explicit MinimumSearch(std::size_t pairs) { candidates_.reserve(pairs); }
+
+  // When the budget lasts, no unseen pair can be closer than the minimum afterwards.
+  void evaluate(const Evaluator& evaluator) noexcept;
+
+  // The smallest upper bound of the pairs that the last search saw, m.
+  [[nodiscard]] double smallest_upper() const noexcept { return smallest_upper_; }
+
+ private:
+  void evaluate_closest(const Evaluator& evaluator) noexcept;
+
+  double smallest_upper_ = kInfinity;
+  std::vector<std::uint32_t> candidates_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,63 @@
+// From which distance on is a pair outside its zones? The one table that the broad phase, the
+// schedule, the sweep and the zones go by.
+//
+// A zone has two thresholds of the clearance (distance less both margins), with hysteresis between:
+// enter_below, and just above leave_above. A pair's level Z is the largest distance that belongs to
+// the latter, over all its zones, margins included and rounded up: from Z on it is outside of all
+// of them, whatever their states are.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace clearance {
+
+class ZoneLevels {
+ public:
+  explicit ZoneLevels(const Scene& scene);
+
+  // The least clearance that is outside of a zone in this state, m.
+  [[nodiscard]] static double outside_from(const Zone& zone, bool active) noexcept;
+
+  // Z of a pair, m; -infinity: it has no zone.
+  [[nodiscard]] double outside_from(std::uint32_t pair) const noexcept {
+    return outside_from_.empty() ? -kInfinity : outside_from_[pair];
+  }
+
+  // A zone of a pair, and both its objects' margins, rounded up, m.
+  struct Membership {
+    std::uint32_t zone;
+    double margins;
+  };
+  [[nodiscard]] std::span<const Membership> zones_of(std::uint32_t pair) const noexcept {
+    if (first_zone_.empty()) return {};
+    return {zones_.data() + first_zone_[pair], zones_.data() + first_zone_[pair + 1]};
+  }
+  [[nodiscard]] bool has(std::uint32_t pair) const noexcept { return !zones_of(pair).empty(); }
+
+  // An object of a zone, and one of its pairs there.
+  struct Member {
+    std::uint32_t object, pair;
+  };
+  [[nodiscard]] std::span<const Member> members_of(std::uint32_t zone) const noexcept {
+    return members_[zone];
+  }
+  // The largest margins of any pair of a zone, rounded up, m.
+  [[nodiscard]] double most_margins(std::uint32_t zone) const noexcept {
+    return most_margins_[zone];
+  }
+
+ private:
+  // By pair; none where there are no zones.
+  std::vector<std::uint32_t> first_zone_;
+  std::vector<Membership> zones_;
+  std::vector<double> outside_from_;  // m
+  // By zone.
+  std::vector<std::vector<Member>> members_;
+  std::vector<double> most_margins_;
+};
+
+}  // namespace clearance
