@@ -15,7 +15,7 @@ constexpr double kMaxMilliseconds = 86'400'000.0;  // a day
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // A quaternion typed with this many digits is meant to be a unit one; farther off it is a mistake.
-constexpr double kUnitTolerance = 1e-3;
+constexpr double kTypedUnitTolerance = 1e-3;
 
 // N numbers of a list, each checked; nothing when one of them, or their count, is wrong.
 template <std::size_t N>
@@ -184,7 +184,7 @@ std::optional<Eigen::Quaterniond> Quantities::quaternion(const YamlNode& node) c
       numbers<4>(node, "a unit quaternion x, y, z, w", "a number", {}, diagnostics_);
   if (!values) return std::nullopt;
   const Eigen::Quaterniond found((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
-  if (!(std::fabs(found.norm() - 1.0) <= kUnitTolerance)) {
+  if (!(std::fabs(found.norm() - 1.0) <= kTypedUnitTolerance)) {
     diagnostics_.add(
         node,
         fmt::format("found a quaternion of length {:f}; expected a unit quaternion x, y, z, w",

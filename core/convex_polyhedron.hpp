@@ -28,10 +28,6 @@ namespace clearance {
 inline constexpr std::int32_t kNone = -1;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Beyond this, products of the queries' lengths could overflow: no coordinate of an anchor and no
-// radius is larger, m.
-inline constexpr double kLargestCoordinate = 1e100;
-
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
 struct Facet {
   Vec3 normal;    // outward, unit

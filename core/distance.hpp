@@ -16,7 +16,7 @@ struct DistanceOptions {
   // is kFarAway then, and the distance the lower bound.
   double far_away = kInfinity;
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
-  // Where they are not proved apart, the status is kIterationLimit then and the lower bound may be
+  // Where they are not proved apart, the status is kDepthNotAsked then and the lower bound may be
   // -infinity.
   bool depth = true;
 };

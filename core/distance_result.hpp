@@ -13,6 +13,8 @@ enum class DistanceStatus : std::uint8_t {
   kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
   kOverlapping,     // proved: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
+  kDepthNotAsked,   // not proved apart, and DistanceOptions::depth is false
+  kBadPose,         // no pose, see below: nothing is known
 };
 
 [[nodiscard]] const char* name(DistanceStatus status) noexcept;
@@ -38,15 +40,15 @@ enum class DistancePath : std::uint8_t {
 // (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
 // up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
-// Two unbounded bodies may overlap so that no translation parts them, or none that rounding can
-// vouch for: lower is -infinity then, and upper still bounds the depth (-infinity: certainly no
-// translation). Where they are proved to overlap, the distance is -infinity, too, the normal is
-// zero, and the points lie in both bodies, or each in its own, where they meet only farther out
-// than their vertices and origins are.
+// Two unbounded bodies are answered in doubles: where these cannot tell along which directions
+// neither goes on for ever, lower is -infinity and the status kIterationLimit; or kOverlapping,
+// where upper still bounds the depth (-infinity: certainly no translation parts them), and with no
+// translation known the distance is -infinity, too, and the normal zero.
 //
-// Of poses that are none (not finite, a quaternion of zeros), and where lengths overflow, nothing
-// is known: the bounds are infinite, the distance -infinity, normal and points zero, and the status
-// is kIterationLimit. No number is ever a NaN.
+// Unknown is a bound that is infinite, a distance that is -infinity, a normal that is zero; no
+// number is ever a NaN. All of it is unknown, and the points are zero, of a bad pose: one that is
+// not finite, with a quaternion that is off unit length by more than kUnitTolerance, or with frames
+// more than kLargestCoordinate apart.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;

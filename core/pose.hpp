@@ -1,12 +1,23 @@
 // Where a body is, how it moves, and where one body is as seen from another.
 #pragma once
 
+#include <cmath>
+
 #include "core/vec.hpp"
 
 namespace clearance {
 
+// No coordinate, offset or radius of a shape is larger, and no two frames are farther apart, m.
+inline constexpr double kLargestCoordinate = 1e12;
+// Quaternions are of unit length to this.
+inline constexpr double kUnitTolerance = 1e-6;
+
+[[nodiscard]] inline bool is_unit(const Eigen::Quaterniond& q) noexcept {
+  return std::abs(q.squaredNorm() - 1.0) <= 2.0 * kUnitTolerance;
+}
+
 // A point x of the object's own frame is at position + R(orientation / |orientation|) x in the
-// world. The quaternion need not be exactly of unit length: every use means its exact
+// world. The quaternion is of unit length to kUnitTolerance, and every use means its exact
 // normalisation. Quaternions are stored x, y, z, w (as Eigen does, and as on the wire). A cache
 // line each: queries over many pairs read poses here and there, and each on two lines takes a
 // thirtieth longer.
@@ -22,7 +33,7 @@ struct Twist {
   Vec3 angular = Vec3::Zero();  // rad/s
 };
 
-// R(q / |q|) of any non-zero q without a square root: N(q) / |q|^2. Its entries are within 2^-49.
+// R(q / |q|) without a square root: N(q) / |q|^2. Its entries are within 2^-49.
 [[nodiscard]] inline Mat3 rotation_matrix(const Eigen::Quaterniond& q) noexcept {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double s = 2.0 / ((w * w + x * x) + (y * y + z * z));
@@ -35,9 +46,6 @@ struct Twist {
 
 // Pose of an object whose frame is `inner` as placed in `outer`: outer_from_inner.
 [[nodiscard]] Pose compose(const Pose& outer, const Pose& inner) noexcept;
-
-// The same pose by a quaternion of a length between 1 and 4.
-[[nodiscard]] Pose rescaled(const Pose& pose) noexcept;
 
 // A point of the object's frame, in the world.
 [[nodiscard]] Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
@@ -56,15 +64,12 @@ struct RelativePose {
   Vec3 translation = Vec3::Zero();  // m, in frame A
   double rotation_error = 0.0;      // |R - R_exact| (2-norm) is at most this
   double translation_error = 0.0;   // |t - t_exact| is at most this, m
-  // What the rotation was made of, for who needs it more precisely; zero where that is not known.
-  using Orientation = Eigen::Quaternion<double, Eigen::DontAlign>;
-  Orientation world_from_a{0.0, 0.0, 0.0, 0.0}, world_from_b{0.0, 0.0, 0.0, 0.0};
 };
 
-// Error behaviour: none. Of a quaternion that is zero or not finite, or a position that is not,
-// come NaNs, of which distance() says that nothing is known. Equal orientations give exactly the
-// identity, and orientations that permute axes exactly that permutation, each with rotation_error
-// 0: parallel stays parallel. (Not where their squares over- or underflow.)
+// Error behaviour: none. Of a quaternion that is not of unit length, of frames more than
+// kLargestCoordinate apart, and of what is not finite come NaNs, of which distance() says kBadPose.
+// Equal orientations give exactly the identity, and orientations that permute axes exactly that
+// permutation, each with rotation_error 0: parallel stays parallel.
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

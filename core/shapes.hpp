@@ -2,8 +2,10 @@
 //
 // Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
 // rounded once at the end. What is not a solid closed convex body is refused with a reason a person
-// can act on, and so are lengths beyond 1e100 m. Redundant half-spaces disappear. Load time only:
-// allocates, may take milliseconds, never throws.
+// can act on, and so is what no scene holds: coordinates, offsets and radii beyond 1e12 m, extents
+// below 1e-12 m, normals shorter than 1e-100 or longer than 1e100, and unbounded bodies that open
+// by less than 1e-6 rad, or by that much less than half a turn. Redundant half-spaces disappear.
+// Load time only: allocates, may take milliseconds, never throws.
 #pragma once
 
 #include <span>
@@ -11,10 +13,16 @@
 #include <variant>
 
 #include "core/convex_polyhedron.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
-// One row n.x <= d; n outward, of any non-zero length (the exact half-space of these four doubles).
+// A solid is at least so thick along every facet's normal, and a segment so long, m.
+inline constexpr double kLeastExtent = 1e-12;
+inline constexpr double kShortestNormal = 1e-100, kLongestNormal = 1e100;
+
+// One row n.x <= d; n outward, from kShortestNormal to kLongestNormal long (the exact half-space of
+// these four doubles).
 struct HalfSpace {
   Vec3 normal;
   double offset;

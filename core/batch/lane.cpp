@@ -221,18 +221,26 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                          const TrackingState& state) noexcept {
   if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return {};
-  const bool edge_of_a = state.a.kind == FeatureKind::kEdge,
-             edge_of_b = state.b.kind == FeatureKind::kEdge;
-  const bool facet_of_a = state.a.kind == FeatureKind::kFacet,
-             facet_of_b = state.b.kind == FeatureKind::kFacet;
   if (!a.bounded() && !b.bounded()) return {};
-  if (edge_of_a && (edge_of_b || facet_of_b) && !a.bounded()) return {};
-  if (edge_of_b && (edge_of_a || facet_of_a) && !b.bounded()) return {};
-  if (facet_of_a && facet_of_b &&
-      (!few(repeats(a, state.a), kMostSidesOfTwo) || !few(repeats(b, state.b), kMostSidesOfTwo))) {
-    return {};
+  const FeaturePair features = feature_pair(state);
+  switch (features) {
+    case FeaturePair::kEdgeEdge:
+      if (!a.bounded() || !b.bounded()) return {};
+      break;
+    case FeaturePair::kEdgeFacet:
+      if (!a.bounded()) return {};
+      break;
+    case FeaturePair::kFacetEdge:
+      if (!b.bounded()) return {};
+      break;
+    case FeaturePair::kFacetFacet:
+      if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
+      if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};
+      break;
+    default:
+      break;
   }
-  return feature_pair(state);
+  return features;
 }
 
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept {

@@ -83,11 +83,14 @@ HWY_INLINE Lanes two_over_square(const Quaternions& q) {
   const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
   const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
   if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
-  // Out of range: no number, so that the lane fails.
-  const LaneMask fits =
-      hn::And(hn::Ge(square, all(kLeastSquare)), hn::Le(square, all(kMostSquare)));
-  const Lanes other = hn::IfThenElse(fits, hn::Div(two, square), hn::NaN(Tag()));
-  return hn::IfThenElse(unit, of_unit, other);
+  return hn::IfThenElse(unit, of_unit, hn::Div(two, square));
+}
+
+// But for a little at the limit, which is left to distance().
+HWY_INLINE LaneMask are_unit(const Quaternions& q) {
+  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
+                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+  return hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(1.99 * kUnitTolerance));
 }
 
 HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
@@ -156,6 +159,15 @@ HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lan
       a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
 }
 
+// Leaves no number of a pose that is not good, so that its lane fails.
+HWY_INLINE void spoil(LaneMask good, RelativePoses& pose) {
+  const Lanes none = hn::NaN(Tag());
+  for (Points* row : {&pose.rotation.x, &pose.rotation.y, &pose.rotation.z, &pose.translation}) {
+    *row = {hn::IfThenElse(good, row->x, none), hn::IfThenElse(good, row->y, none),
+            hn::IfThenElse(good, row->z, none)};
+  }
+}
+
 HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& world_from_b) {
   const Quaternions& a = world_from_a.orientation;
   const Quaternions& b = world_from_b.orientation;
@@ -164,6 +176,9 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
   const Lanes zero = all(0.0);
   RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError), zero};
   const Lanes apart = norm(out.translation);
+  const LaneMask good =
+      hn::And(hn::And(are_unit(a), are_unit(b)), hn::Le(apart, all(0.5 * kLargestCoordinate)));
+  if (HWY_UNLIKELY(!hn::AllTrue(Tag(), good))) spoil(good, out);
   out.translation_error = hn::Mul(all(kTranslationError), apart);
   const LaneMask no_turn =
       hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));

@@ -20,31 +20,20 @@ double depth(const ConvexPolyhedron& body, const Vec3& point) {
 // The centre of volume, by a fan of tetrahedra from the first anchor. Bounded bodies only.
 Vec3 centroid(const ConvexPolyhedron& body) {
   const Vec3& apex = body.anchors[0];
-  double size = 0.0;
-  for (const Vec3& anchor : body.anchors) {
-    size = std::max(size, (anchor - apex).cwiseAbs().maxCoeff());
-  }
-  if (size == 0.0) return apex;
-  // Moments are products of four lengths, which over- or underflow soon.
-  const int exponent = std::ilogb(size);
-  const auto from_apex = [&](const Vec3& p) {
-    return times_power_of_two(Vec3(p - apex), -exponent);
-  };
   Vec3 moment = Vec3::Zero();
   double volume = 0.0;
   for (const Facet& facet : body.facets) {
     for (std::int32_t i = 0; i < facet.sides; ++i) {
       const Edge& edge = body.edges[at(body.facet_edges[at(facet.first_side + i)].edge)];
-      const Vec3 a = from_apex(body.vertices[at(edge.vertex[0])].position);
-      const Vec3 b = from_apex(body.vertices[at(edge.vertex[1])].position);
-      const Vec3 c = from_apex(body.point_of(facet));
+      const Vec3 a = body.vertices[at(edge.vertex[0])].position - apex;
+      const Vec3 b = body.vertices[at(edge.vertex[1])].position - apex;
+      const Vec3 c = body.point_of(facet) - apex;
       const double share = std::abs(c.dot(a.cross(b)));
       volume += share;
       moment += share * (a + b + c);
     }
   }
-  return volume > 0.0 ? Vec3(apex + times_power_of_two(Vec3(moment / (4.0 * volume)), exponent))
-                      : apex;
+  return volume > 0.0 ? Vec3(apex + moment / (4.0 * volume)) : apex;
 }
 
 // From the mean of the anchors along the rays' mean, as far as the anchors are spread.

@@ -155,7 +155,9 @@ std::optional<ConvexPolyhedron> enclosing_polyhedron(std::span<const PlacedShape
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       const Vec3 normal = sign * Vec3::Unit(axis);
-      rows.push_back({normal, outline.reach(normal)});
+      const double reach = outline.reach(normal);
+      const bool thin = reach + outline.reach(-normal) < 2.0 * kLeastExtent;  // a bare point's
+      rows.push_back({normal, thin ? reach + kLeastExtent : reach});
     }
   }
   const std::vector<HalfSpace> planes = candidates(bodies, outline);

@@ -28,10 +28,31 @@ std::string radius_fault(double radius) {
   if (!std::isfinite(radius) || !(radius >= 0.0)) {
     return "the radius is not a finite number of at least 0";
   }
-  return radius <= kLargestCoordinate ? "" : "the radius is more than 1e100 m";
+  return radius <= kLargestCoordinate ? "" : "the radius is more than 1e12 m";
 }
 
 bool is_too_far(const Vec3& point) { return !(point.cwiseAbs().maxCoeff() <= kLargestCoordinate); }
+
+// Nothing when the row can be used.
+std::string row_fault(const HalfSpace& row) {
+  if (!row.normal.allFinite() || !std::isfinite(row.offset)) {
+    return "has a number that is not finite";
+  }
+  const double length = row.normal.stableNorm();
+  if (length == 0.0) return "has a zero normal: it bounds nothing";
+  if (!(length >= kShortestNormal && length <= kLongestNormal)) {
+    return "has a normal whose length is not from 1e-100 to 1e100";
+  }
+  // A quotient that overflows is too far as well.
+  const bool near = std::abs(row.offset / length) <= kLargestCoordinate;
+  return near ? "" : "is a plane more than 1e12 m from the origin";
+}
+
+// Nothing when the point can be used.
+std::string point_fault(const Vec3& point) {
+  if (!point.allFinite()) return " has a coordinate that is not finite";
+  return is_too_far(point) ? " lies more than 1e12 m from the origin" : "";
+}
 
 struct SegmentLine {
   Vec3 direction;
@@ -53,20 +74,15 @@ SegmentLine line_from(const Vec3& start, const Vec3& end) {
 ShapeResult polyhedron_from_halfspaces(std::span<const HalfSpace> rows) {
   if (rows.empty()) return ShapeError{"no half-spaces: at least one is needed"};
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (!rows[row].normal.allFinite() || !std::isfinite(rows[row].offset)) {
-      return bad_row(row, "has a number that is not finite");
-    }
-    if (rows[row].normal.isZero(0.0)) {
-      return bad_row(row, "has a zero normal: it bounds nothing");
-    }
+    if (const std::string fault = row_fault(rows[row]); !fault.empty()) return bad_row(row, fault);
   }
   return rounded(exact::intersection_of(rows));
 }
 
 ShapeResult polyhedron_from_vertices(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) {
-      return ShapeError{"point " + std::to_string(i + 1) + " has a coordinate that is not finite"};
+    if (const std::string fault = point_fault(points[i]); !fault.empty()) {
+      return ShapeError{"point " + std::to_string(i + 1) + fault};
     }
   }
   if (points.size() < 4) {
@@ -102,23 +118,23 @@ ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_
   corners.reserve(2 * base.size());
   for (const double z : {z_low, z_high}) {
     for (std::size_t i = 0; i < base.size(); ++i) {
-      if (!base[i].allFinite()) {
-        return ShapeError{"base point " + std::to_string(i + 1) +
-                          " has a coordinate that is not finite"};
-      }
       corners.emplace_back(base[i].x(), base[i].y(), z);
+      if (const std::string fault = point_fault(corners.back()); !fault.empty()) {
+        return ShapeError{"base point " + std::to_string(i + 1) + fault};
+      }
     }
   }
   ShapeResult made = polyhedron_from_vertices(corners);
   if (std::holds_alternative<ShapeError>(made)) {
-    return ShapeError{"the prism's base has no area: its points lie in one line"};
+    return ShapeError{"the prism's base has no area, or the prism is thinner than 1e-12 m"};
   }
   return made;
 }
 
 ShapeResult point(const Vec3& position, double radius) {
-  if (!position.allFinite()) return ShapeError{"the point has a coordinate that is not finite"};
-  if (is_too_far(position)) return ShapeError{"the point lies more than 1e100 m from the origin"};
+  if (const std::string fault = point_fault(position); !fault.empty()) {
+    return ShapeError{"the point" + fault};
+  }
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
   ConvexPolyhedron body;
   body.vertices.push_back({position, 0, 0});
@@ -131,13 +147,15 @@ ShapeResult point(const Vec3& position, double radius) {
 }
 
 ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
-  if (!start.allFinite() || !end.allFinite()) {
-    return ShapeError{"the segment has a coordinate that is not finite"};
-  }
-  if (is_too_far(start) || is_too_far(end)) {
-    return ShapeError{"an end of the segment lies more than 1e100 m from the origin"};
+  for (const Vec3& point : {start, end}) {
+    if (const std::string fault = point_fault(point); !fault.empty()) {
+      return ShapeError{"an end of the segment" + fault};
+    }
   }
   if (start == end) return ShapeError{"the segment's two ends are the same point"};
+  if (!((end - start).norm() >= kLeastExtent)) {
+    return ShapeError{"the segment is shorter than 1e-12 m"};
+  }
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
   const SegmentLine line = line_from(start, end);
   ConvexPolyhedron body;

@@ -6,6 +6,7 @@
 #include "core/construction/exact_polyhedron.hpp"
 #include "core/construction/rounded_once.hpp"
 #include "core/model/query_tables.hpp"
+#include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
 
 namespace clearance::exact {
@@ -282,6 +283,18 @@ bool opens_wide_enough(const std::vector<Ray>& rays) {
   return true;
 }
 
+// Along the facet's normal for which it is least, m.
+double thickness(const ConvexPolyhedron& body) {
+  double least = kInfinity;
+  for (const Facet& facet : body.facets) {
+    const Vec3 back = -facet.normal;
+    const bool ends = std::ranges::all_of(
+        body.rays, [&](const Ray& ray) { return back.dot(ray.direction) <= kDerivativeError; });
+    if (ends) least = std::min(least, facet.offset + support(body, back).reach);
+  }
+  return least;
+}
+
 }  // namespace
 
 ShapeResult rounded_polyhedron(const Solid& solid) {
@@ -294,7 +307,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
   double farthest = 0.0;
   for (const Vec3& anchor : body.anchors) {
     if (!(anchor.cwiseAbs().maxCoeff() <= kLargestCoordinate)) {
-      return ShapeError{"a vertex lies more than 1e100 m from the origin"};
+      return ShapeError{"a vertex lies more than 1e12 m from the origin"};
     }
     farthest = std::max(farthest, anchor.norm());
   }
@@ -306,6 +319,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
   }
   body.interior = well_inside(body, inside);
   add_walking_tables(body);
+  if (thickness(body) < kLeastExtent) return ShapeError{"the body is thinner than 1e-12 m"};
   return body;
 }
 

@@ -7,6 +7,7 @@
 #endif
 
 #include <cmath>
+#include <limits>
 
 #include "core/model/exact_orientation.hpp"
 #include "core/numerics/error_constants.hpp"
@@ -60,17 +61,11 @@ HWY_INLINE bool nearly_unit(double square) {
   return HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit);
 }
 
-// 2 / |q|^2, of any quaternion in range: what makes rotations of it without a square root. Of unit
+// 2 / |q|^2: what makes rotations of it without a square root. Of unit
 // quaternions to a dozen digits without a division: kMatrixError says why.
 HWY_INLINE double two_over_square(Vec4 q) {
   const double square = square_of(q);
   return nearly_unit(square) ? 2.0 * (2.0 - square) : 2.0 / square;
-}
-
-// Do its square or the products made of it overflow or lose digits?
-HWY_INLINE bool is_out_of_range(Vec4 q) {
-  const double square = square_of(q);
-  return !nearly_unit(square) && !is_in_range(square);
 }
 
 // R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.
@@ -99,21 +94,15 @@ HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
   if (exact.translation) r.translation_error = kPermutedTranslationError * r.apart;
 }
 
-template <bool kRescaled = false>
-HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b);
-
-inline HWY_NOINLINE RelativePose4 rescaled_pose4(const Pose& world_from_a,
-                                                 const Pose& world_from_b) {
-  return relative_pose4<true>(rescaled(world_from_a), rescaled(world_from_b));
+// For quaternions that are not of unit length to rounding, and frames that are far apart.
+inline HWY_NOINLINE bool is_good(const Pose& world_from_a, const Pose& world_from_b, double apart) {
+  return is_unit(world_from_a.orientation) && is_unit(world_from_b.orientation) &&
+         apart <= kLargestCoordinate;
 }
 
-template <bool kRescaled>
 HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b) {
   const Vec4 a = load4(world_from_a.orientation.coeffs().data());
   const Vec4 q = relative(a, world_from_b.orientation.coeffs().data());
-  if (!kRescaled && (is_out_of_range(a) || is_out_of_range(q))) {
-    return rescaled_pose4(world_from_a, world_from_b);
-  }
   const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
   RelativePose4 r;
   set_rotation(q, r);
@@ -121,8 +110,13 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
   r.apart = norm(r.translation);
   r.rotation_error = kRotationError;
   r.translation_error = kTranslationError * r.apart;
-  // Rescaling may have made nothing of what is subnormal: what seems exact then need not be.
-  if (!kRescaled && may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
+  const bool unit = nearly_unit(square_of(a)) && nearly_unit(square_of(q));
+  if (HWY_UNLIKELY(!unit || !(r.apart <= kLargestCoordinate)) &&
+      !is_good(world_from_a, world_from_b, r.apart)) {
+    r.apart = std::numeric_limits<double>::quiet_NaN();
+    r.translation = spread(r.apart);
+  }
+  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
     set_exactness(world_from_a, world_from_b, r);
   }
   return r;
@@ -141,11 +135,8 @@ HWY_INLINE RelativePose4 pose4_of(const RelativePose& pose) {
   return r;
 }
 
-HWY_INLINE RelativePose pose_of(const RelativePose4& r, const Pose& world_from_a,
-                                const Pose& world_from_b) {
+HWY_INLINE RelativePose pose_of(const RelativePose4& r) {
   RelativePose pose;
-  pose.world_from_a = world_from_a.orientation;
-  pose.world_from_b = world_from_b.orientation;
   for (int i = 0; i < 3; ++i) {
     pose.rotation(i, i) = lane(r.rotation.main, i);
     pose.rotation(i, (i + 1) % 3) = lane(r.rotation.next, i);

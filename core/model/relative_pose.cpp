@@ -9,7 +9,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
 RelativePose relate(const Pose& world_from_a, const Pose& world_from_b) {
-  return pose_of(relative_pose4(world_from_a, world_from_b), world_from_a, world_from_b);
+  return pose_of(relative_pose4(world_from_a, world_from_b));
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -13,13 +13,6 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 // For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
 inline constexpr double kNearlyUnit = 0x1p-28;
 
-// Of the square of a quaternion, or of a product of two: beyond these, powers of it or its
-// reciprocal over- or underflow, and the quaternions are brought to about unit length first.
-inline constexpr double kLeastSquare = 1e-240, kMostSquare = 1e240;
-[[nodiscard]] constexpr bool is_in_range(double square) noexcept {
-  return square >= kLeastSquare && square <= kMostSquare;
-}
-
 // What follows is to first order; the second is 2^-50 of it, and every count is rounded up by more.
 // tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at once are
 // worst.
@@ -89,9 +82,10 @@ inline constexpr double kRadiusRounding = 0x1.1p-53;
 // (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
 inline constexpr double kSlender = 0x1p-20;
 
-// A directional derivative beyond this, per unit length, has the sign that exact arithmetic would give
-// with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of their
-// product all but the last sum, which is exact there or as small as the derivative, by 2: 7 of 8.
+// A directional derivative beyond this, per unit length, has the sign that exact arithmetic would
+// give with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of
+// their product all but the last sum, which is exact there or as small as the derivative, by 2: 7
+// of 8.
 inline constexpr double kDerivativeError = 0x1p-50;
 
 // Facets that are parallel along two edges may be tilted by a little more than either.

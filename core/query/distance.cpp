@@ -29,7 +29,7 @@ inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state);
   if (!walk_penetration(pair)) {
-    return by_depth(a, b, pose_of(a_from_b, world_from_a, world_from_b), state);
+    return by_depth(a, b, pose_of(a_from_b), state);
   }
   DistanceResult result = penetration_result_of(pair);
   add_radii(result, a, b);
@@ -46,20 +46,19 @@ HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const Conv
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state, start...);
   if (walk(pair) == WalkEnd::kCertified) return rounded_result_of(pair);
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
 // After a first transition that has ended so.
 inline HWY_NOINLINE DistanceResult walk_further(const ConvexPolyhedron& a,
-                                                const ConvexPolyhedron& b, const Pose& world_from_a,
-                                                const Pose& world_from_b,
+                                                const ConvexPolyhedron& b,
                                                 const RelativePose4& a_from_b, TrackingState& state,
                                                 WalkStart at, Transition first) {
   TrackedPair pair(a, b, a_from_b, state, at);
   if (first == Transition::kMoved && walk_on(pair) == WalkEnd::kCertified) {
     return rounded_result_of(pair);
   }
-  return by_search(a, b, pose_of(a_from_b, world_from_a, world_from_b), state, true);
+  return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
 DistanceResult tracked_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
@@ -97,8 +96,7 @@ HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron
   if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == WalkEnd::kCertified)) {
     return rounded_result_of(pair);
   }
-  return walk_further(a, b, world_from_a, world_from_b, a_from_b, state,
-                      {pair.transitions, pair.parallel_transitions}, first);
+  return walk_further(a, b, a_from_b, state, {pair.transitions, pair.parallel_transitions}, first);
 }
 
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
@@ -165,6 +163,10 @@ const char* name(DistanceStatus status) noexcept {
       return "overlapping";
     case DistanceStatus::kIterationLimit:
       return "iteration_limit";
+    case DistanceStatus::kDepthNotAsked:
+      return "depth_not_asked";
+    case DistanceStatus::kBadPose:
+      return "bad_pose";
   }
   return "";
 }
@@ -172,7 +174,7 @@ const char* name(DistanceStatus status) noexcept {
 DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state,
                         const DistanceOptions& options) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known();
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   DistanceResult result;
   if (state.a.penetrating && options.depth) {
@@ -180,7 +182,7 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, options.depth);
   }
-  finish(a, b, result);
+  add_radii(result, a, b);
   return result;
 }
 

@@ -127,53 +127,43 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (depth) {
     measure_overlap(a, b, a_from_b, state, result);
   } else {
-    result.status = DistanceStatus::kIterationLimit;
+    result.status = DistanceStatus::kDepthNotAsked;
   }
   return result;
 }
 
-// Lengths that overflow leave numbers that are none.
-bool says_something(const DistanceResult& r) noexcept {
-  return r.lower <= r.distance && r.distance <= r.upper && r.upper < kInfinity &&
-         r.normal.allFinite() && r.point_on_a.allFinite() && r.point_on_b.allFinite();
-}
-
 }  // namespace
 
-bool is_a_place(const RelativePose& pose) noexcept {
-  return pose.rotation.allFinite() && pose.translation.allFinite();
+bool is_good(const RelativePose& pose) noexcept {
+  return pose.rotation.allFinite() && pose.translation.norm() <= kLargestCoordinate;
 }
 
-DistanceResult nothing_known() noexcept {
-  return {.distance = -kInfinity, .lower = -kInfinity, .upper = kInfinity};
-}
-
-void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& r) noexcept {
-  if (!says_something(r)) {
-    r = nothing_known();
-  } else {
-    add_radii(r, a, b);
-  }
+DistanceResult of_bad_pose(TrackingState& state) noexcept {
+  state = {};
+  return {.distance = -kInfinity,
+          .lower = -kInfinity,
+          .upper = kInfinity,
+          .status = DistanceStatus::kBadPose};
 }
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                          const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known();
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result = searched(a, b, a_from_b, state, depth);
-  finish(a, b, result);
+  add_radii(result, a, b);
   return result;
 }
 
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state) noexcept {
-  if (!is_a_place(a_from_b)) return nothing_known();
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
   if (still_overlapping(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);
   }
-  finish(a, b, result);
+  add_radii(result, a, b);
   return result;
 }
 

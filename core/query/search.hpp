@@ -7,14 +7,11 @@
 
 namespace clearance {
 
-// Whether a pose says where a body is.
-[[nodiscard]] bool is_a_place(const RelativePose& pose) noexcept;
-// The answer where it does not.
-[[nodiscard]] DistanceResult nothing_known() noexcept;
-
-// Adds the spheres' radii to an answer about the polyhedra. Of lengths that overflowed nothing is
-// known.
-void finish(const ConvexPolyhedron& a, const ConvexPolyhedron& b, DistanceResult& result) noexcept;
+// Is it finite, and are the frames no more than kLargestCoordinate apart?
+[[nodiscard]] bool is_good(const RelativePose& pose) noexcept;
+// The answer of one that is not. The pair's next query is cold: what a walk with such a pose leaves
+// in the state depends on the way that it took.
+[[nodiscard]] DistanceResult of_bad_pose(TrackingState& state) noexcept;
 
 // distance() by the active-set iteration from the features of the state on, and where that
 // certifies too little by GJK; if `depth`, of bodies that penetrate each other by the penetration

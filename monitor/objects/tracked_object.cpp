@@ -45,6 +45,16 @@ Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
   return {.linear = (to.position - from.position) / seconds, .angular = turn.vec() * per_sine};
 }
 
+// Samples may be off unit length by a thousandth, queries take a millionth: half of it for what is
+// composed of two.
+Pose as_queries_take_it(const Pose& pose) noexcept {
+  Pose out = pose;
+  if (!(std::abs(pose.orientation.squaredNorm() - 1.0) <= kUnitTolerance)) {
+    out.orientation.normalize();
+  }
+  return out;
+}
+
 bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
@@ -88,7 +98,7 @@ void accept(const Object& object, const PoseSample& sample, TrackedObject& state
     state.twist =
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
-  state.pose = sample.world_from_object;
+  state.pose = as_queries_take_it(sample.world_from_object);
   state.stamp_ns = sample.stamp_ns;
   state.seen = true;
 }

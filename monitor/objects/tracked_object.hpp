@@ -38,7 +38,7 @@ struct TrackedObject {
   double reach = kInfinity;       // no point of it is farther from its origin, m; set by displace()
   std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
 
-  // As sent; the orientation is normalised where it is used.
+  // As sent, but for an orientation that is off unit length by more than 5e-7.
   Pose pose;
   std::int64_t stamp_ns = 0;
   // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and

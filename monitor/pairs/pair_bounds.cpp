@@ -27,6 +27,8 @@ PairStatus status_of(DistanceStatus status) noexcept {
       return PairStatus::kOverlapping;
     case DistanceStatus::kFarAway:
     case DistanceStatus::kIterationLimit:
+    case DistanceStatus::kDepthNotAsked:
+    case DistanceStatus::kBadPose:
       break;
   }
   return PairStatus::kLoose;

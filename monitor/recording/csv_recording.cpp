@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "config/spelling.hpp"
-#include "monitor/csv/pose_log.hpp"
 #include "monitor/pose_batch.hpp"
+#include "monitor/csv/pose_log.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 

@@ -7,11 +7,8 @@
 namespace clearance::hard {
 
 // Columns, slabs, wedges and floors whose lines run along each other, exactly: turned about their
-// common direction, or all alike, by quaternions of different lengths.
+// common direction, or all alike.
 [[nodiscard]] HardCase columns(Random& random);
-
-// Bodies of 1e-120 to 1e80 m, one or both.
-[[nodiscard]] HardCase scales(Random& random);
 
 // A needle or a blade through a plate, or through a needle: shallow one way and long the other.
 [[nodiscard]] HardCase pierced(Random& random);

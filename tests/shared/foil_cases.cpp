@@ -54,7 +54,7 @@ Body lens(const Circle& rim, double half_thickness) {
 }
 
 Body foil(Random& random) {
-  const double half_thickness = 0.5 * random.log_uniform(1e-19, 1e-16);
+  const double half_thickness = random.log_uniform(1e-12, 1e-9);
   if (random.chance(0.5)) return lens(Circle(random, random.integer(29, 45)), half_thickness);
   const Circle rim(random, random.integer(55, 88));
   return prism(rim, half_thickness, random.chance(0.5));

@@ -12,9 +12,9 @@ namespace clearance::hard {
 // Boxes, prisms and plates given by corners that are rounded after a turn: quads that are plane but
 // for one ulp, beside each other face to face.
 [[nodiscard]] HardCase ulp_quads(Random& random);
-// Of 1e-320 to 1e99 m, beside each other and beside a box of a metre.
+// Of 1e-10 to 1e-6 or 1e6 to 1e11 m, beside each other and beside a box of a metre.
 [[nodiscard]] HardCase dust(Random& random);
-// Bodies of a metre that stand 1e9 to 1e15 m from the world's origin; zeros of either sign.
+// Bodies of a metre that stand 1e9 to 1e12 m from the world's origin; zeros of either sign.
 [[nodiscard]] HardCase far_poses(Random& random);
 // The same body twice in one pose, or in one that differs by a sign, a factor or an ulp.
 [[nodiscard]] HardCase selfsame(Random& random);

@@ -33,7 +33,7 @@ struct SharpPair {
 };
 
 SharpPair sharp_pair(Random& random) {
-  const double opening = random.log_uniform(1e-20, 1.0), middle = random.chance(0.5) ? 1.0 : 0.0;
+  const double opening = random.log_uniform(1e-11, 1.0), middle = random.chance(0.5) ? 1.0 : 0.0;
   return {body_above(random), sharp_body(opening, middle, random.chance(0.3)), middle};
 }
 

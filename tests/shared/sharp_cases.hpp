@@ -6,7 +6,7 @@
 
 namespace clearance::hard {
 
-// B: a wedge or needle of 1e-20 to 1 rad whose plane of symmetry is y = 0 or, so that its sides'
+// B: a wedge or needle of 1e-11 to 1 rad whose plane of symmetry is y = 0 or, so that its sides'
 // lines cancel, y = 1. A: a corner, an edge or a facet in that plane or ulps beside it, above the
 // wedge or past its edge, next to its sharp corner.
 [[nodiscard]] HardCase sharp_corners(Random& random);

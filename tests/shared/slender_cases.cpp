@@ -25,7 +25,7 @@ Body wedge_without_end(Random& random) {
     out.rows.push_back({Vec3(std::cos(azimuth), std::sin(azimuth), opening), 0.0});
   }
   if (sides == 2) out.rows[1].normal = {-1.0, 0.0, opening};
-  if (random.chance(0.5)) out.rows.push_back({Vec3::UnitY(), 1.0});
+  if (random.chance(0.5) && sides == 2) out.rows.push_back({Vec3::UnitY(), 1.0});
   return out;
 }
 

@@ -14,7 +14,7 @@ using Quat = Eigen::Quaterniond;
 const Quat kTurns[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1},  {1, 1, 0, 0},
                        {1, 0, 1, 0}, {1, 0, 0, 1}, {1, 1, 1, 1}, {1, -1, 0, 0}, {0, 1, 1, 0}};
 
-Quat any_turn(Random& random) { return kTurns[random.integer(0, 9)]; }
+Quat any_turn(Random& random) { return kTurns[random.integer(0, 9)].normalized(); }
 
 // Both bodies by the same pose: what they share, they share exactly.
 void place_both(HardCase& c, Random& random) {
@@ -110,7 +110,7 @@ HardCase tiny_gaps(Random& random) {
                      : random.chance(0.2) ? least
                                           : random.log_uniform(1e-320, 1e-12);
   c.pose_b.position.x() = any_sign(random, gap);
-  if (random.chance(0.3)) c.pose_b.orientation = Quat(1, 1, 0, 0);  // about x
+  if (random.chance(0.3)) c.pose_b.orientation = Quat(1, 1, 0, 0).normalized();  // about x
   return c;
 }
 

@@ -260,8 +260,8 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
       R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":-1},"b":{"vertices":[[0,0,0]]}})",
       R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,0,0,0,0]})",
       R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"poses":[[[0,0,0,1,0,0,0]]]})",
-      R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":1e101},"b":{"vertices":[[0,0,0]]}})",
-      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,1e101,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":1e13},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,1e13,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})",
       R"({"id":"x","a":{"vertices":[[0,0,1e999]]},"b":{"vertices":[[0,0,0]]}})",
   };
   const char* expected[] = {"not JSON",
@@ -270,10 +270,10 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
                             "a.halfspaces[0]: expected [nx, ny, nz, d], found [1,0,0]",
                             "a: the half-spaces",
                             "a.radius: expected a length",
-                            "pose_b: the quaternion has length zero",
+                            "pose_b: the quaternion has length 0.000000; expected 1",
                             "poses[0]: expected [pose_a, pose_b]",
-                            "at most 1e100",
-                            "pose_a lies more than 1e100 m from the origin",
+                            "at most 1e12",
+                            "pose_a lies more than 1e12 m from the origin",
                             "not JSON"};
   std::string in = cubes("good", 2.0);
   for (const std::string& line : bad) in += line + "\n";

@@ -122,7 +122,8 @@ LoopEnd dqp3_variant(ActiveFeature& a, ActiveFeature& b) {
       release_all(a, b, least);
       if (step<kScan>(a, b) && !release_all(a, b, least)) return {true, cycle};
     } else if constexpr (kRelease == Release::kConsistent) {
-      const bool active = a.feature() != FeatureKind::kInside && b.feature() != FeatureKind::kInside;
+      const bool active =
+          a.feature() != FeatureKind::kInside && b.feature() != FeatureKind::kInside;
       if (active && !release_best<kRelease>(a, b, least)) return {true, cycle};
       step<kScan>(a, b);
     } else {

@@ -50,9 +50,12 @@ Pose read_pose(const Json& list, const std::string& where) {
     throw BadLine(fmt::format("{} is not finite", where));
   }
   if (!(pose.position.cwiseAbs().maxCoeff() <= kFarthest)) {
-    throw BadLine(fmt::format("{} lies more than 1e100 m from the origin", where));
+    throw BadLine(fmt::format("{} lies more than 1e12 m from the origin", where));
   }
-  if (norm == 0.0) throw BadLine(fmt::format("{}: the quaternion has length zero", where));
+  if (!is_unit(pose.orientation)) {
+    throw BadLine(
+        fmt::format("{}: the quaternion has length {}; expected 1 to within 1e-6", where, norm));
+  }
   return pose;
 }
 
@@ -84,7 +87,7 @@ ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
     if (!found->is_number() || !(found->get<double>() >= 0.0) ||
         !(found->get<double>() <= kFarthest)) {
-      throw BadLine(fmt::format("{}.radius: expected a length in metres, at most 1e100, found {}",
+      throw BadLine(fmt::format("{}.radius: expected a length in metres, at most 1e12, found {}",
                                 where, shown(*found)));
     }
     radius = found->get<double>();

@@ -79,7 +79,7 @@ Difference follow(const Motion& motion, const std::string& what) {
 
 Pose moved(const Pose& pose, Random& random, double step, double angle) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.uniform(0.0, angle), random.direction()));
-  return {pose.position + random.in_box(step), (turn * rescaled(pose).orientation).normalized()};
+  return {pose.position + random.in_box(step), (turn * pose.orientation).normalized()};
 }
 
 // Bodies of every kind, some of them along the axes or along each other for a while; now and then
@@ -107,7 +107,7 @@ Motion crowd(std::uint64_t seed) {
       if (random.chance(0.03)) poses[i].orientation = poses[(i + 1) % poses.size()].orientation;
       if (random.chance(0.03)) poses[i].orientation = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
       if (random.chance(0.01)) {
-        poses[i].orientation.coeffs() *= random.chance(0.5) ? 1e-150 : 1e150;
+        poses[i].orientation.coeffs() *= random.chance(0.5) ? 1.0 + 8e-7 : 1.5;
       }
     }
     motion.poses.push_back(poses);

@@ -102,9 +102,8 @@ TEST(ExactShapes, ClustersNearOnePointKeepTheirExactHull) {
   for (int round = 0; round < 20; ++round) {
     std::vector<Vec3> points;
     for (int i = 0; i < 12; ++i) {
-      // A few units in the last place around (1, 1, 1): no determinant in doubles has a correct
-      // digit.
-      points.push_back(Vec3::Ones() + 0x1p-52 * Vec3(random.integer(-4, 4), random.integer(-4, 4),
+      // Within 1e-10 of (1, 1, 1): determinants in doubles have hardly a correct digit.
+      points.push_back(Vec3::Ones() + 0x1p-36 * Vec3(random.integer(-4, 4), random.integer(-4, 4),
                                                      random.integer(-4, 4)));
     }
     const oracle::HullEnumeration truth = oracle::enumerate_hull(points);
@@ -165,14 +164,17 @@ TEST(ExactShapes, ShortEdgesKeepAccurateDirections) {
   EXPECT_EQ(body.vertices[static_cast<std::size_t>(shortest->vertex[1])].position, Vec3::Ones());
 }
 
-TEST(ExactShapes, OneUnitInTheLastPlaceSeparatesAPlateFromNothing) {
-  const double above = std::nextafter(1.0, 2.0);
+TEST(ExactShapes, APlateThatIsTooThinIsToldFromOneUnitInTheLastPlaceLessThanNothing) {
+  const double above = 1.0 + 0x1p-39;
   const double below = std::nextafter(1.0, 0.0);
   const ConvexPolyhedron plate =
       made(polyhedron_from_halfspaces(box_rows({-1, -1, 1.0}, {1, 1, above})));
   EXPECT_THAT(broken_invariants(plate), IsEmpty());
   EXPECT_EQ(plate.vertices.size(), 8U);
   EXPECT_EQ(plate.position_error, 0.0);
+  EXPECT_EQ(refusal(polyhedron_from_halfspaces(
+                box_rows({-1, -1, 1.0}, {1, 1, std::nextafter(1.0, 2.0)}))),
+            "the body is thinner than 1e-12 m");
   EXPECT_EQ(
       refusal(polyhedron_from_halfspaces(box_rows({-1, -1, 1.0}, {1, 1, 1.0}))),
       "the half-spaces have no common interior: rows 3 and 6 leave only a flat piece between them");

@@ -154,7 +154,7 @@ struct PlateAndPillar {
 TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   Random random(2);
   for (int k = 0; k < 32; ++k) {
-    const PlateAndPillar pair(20 + 2 * k, 120 + k, std::ldexp(1.0, -54 - k % 16));
+    const PlateAndPillar pair(20 + 2 * k, 120 + k, std::ldexp(1.0, -24 - k % 15));
     for (int i = 0; i < 20; ++i) {
       const Vec3 beside = random.uniform(1.0, 1.9) * PlateAndPillar::on_circle(random.unit());
       const Eigen::Quaterniond turn(Eigen::AngleAxisd(i % 2 * random.unit(), Vec3::UnitZ()));

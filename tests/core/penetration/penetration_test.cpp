@@ -123,24 +123,6 @@ TEST(Penetration, KeepsItsDirectionWhereOthersAreAsDeep) {
   }
 }
 
-TEST(Penetration, HoldsWhereSquaresUnderflow) {
-  const double unit = 1e-170;
-  Random random(1);
-  const Body box = hard::scaled(hard::box({0.5, 0.4, 0.3}), unit);
-  for (int k = 0; k < 10; ++k) {
-    DistanceJudge judge(box, box);
-    ASSERT_EQ(judge.refusal(), "");
-    const Pose pose_b{0.5 * unit * random.direction(), random.rotation()};
-    const oracle::ExactDistance truth = judge.truth(Pose{}, pose_b);
-    TrackingState state;
-    const DistanceResult r = judge.ask(Pose{}, pose_b, state);
-    EXPECT_LE(truth.compare(r.upper), 0);
-    EXPECT_GE(truth.compare(r.lower), 0);
-    EXPECT_LE(r.lower, r.distance);
-    EXPECT_LE(r.distance, r.upper);
-  }
-}
-
 TEST(Penetration, OfASmallBodyInsideALargeOneIsTheWayToTheNearestFace) {
   const ConvexPolyhedron room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
   expect_depth(cold(room, cube(), at(1, 2, 0.5)), 2.0, 10);
@@ -303,7 +285,7 @@ TEST(Penetration, WhereNobodyAsksForTheDepthTheBoundsHoldAndApartNothingChanges)
       ASSERT_LE(r.lower, whole.upper) << "case " << i;
       ASSERT_GE(r.upper, whole.lower) << "case " << i;
       if (whole.status == DistanceStatus::kOverlapping) {
-        ASSERT_EQ(r.status, DistanceStatus::kIterationLimit) << "case " << i;
+        ASSERT_EQ(r.status, DistanceStatus::kDepthNotAsked) << "case " << i;
         ASSERT_FALSE(r.lower > 0.0);
         ++overlapping;
       } else if (whole.status == DistanceStatus::kConverged && !tracked) {

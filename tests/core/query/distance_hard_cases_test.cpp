@@ -152,7 +152,7 @@ std::vector<Vec3> prism(int sides, double turned, double half_height) {
 // Of edges that all but align the direction across both is known less well than that from point to
 // point, and does not go before it: the points were 0.4 m beside the normal.
 TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
-  DistanceJudge judge({{}, prism(61, 0.0, 1.25), 0.0}, {{}, prism(8, 0.034, 3.3e-18), 0.0});
+  DistanceJudge judge({{}, prism(61, 0.0, 1.25), 0.0}, {{}, prism(8, 0.034, 1e-12), 0.0});
   const Pose pose_a{{0.3, 4.29e9, 0.0}, Eigen::Quaterniond::Identity()};
   const Pose pose_b{Vec3::Zero(), Eigen::Quaterniond::Identity()};
   TrackingState state;
