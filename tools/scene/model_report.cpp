@@ -49,7 +49,7 @@ class Judge {
     Models all;
     all.object = &object;
     const std::vector<PlacedShape> shapes = shapes_of(object);
-    const Ball& ball = balls_[i].in_object;
+    const Sphere& ball = balls_[i].in_object;
     if (ball.radius < kInfinity) {
       all.ball_radius = ball.radius;
       all.ball_error = excess_of_ball(ball.centre, ball.radius, shapes);
