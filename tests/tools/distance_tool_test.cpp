@@ -137,7 +137,7 @@ TEST_F(DistanceTool, PutsTheWitnessPointOfABodyFarFromTheOtherOneOnItToItsOwnRou
   const Outcome r =
       run("--cases - --out -", R"({"id":"far","a":{"vertices":[[0,0,0]],"radius":0.5},)"
                                R"("b":{"vertices":[[0,0,0]],"radius":0.25},)"
-                               R"("pose_a":[700,-500,510,0.1,0.2,0.3,0.9],)"
+                               R"("pose_a":[700,-500,510,0.1,0.1,0.7,0.7],)"
                                R"("pose_b":[0.5,0.25,-0.25,0,0,0,1]})"
                                "\n");
   ASSERT_EQ(r.lines.size(), 1u) << r.err;
@@ -270,7 +270,7 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
                             "a.halfspaces[0]: expected [nx, ny, nz, d], found [1,0,0]",
                             "a: the half-spaces",
                             "a.radius: expected a length",
-                            "pose_b: the quaternion has length 0.000000; expected 1",
+                            "pose_b: the quaternion has length 0; expected 1",
                             "poses[0]: expected [pose_a, pose_b]",
                             "at most 1e12",
                             "pose_a lies more than 1e12 m from the origin",
