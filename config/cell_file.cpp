@@ -1,3 +1,6 @@
+// Parses the YAML into a tree that knows its lines, then reads it section by section into a Scene.
+// Each reader reports a mistake and goes on with a default, so that one run finds every mistake; a
+// Scene is returned only if there was none.
 #include "config/cell_file.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +29,8 @@ namespace {
 
 // Limits that keep every derived number (periods, counts) within its type.
 constexpr std::int64_t kMaxBudget = 1'000'000'000;
-constexpr std::int64_t kMaxDomain = 232;                 // the last whose ports fit into 16 bits
+constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bits
+// Discovery announces names in bounded strings (DDSI-RTPS: string<256>).
 constexpr std::size_t kMaxDdsName = 255;                 // bytes
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
@@ -181,6 +185,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   scene.objects = std::move(list.objects);
 }
 
+// The top level. Units come first, since every other section needs them; without them the rest is
+// not read.
 void CellReader::read(const YamlNode& root, Scene& scene) {
   MapReader map(root, "a cell", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
@@ -210,6 +216,7 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 
 }  // namespace
 
+// The revision covers the text and, through the shape reader, the bytes of every mesh file.
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file) {
   Diagnostics diagnostics(file.string());
   const auto document = parse_yaml(yaml);

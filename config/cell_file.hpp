@@ -20,6 +20,7 @@ struct CellError {
 // file.
 using CellResult = std::variant<Scene, std::vector<CellError>>;
 
+// Reads the file. A file that cannot be opened is a CellError at line 1 as well.
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file);
 
 // The same from text; `file` is used in messages and to resolve mesh paths.

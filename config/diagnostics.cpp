@@ -1,3 +1,5 @@
+// Collects messages in whatever order the sections are read, and sorts them by place at the end. A
+// person then corrects the file from top to bottom.
 #include "config/diagnostics.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@ namespace {
 
 constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
 
+// A text from the file may be a whole document by mistake; its beginning identifies it.
 std::string shortened(const std::string& text) {
   return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
 }

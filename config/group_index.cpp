@@ -1,3 +1,5 @@
+// One map holds the names of groups and of objects, since a rule may use either. Each entry
+// remembers whether a rule used it, which is how groups that nothing uses are found.
 #include "config/group_index.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 
 namespace clearance {
 
+// Objects go in first: a group that has the name of an object is then the one that is reported.
 GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
     : list_(list), diagnostics_(diagnostics) {
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {

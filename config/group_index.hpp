@@ -32,6 +32,8 @@ struct Between {
   std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by GroupIndex
 };
 
+// Names of groups and objects share one namespace, so that `between` needs no prefix. A rule that
+// names a group marks it as used.
 class GroupIndex {
  public:
   // Reports a group that has an object's name. The list must outlive this.

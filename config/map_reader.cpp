@@ -1,3 +1,5 @@
+// Remembers each key that a reader asks for. The keys of the file that are not among them are
+// unknown, so the list of accepted keys stands nowhere but in the reading code.
 #include "config/map_reader.hpp"
 
 #include <fmt/format.h>
@@ -43,7 +45,7 @@ const YamlNode* MapReader::optional(const std::string& key) {
   return nullptr;
 }
 
-// Of what is no map only that has been reported, not every key that it lacks.
+// A node that is no map has been reported as such, so its missing keys are not.
 const YamlNode* MapReader::required(const std::string& key) {
   const YamlNode* value = optional(key);
   if (value == nullptr && is_map_) {

@@ -9,10 +9,12 @@
 
 namespace clearance {
 
+// Readers ask for each key that they know and call refuse_unknown_keys() at the end. A node that is
+// no map answers every request with nullptr, after one diagnostic.
 class MapReader {
  public:
-  // `what` names the map in messages: "a zone". Complains when the node is no map or has a key
-  // twice. The node and the diagnostics must outlive the reader.
+  // `what` names the map in messages: "a zone". Reports a node that is no map, and a key
+  // that stands twice. The node and the diagnostics must outlive the reader.
   MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics);
 
   [[nodiscard]] bool is_map() const { return is_map_; }

@@ -1,3 +1,5 @@
+// Assimp parses the bytes in memory, and the scene graph's transforms place each mesh. The vertices
+// are sorted and made unique, so that the result does not depend on the order of faces in the file.
 #include "config/mesh_file.hpp"
 
 #include <fmt/format.h>
@@ -19,8 +21,11 @@
 namespace clearance {
 namespace {
 
+// Assimp's floats, widened without rounding.
 Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
+// Depth first through the scene graph; `outer` is the transform from the node's parent to the
+// file's root, column vectors on the right.
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
              std::vector<Vec3>& vertices) {
   const aiMatrix4x4 placed = outer * node.mTransformation;
@@ -71,6 +76,8 @@ std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
   return bytes;
 }
 
+// No post-processing step of assimp is used: joining vertices or triangulating does not change
+// their convex hull. Assimp throws for some malformed files, so everything is caught here.
 std::variant<std::vector<Vec3>, MeshFault> mesh_vertices(const std::string& bytes,
                                                          const std::string& extension) {
   try {

@@ -1,4 +1,4 @@
-// Vertices of a mesh file: STL, OBJ, DAE, PLY and what else assimp reads.
+// Vertices of a mesh file: STL, OBJ, DAE, PLY and the other formats that assimp reads.
 #pragma once
 
 #include <string>

@@ -1,3 +1,5 @@
+// Reads the objects one by one; `fixed` is read before the keys that it allows or forbids. Places
+// of names are kept for the sections that follow.
 #include "config/object_reader.hpp"
 
 #include <fmt/format.h>
@@ -183,6 +185,7 @@ const YamlNode& name_place(const YamlNode& object) {
 
 }  // namespace
 
+// Accepts the same ranges as the objects themselves.
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
   MapReader map(node, "the defaults", quantities.diagnostics());
@@ -201,6 +204,7 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
   return defaults;
 }
 
+// A name that two objects share is reported at the second one, with the line of the first.
 ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                         const Quantities& quantities, ShapeReader& shapes) {
   Diagnostics& diagnostics = quantities.diagnostics();

@@ -11,22 +11,26 @@
 
 namespace clearance {
 
-// What an object has when it does not say otherwise: the `defaults:` section.
+// The values of objects that do not state their own: the `defaults:` section.
 struct ObjectDefaults {
   double margin = 0.0;           // m
   double max_speed = kInfinity;  // m/s
   std::int64_t age_limit_ns = 20'000'000;
 };
 
-// Objects with what they were read from, so that later sections can complain about them.
+// Objects with what they were read from, so that later sections can report mistakes at their
+// places.
 struct ObjectList {
   std::vector<Object> objects;
   std::vector<const YamlNode*> places;  // of each object: where its name stands
   bool names_known = true;  // false: some name or group could not be read; others may seem unknown
 };
 
+// Reads `defaults:`. A value that cannot be read is reported and keeps its default.
 [[nodiscard]] ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities);
 
+// Reads `objects:`, at most 4096 with unique names. An object with a mistake stays in the list,
+// since the ids of all that follow are places in it.
 [[nodiscard]] ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                                       const Quantities& quantities, ShapeReader& shapes);
 

@@ -1,3 +1,5 @@
+// Rules add candidates, which are then sorted and made unique; exceptions mark candidates as
+// allowed. The unmarked candidates are the pairs of the scene.
 #include "config/pair_reader.hpp"
 
 #include <fmt/format.h>
@@ -118,6 +120,8 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
   return "no rule under 'pairs' covers it";
 }
 
+// Marks the pairs of one exception. Only the first exception that covers a pair is remembered; a
+// second one that removes nothing new is refused with the line of the first.
 void PairReader::read_exception(const YamlNode& node) {
   MapReader map(node, "an allowed collision", diagnostics_);
   const auto between = group_index_.read_between(map);
@@ -154,6 +158,7 @@ void PairReader::read_exceptions(const YamlNode& node) {
   }
 }
 
+// Candidates are sorted by key, hence so are both lists.
 PairList PairReader::finish(const YamlNode& rules) {
   PairList list;
   list.complete = complete_;

@@ -1,4 +1,4 @@
-// Which objects are watched against which: `pairs:`, less `allowed_collisions:`.
+// Reads which objects are watched against which: `pairs:`, less `allowed_collisions:`.
 #pragma once
 
 #include <optional>

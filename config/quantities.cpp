@@ -1,3 +1,5 @@
+// Every number is checked in the unit of the file and converted afterwards, so that messages show
+// what the person wrote. Limits are converted into that unit, too.
 #include "config/quantities.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// Lengths, angles, directions and poses of a cell file, in the units that it states; out comes SI.
+// Reads lengths, angles, directions and poses of a cell file in the units that it states, and
+// returns them in SI units.
 #pragma once
 
 #include <cstdint>

@@ -7,11 +7,10 @@
 
 namespace clearance {
 
-// What refreshing some pairs round-robin takes, the stalest first.
+// What it takes to refresh some pairs round-robin, the stalest first.
 struct RefreshCost {
-  std::uint64_t part_pairs =
-      0;                   // all of them: queries that evaluating each pair once takes at most
-  std::uint64_t most = 0;  // of the pair that has the most
+  std::uint64_t part_pairs = 0;  // of all pairs: at most this many queries evaluate each pair once
+  std::uint64_t most = 0;        // of the pair that has the most
 
   void add(std::uint64_t part_pairs_of_one) noexcept;
   // Queries a tick that refresh every pair within `ticks`.
@@ -31,9 +30,11 @@ struct RefreshShare {
   }
 };
 
+// Published pairs stay apart if all their part pairs fit into the budget of one tick, unless only
+// the common round-robin fits. The caller compares queries() with Scene::budget.
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
 
-// Such a pair is evaluated in every tick as long as the budget allows.
+// Whether a pair is published: it is then evaluated in every tick as long as the budget allows.
 [[nodiscard]] inline bool is_published(const ObjectPair& pair, const Scene& scene) noexcept {
   return pair.publish || scene.evaluate_all;
 }

@@ -1,3 +1,6 @@
+// Links with collision shapes become objects; the pairs are all of one group with itself, less the
+// SRDF's disabled ones. The first thing that cannot be written is remembered and returned instead
+// of a cell with a gap.
 #include "config/robot_cell.hpp"
 
 #include <fmt/format.h>
@@ -16,18 +19,24 @@
 namespace clearance {
 namespace {
 
+// 24 sides stand out by 1 / cos(pi / 24) - 1 = 0.86 % of the radius; more sides are slower to query
+// and little nearer to the cylinder.
 constexpr int kCylinderSides = 24;
 
+// An identity pose is not written: the default of a cell file is the same.
 bool is_identity(const UrdfOrigin& origin) {
   return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero();
 }
 
+// Rpy of URDF: rotations about the fixed axes x, y, z in this order, so the matrix product has z on
+// the left.
 Pose pose(const UrdfOrigin& origin) {
   return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
                           Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *
                           Eigen::AngleAxisd(origin.rpy.x(), Vec3::UnitX())};
 }
 
+// Emits one cell, section by section, into one YAML emitter.
 class RobotCellWriter {
  public:
   RobotCellWriter(const RobotCellOptions& options, UrdfRobot robot,
@@ -81,6 +90,8 @@ void RobotCellWriter::find_fixed_links() {
   }
 }
 
+// A --package option wins. Otherwise the search goes upwards from the URDF, as packages usually
+// contain the description that refers to them.
 std::optional<std::filesystem::path> RobotCellWriter::package_directory(
     const std::string& name) const {
   for (const auto& [package, directory] : options_.packages) {
@@ -170,6 +181,7 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   out_ << YAML::EndMap;
 }
 
+// One link: its name, its group, its pose if it never moves, and its collision shapes as parts.
 void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::BeginMap << YAML::Key << "name" << YAML::Value;
   emit_text(out_, link.name);
@@ -203,6 +215,7 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::EndSeq << YAML::EndMap;
 }
 
+// Only links with collision shapes become objects.
 bool RobotCellWriter::watched(const std::string& link) const {
   return std::any_of(robot_.links.begin(), robot_.links.end(), [&](const UrdfLink& candidate) {
     return candidate.name == link && !candidate.collisions.empty();
@@ -217,6 +230,7 @@ void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b
   out << YAML::EndSeq;
 }
 
+// One rule: the group against itself is every pair of links.
 void RobotCellWriter::emit_pairs() {
   out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
   emit_between(out_, group_, group_);
@@ -254,6 +268,7 @@ void RobotCellWriter::emit_exceptions() {
   out_ << YAML::EndSeq;
 }
 
+// Name, units (URDF is in metres and radians) and defaults.
 void RobotCellWriter::emit_head() {
   const std::string srdf =
       options_.srdf.empty() ? "" : fmt::format(" and {}", options_.srdf.filename().string());
@@ -272,6 +287,7 @@ void RobotCellWriter::emit_head() {
   out_ << YAML::EndMap;
 }
 
+// The fixed links first: objects and exceptions depend on them.
 std::variant<RobotCell, UrdfFault> RobotCellWriter::write() {
   find_fixed_links();
   std::string without;

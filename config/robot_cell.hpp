@@ -26,15 +26,16 @@ struct RobotCellOptions {
   bool fixed_base = false;
 };
 
-// What was written, and what a person should know about it.
+// The text of the cell, and notes for the person who asked for it (what was left out and why).
 struct RobotCell {
   std::string yaml;
   std::vector<std::string> notes;
 };
 
-// An object a link that has collision shapes, named as the link, in the link's frame; every pair of
-// them but the SRDF's disabled ones, with their reasons. A cylinder becomes a prism of 24 sides
-// around it, at most 0.9 % of its radius farther out: never smaller than the robot.
+// Each link that has collision shapes becomes an object of the link's name in the link's frame.
+// Every pair of them is watched except the SRDF's disabled ones, which are listed with their
+// reasons. A cylinder becomes a prism of 24 sides around it, at most 0.9 % of its radius farther
+// out: the cell is never smaller than the robot.
 [[nodiscard]] std::variant<RobotCell, UrdfFault> robot_cell(const RobotCellOptions& options);
 
 }  // namespace clearance

@@ -1,3 +1,6 @@
+// Classifies a scalar by the core schema of YAML 1.2 (section 10.3.2), in decimals only, and
+// converts it with std::from_chars. A value of the wrong type is reported with a hint at what was
+// probably meant.
 #include "config/scalar.hpp"
 
 #include <fmt/format.h>
@@ -121,6 +124,7 @@ std::optional<double> read_number(const YamlNode& node, const Range& range, cons
   return parsed.value;
 }
 
+// Decimal digits only: 1e3 and 12.0 are refused, since a count is written as one.
 std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t least,
                                          std::int64_t most, const std::string& what,
                                          Diagnostics& diagnostics) {
@@ -136,6 +140,7 @@ std::optional<std::int64_t> read_integer(const YamlNode& node, std::int64_t leas
   return value;
 }
 
+// YAML 1.1 also had yes, no, on and off; they are texts in YAML 1.2 and refused here.
 std::optional<bool> read_flag(const YamlNode& node, Diagnostics& diagnostics) {
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kFlag) {
     diagnostics.add(node, fmt::format("found {}; expected true or false", describe(node)));

@@ -12,6 +12,7 @@ namespace clearance {
 
 class Diagnostics;
 
+// The types of scalars that a cell file uses. null is a kind of YamlNode; integers are numbers.
 enum class ScalarType { kNumber, kFlag, kText };
 
 // What an unquoted scalar is by the core schema of YAML 1.2; a quoted one is always text.
@@ -23,6 +24,7 @@ struct Range {
   double most = std::numeric_limits<double>::infinity();
   bool above_least = false;  // `least` itself is not accepted
 };
+// The ranges that most quantities have.
 inline constexpr Range kPositive{.least = 0.0, .above_least = true};
 inline constexpr Range kNotNegative{.least = 0.0};
 

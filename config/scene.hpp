@@ -21,6 +21,8 @@ struct Part {
   Pose object_from_part;
 };
 
+// A rigid body of one or more convex parts. Fixed objects have a pose; the poses of moving ones
+// arrive at run time.
 struct Object {
   std::string name;
   std::vector<std::string> groups;
@@ -29,8 +31,8 @@ struct Object {
   Pose world_from_object;  // of a fixed object; of a moving one: meaningless until a pose arrives
   double margin = 0.0;     // m, >= 0: zones subtract it; published distances do not
   double max_speed = kInfinity;  // m/s, of any point of the object; infinity: not stated
-  std::int64_t age_limit_ns =
-      0;  // an older pose makes the object's pairs stale; fixed objects: unused
+  // An older pose makes the object's pairs stale; unused by fixed objects.
+  std::int64_t age_limit_ns = 0;
 };
 
 // Two objects to be watched. first < second; every pair once.
@@ -48,6 +50,7 @@ struct Zone {
   std::vector<std::uint32_t> pairs;  // indices into Scene::pairs
 };
 
+// DDS names of the topics; the defaults are those of idl/README.md.
 struct Topics {
   std::string poses = "clearance/poses";
   std::string distances = "clearance/distances";
@@ -56,6 +59,8 @@ struct Topics {
   std::string zones = "clearance/zones";
 };
 
+// All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and
+// the budget covers the refreshing: whoever has a Scene checks none of this again.
 struct Scene {
   std::string name;
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
@@ -63,9 +68,9 @@ struct Scene {
   std::string yaml;            // the text it was read from, for recordings
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
-  double refresh_s = 10.0;  // every pair is refreshed this often, even if nothing moves and nobody
-                            // asks, whatever is urgent: a cell's budget covers it (RefreshShare)
-  bool evaluate_all = false;  // every pair in every tick, as if all were published; as far as the
+  double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
+                                // whatever else is urgent: the budget covers it (RefreshShare)
+  bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
   std::uint32_t domain = 0;                  // DDS
@@ -77,8 +82,8 @@ struct Scene {
   Simulation simulation;  // may be empty; the monitor never looks at it
 };
 
-// A DDS partition without wildcards, which would join cells that were to be kept apart; at most 255
-// bytes, empty is the default one.
+// Whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
+// default partition, and without wildcards, which would join cells that were to be kept apart.
 [[nodiscard]] bool is_partition(const std::string& name) noexcept;
 
 // One line: how many objects, parts, facets, pairs and zones.

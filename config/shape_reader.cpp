@@ -1,3 +1,5 @@
+// One function for each key reads its numbers and lets the core build the body. The core decides
+// what is a solid convex body; its reason for refusing one goes into the message.
 #include "config/shape_reader.hpp"
 
 #include <fmt/format.h>
@@ -17,9 +19,10 @@ namespace {
 const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
                                                 "polyhedron", "half_space", "mesh"};
 
+// Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
-// What a shape has to be like so that it can be one, beyond what is checked number by number.
+// The conditions on a shape as a whole, beyond those that are checked number by number.
 std::string solid_needs(const std::string& kind) {
   if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
   if (kind == "prism") {
@@ -82,6 +85,7 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   return found;
 }
 
+// A chain of comparisons instead of a table: seven kinds, read once for each part.
 std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const YamlNode& node) {
   if (kind == "box") return read_box(node);
   if (kind == "sphere") return read_sphere(node);
@@ -92,7 +96,7 @@ std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const
   return read_mesh(node);
 }
 
-// Whole edge lengths in the file, half ones in the core.
+// The file has whole edge lengths, the core takes half ones.
 std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   MapReader map(node, "a box", quantities_.diagnostics());
   const YamlNode* size_node = map.required("size");
@@ -102,6 +106,7 @@ std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   return size ? std::optional(box(0.5 * *size)) : std::nullopt;
 }
 
+// A point with a radius: the core represents it as a swept sphere, exactly.
 std::optional<ShapeResult> ShapeReader::read_sphere(const YamlNode& node) const {
   MapReader map(node, "a sphere", quantities_.diagnostics());
   const YamlNode* radius_node = map.required("radius");
@@ -115,7 +120,7 @@ std::optional<ShapeResult> ShapeReader::read_sphere(const YamlNode& node) const 
   return point(*centre, *radius);
 }
 
-// The swept sphere of a segment.
+// A capsule is a segment with a radius: the core represents it as a swept sphere.
 std::optional<ShapeResult> ShapeReader::read_capsule(const YamlNode& node) const {
   MapReader map(node, "a capsule", quantities_.diagnostics());
   const YamlNode* from_node = map.required("from");
@@ -176,6 +181,7 @@ std::optional<HalfSpace> ShapeReader::read_row(const YamlNode& node) const {
   return HalfSpace{*normal, *offset};
 }
 
+// An unbounded polyhedron of one row; objects refuse it unless they are fixed.
 std::optional<ShapeResult> ShapeReader::read_half_space(const YamlNode& node) const {
   const auto row = read_row(node);
   return row ? std::optional(polyhedron_from_halfspaces(std::array{*row})) : std::nullopt;

@@ -1,4 +1,4 @@
-// Reads the convex shapes of a cell file: what stands under `box:`, `mesh:` and their like.
+// Reads the convex shapes of a cell file, which stand under `box:`, `mesh:` and similar keys.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +14,15 @@
 
 namespace clearance {
 
+// A shape and where it stands in the file, for messages about it.
 struct NamedShape {
   std::string kind;  // the key: "box"
   const YamlNode* node;
   ConvexPolyhedron shape;
 };
 
+// Lengths are converted to metres here; what the core gets is SI. Mesh files are read once and kept
+// by path as long as the reader lives.
 class ShapeReader {
  public:
   // Mesh paths are relative to `directory`; the bytes of every mesh go into `revision` once.

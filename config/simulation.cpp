@@ -1,3 +1,6 @@
+// Positions and velocities along a chain follow from the forward kinematics of its joints, link by
+// link from the base. Everything is evaluated in closed form at the time asked for, without a
+// state.
 #include "config/simulation.hpp"
 
 #include <cmath>
@@ -62,6 +65,8 @@ PoseAt mover_at(const SimulatedMover& mover, double t_s) {
 
 }  // namespace
 
+// Chains are evaluated from the base outwards, so each link needs only the frame of the link
+// before.
 void poses_at(const Scene& scene, double t_s, std::vector<PoseAt>& poses) {
   poses.clear();
   for (const SimulatedChain& chain : scene.simulation.chains) {

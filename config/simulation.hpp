@@ -1,6 +1,6 @@
-// How a cell's objects move when no robot is there: the `simulation:` section of a cell file.
+// The simulated motion of a cell's objects: the `simulation:` section of a cell file.
 //
-// Serial chains whose joints swing sinusoidally, and free movers. The monitor never looks at it;
+// Serial chains whose joints swing sinusoidally, and free movers. The monitor never uses it;
 // the simulated robot, the tests and the benchmarks do. Positions are functions of time alone: any
 // instant can be asked for.
 #pragma once
@@ -23,13 +23,14 @@ struct Swing {
   double phase = 0.0;  // rad
 };
 
+// Revolute joints rotate about their axis, prismatic ones translate along it.
 enum class JointKind : std::uint8_t { kRevolute, kPrismatic };
 
 // One joint and the link it carries. The link's frame is the joint's, turned or shifted by the
 // joint's value.
 struct SimulatedJoint {
-  std::vector<std::uint32_t>
-      objects;                // what rides on the link, each with the link's frame; may be empty
+  // The objects that the link carries, each with the link's frame; may be empty.
+  std::vector<std::uint32_t> objects;
   Pose parent_from_joint{};   // in the frame of the link before (the first: of the base)
   Vec3 axis = Vec3::UnitZ();  // unit, in the joint's frame
   JointKind kind = JointKind::kRevolute;
@@ -46,13 +47,14 @@ struct SimulatedChain {
 // world.
 struct SimulatedMover {
   std::uint32_t object = 0;
-  Pose centre;                    // in the world: where it is when neither swing nor spin moved it
+  Pose centre;                    // in the world, before swing and spin are applied
   Vec3 amplitude = Vec3::Zero();  // m
   double frequency_hz = 0.0;
   double phase = 0.0;        // rad
   Vec3 spin = Vec3::Zero();  // rad/s, along world axes
 };
 
+// The whole section; empty when a cell has none.
 struct Simulation {
   std::vector<SimulatedChain> chains;
   std::vector<SimulatedMover> movers;
@@ -66,7 +68,7 @@ struct PoseAt {
   Twist twist;
 };
 
-// Replaces `poses` by where everything that the simulation moves is at `t_s` seconds from its
+// Replaces `poses` by the pose of every object that the simulation moves, `t_s` seconds after its
 // start: chains in the order of the file, then movers. Deterministic; allocates only when `poses`
 // has to grow.
 void poses_at(const Scene& scene, double t_s, std::vector<PoseAt>& poses);

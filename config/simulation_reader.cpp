@@ -1,3 +1,5 @@
+// Reads chains and movers like any other section. It remembers the line in which each object was
+// given a motion, since an object can have one only.
 #include "config/simulation_reader.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +17,9 @@
 namespace clearance {
 namespace {
 
+// As in URDF, which has more kinds; a simulation needs these.
 const std::array<std::string, 2> kJointKinds = {"revolute", "prismatic"};
+// As fast as the fastest rate of a cell: more could not be seen.
 constexpr Range kFrequencies{.least = 0.0, .most = 10'000.0};  // Hz
 
 // Chains and movers. Each moving object may be moved once.
@@ -41,6 +45,7 @@ class SimulationReader {
   std::map<std::uint32_t, int> moved_in_line_;
 };
 
+// A missing pose, or one with a mistake, is the identity.
 Pose SimulationReader::read_pose(const YamlNode* node) const {
   return node == nullptr ? Pose{} : quantities_.pose(*node).value_or(Pose{});
 }

@@ -1,4 +1,4 @@
-// Reads `simulation:`: how the objects move when no robot is there.
+// Reads `simulation:`, the simulated motion of the objects.
 #pragma once
 
 #include "config/object_reader.hpp"
@@ -7,6 +7,8 @@
 
 namespace clearance {
 
+// Reports objects that do not exist, are fixed, or are moved twice. `objects` may be incomplete
+// (names_known false): unknown names are not reported then.
 [[nodiscard]] Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
                                          const Quantities& quantities);
 

@@ -1,3 +1,5 @@
+// Compares words by the edit distance with swaps of neighbours (optimal string alignment), which
+// counts a typing error as one edit.
 #include "config/spelling.hpp"
 
 #include <fmt/format.h>
@@ -53,6 +55,7 @@ std::string did_you_mean(std::string_view found, std::span<const std::string> kn
   return nearest == nullptr ? "" : fmt::format("; did you mean '{}'?", *nearest);
 }
 
+// Separated by commas, with "or" before the last.
 std::string one_of(std::span<const std::string> names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {

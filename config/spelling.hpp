@@ -1,4 +1,4 @@
-// Which of the known names did a person mean?
+// Suggestions for misspelt names.
 #pragma once
 
 #include <span>

@@ -1,3 +1,5 @@
+// Reads the XML elements that a cell needs and ignores the others (visual, inertial, transmission).
+// The first mistake ends the reading by an exception that does not leave this file.
 #include "config/urdf.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +38,7 @@ class XmlReader {
     }
   }
 
+  // The root element of this name; URDF and SRDF both have <robot>.
   const XMLElement& root(const char* name) const {
     const XMLElement* robot = document_.FirstChildElement(name);
     if (robot == nullptr)
@@ -47,6 +50,7 @@ class XmlReader {
     throw Refusal(fmt::format("{}:{}: {}", file_, at.GetLineNum(), text));
   }
 
+  // An attribute that must be there.
   std::string attribute(const XMLElement& element, const char* name) const {
     const char* value = element.Attribute(name);
     if (value == nullptr) {
@@ -75,6 +79,7 @@ class XmlReader {
     return {values[0], values[1], values[2]};
   }
 
+  // <origin xyz="..." rpy="..."/>: the element and both attributes are optional, zero by default.
   UrdfOrigin origin(const XMLElement& element) const {
     UrdfOrigin origin;
     if (const XMLElement* found = element.FirstChildElement("origin")) {
@@ -196,6 +201,7 @@ std::vector<SrdfDisabled> read_disabled(const std::filesystem::path& file) {
   return disabled;
 }
 
+// Turns the exception of the readers into a value.
 template <class Result, class Reader>
 std::variant<Result, UrdfFault> read_file(const std::filesystem::path& file, Reader reader) {
   try {

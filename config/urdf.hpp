@@ -11,6 +11,7 @@
 
 namespace clearance {
 
+// <mesh filename="..." scale="x y z"/>: the file is not opened here.
 struct UrdfMesh {
   std::string file;  // as written: package://..., file://..., or a path
   Vec3 scale = Vec3::Ones();
@@ -31,27 +32,32 @@ struct UrdfOrigin {
   Vec3 rpy = Vec3::Zero();  // rad
 };
 
+// <collision>: one geometry and its <origin>. A link may have several.
 struct UrdfCollision {
   std::variant<UrdfMesh, UrdfBox, UrdfCylinder, UrdfSphere> shape;
   UrdfOrigin link_from_shape;
 };
 
+// <link>: only its collision elements; a link without any is a frame.
 struct UrdfLink {
   std::string name;
   std::vector<UrdfCollision> collisions;
 };
 
+// <joint>: type as written (fixed, revolute, ...); limits and mimic are not needed.
 struct UrdfJoint {
   std::string type, parent, child;
   UrdfOrigin parent_from_child;  // at position zero
 };
 
+// <robot>, in the order of the file. No link is the child of two joints.
 struct UrdfRobot {
   std::string name;
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
 };
 
+// <disable_collisions link1="..." link2="..." reason="..."/>.
 struct SrdfDisabled {
   std::string link_a, link_b, reason;
 };

@@ -1,13 +1,18 @@
+// Follows the table of well-formed byte sequences (RFC 3629, section 4; Unicode, table 3-7): the
+// first byte gives the length and the range of the second byte, which excludes overlong forms and
+// surrogates.
 #include "config/utf8.hpp"
 
 namespace clearance {
 namespace {
 
+// The shape of a character that begins with some first byte.
 struct Form {
   std::size_t length = 0;                   // 0: no character begins so
   unsigned char least = 0x80, most = 0xBF;  // of the second byte
 };
 
+// The rows of table 3-7, by first byte. C0, C1 and F5 to FF begin nothing.
 Form form_of(unsigned char first) {
   if (first < 0x80) return {.length = 1};
   if (first < 0xC2) return {};
@@ -20,6 +25,7 @@ Form form_of(unsigned char first) {
   return {.length = first < 0xF4 ? 4u : 0u};
 }
 
+// Bytes after the second are always 80 to BF.
 bool begins_with(std::string_view text, const Form& form) {
   if (form.length == 0 || form.length > text.size()) return false;
   for (std::size_t i = 1; i < form.length; ++i) {

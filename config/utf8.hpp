@@ -1,4 +1,4 @@
-// Is a text UTF-8?
+// Checks that a text is UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,9 @@
 
 namespace clearance {
 
-// Where its first byte is that is no UTF-8: overlong forms, surrogates and what is beyond U+10FFFF
-// are none either (RFC 3629). The text's length: all of it is.
+// The position of the first byte that is not part of well-formed UTF-8, or the text's length when
+// all of it is. Overlong forms, surrogates and code points beyond U+10FFFF are not well-formed (RFC
+// 3629).
 [[nodiscard]] std::size_t end_of_utf8(std::string_view text);
 
 }  // namespace clearance

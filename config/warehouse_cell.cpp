@@ -1,3 +1,6 @@
+// Places racks, pallets and boxes row by row until the wanted number stands, then a robot station,
+// then vehicles in the aisles. Everything random is drawn from one seeded generator in a fixed
+// order, so the text depends on the options alone.
 #include "config/warehouse_cell.hpp"
 
 #include <algorithm>
@@ -46,7 +49,9 @@ constexpr const char* kRobotParts = R"(
 - {name: mast, capsule: {from: [-0.3, 0, 0.4], to: [-0.3, 0, 1.1], radius: 0.04}}
 - {name: tray, box: {size: [0.5, 0.6, 0.04]}, pose: {xyz: [0.1, 0, 0.6]}})";
 
+// A person is a capsule of 0.5 m width and 1.8 m height; a capsule stands upright in any heading.
 constexpr const char* kPersonCapsule = "{from: [0, 0, 0.25], to: [0, 0, 1.55], radius: 0.25}";
+// A link of the arm; the radius of its capsule is added for each link.
 constexpr const char* kLinkParts = R"(
 - {capsule: {from: [0, 0, 0.06], to: [0, 0, 0.2]}}
 - {box: {size: [0.1, 0.14, 0.08]}, pose: {xyz: [0.05, 0, 0.08]}})";
@@ -55,6 +60,7 @@ constexpr const char* kPairs = R"(
 - {between: [arm, station]}
 - {between: [moving, moving], publish: false}
 - {between: [moving, standing], publish: false})";
+// Adjacent links touch at their joint.
 constexpr const char* kAllowed = R"(
 - {between: [pedestal, link0], reason: mounted on it}
 - {between: [pedestal, link1], reason: turns just above it}
@@ -63,6 +69,7 @@ constexpr const char* kAllowed = R"(
 - {between: [link2, link3], reason: adjacent}
 - {between: [link3, link4], reason: adjacent}
 - {between: [link4, link5], reason: adjacent})";
+// Hysteresis of 2 to 20 cm keeps zones from flickering with the noise of the poses.
 constexpr const char* kZones = R"(
 - {name: slow, between: [people, vehicles], enter_below: 2, leave_above: 2.2}
 - {name: aisle, between: [vehicles, standing], enter_below: 0.25, leave_above: 0.3}
@@ -74,8 +81,9 @@ struct Vehicle {
   const char* name;
   const char* group;
   const char* shape;   // key of its shape
-  double back, front;  // how far it reaches along x, m
+  double back, front;  // extents along -x and +x, m
 };
+// Extents are rounded up from the parts above.
 constexpr Vehicle kVehicles[] = {{"forklift", "vehicles", "parts", 1.2, 1.4},
                                  {"robot", "vehicles", "parts", 0.5, 0.5},
                                  {"person", "people", "capsule", 0.3, 0.3}};
@@ -91,6 +99,7 @@ YAML::Node list(const Items&... items) {
   return node;
 }
 
+// {KEY: VALUE, ...} on one line.
 YAML::Node map_on_a_line() {
   YAML::Node node(YAML::NodeType::Map);
   node.SetStyle(YAML::EmitterStyle::Flow);
@@ -128,13 +137,15 @@ class Warehouse {
   }
 
  private:
+  // Up to the end of the longest row, m.
   [[nodiscard]] double aisle_length() const {
     const double bays = std::min(rows_ > 1 ? kBaysInRow : bays_, kBaysInRow);
     return kBay * bays;
   }
+  // The middle of a row of racks; the aisle is on its positive side.
   [[nodiscard]] static double row_y(std::uint32_t row) { return row * (kDepth + kAisle); }
 
-  // An object that moves; its shape follows.
+  // A moving object; the caller adds its shape.
   YAML::Node object(const std::string& name, const YAML::Node& groups) {
     YAML::Node node;
     node["name"] = name;
@@ -143,7 +154,7 @@ class Warehouse {
     return node;
   }
 
-  // An object that stands still, turned about the vertical.
+  // A fixed object, rotated about the vertical; the caller adds its shape.
   YAML::Node stand(const std::string& name, double x, double y, double z, double yaw,
                    const YAML::Node& groups = list("standing")) {
     YAML::Node node = object(name, groups);
@@ -155,6 +166,7 @@ class Warehouse {
     return node;
   }
 
+  // Whole edge lengths, m.
   static YAML::Node box(const std::string& x, const std::string& y, const std::string& z) {
     YAML::Node node = map_on_a_line();
     node["size"] = list(x, y, z);
@@ -173,6 +185,8 @@ class Warehouse {
     }
   }
 
+  // A rack, and as many of its pallets and boxes as are still wanted. Heights are those of the
+  // shelves.
   void add_bay(double x, double y, std::uint32_t wanted) {
     stand(fmt::format("rack{}", bays_), x, y, 0.0, 0.0)["parts"] = rack_parts_;
     for (std::uint32_t i = 0; i < kPalletsInBay && stood_ < wanted; ++i) {
@@ -202,6 +216,8 @@ class Warehouse {
     for (std::uint32_t i = 0; i < kLinks; ++i) add_link(i);
   }
 
+  // Axes alternate between z and y, so that the arm reaches out of every plane; amplitudes are
+  // small enough that it clears the station.
   void add_link(std::uint32_t i) {
     const std::string name = fmt::format("link{}", i);
     YAML::Node parts = YAML::Load(kLinkParts);
@@ -219,13 +235,14 @@ class Warehouse {
     arm_["joints"].push_back(joint);
   }
 
+  // Vehicles take turns over the aisles, each in a stretch of its own along x.
   void add_vehicles() {
     const std::uint32_t count = moving_ - kLinks;
     const std::uint32_t aisles = std::max(1u, rows_);
     const std::uint32_t in_aisle = (count + aisles - 1) / aisles;
     const double stretch = aisle_length() / in_aisle;
     for (std::uint32_t i = 0; i < count; ++i) {
-      // Long ones only where there is room for them.
+      // Forklifts only where there is room for them.
       const bool room = stretch > 3.6;
       const Kind kind = i % 4 == 1           ? Kind::kPerson
                         : i % 4 == 0 && room ? Kind::kForklift

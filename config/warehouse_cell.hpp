@@ -16,6 +16,7 @@ struct WarehouseOptions {
   std::uint64_t seed = 1;
 };
 
+// Room for one bay, the station with its arm, and some vehicles.
 inline constexpr std::uint32_t kLeastWarehouse = 60;
 
 // The YAML of the cell. Same options, same text.

@@ -29,6 +29,7 @@ constexpr std::size_t kMaxCopies = 1'000'000;
 constexpr const char* kAliasOfItself = "an alias inside of the value that it stands for";
 constexpr const char* kTooManyCopies = "aliases that stand for more than a million values";
 
+// What to write instead, for one kind of mistake.
 struct Remedy {
   std::string_view fault;  // how the parser's message begins
   const char* expected;
@@ -81,6 +82,8 @@ class TreeBuilder : public YAML::EventHandler {
     finish(node_at(mark, YamlNode::Kind::kNull), anchor);
   }
 
+  // An anchor is known once its value is finished, so an alias inside of its own value is found
+  // here as well.
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchored_.find(anchor);
     if (found == anchored_.end()) {
@@ -124,6 +127,7 @@ class TreeBuilder : public YAML::EventHandler {
     bool has_key;
   };
 
+  // Marks of yaml-cpp count from 0, those of editors from 1.
   static YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
     YamlNode node;
     node.kind = kind;
@@ -132,6 +136,7 @@ class TreeBuilder : public YAML::EventHandler {
     return node;
   }
 
+  // The innermost sequence or map is finished.
   void close() {
     Open done = std::move(open_.back());
     open_.pop_back();

@@ -9,6 +9,7 @@ namespace clearance {
 
 struct YamlEntry;
 
+// One value of the document. Which members are used depends on `kind`; the others stay empty.
 struct YamlNode {
   enum class Kind { kNull, kScalar, kSequence, kMap };
   Kind kind = Kind::kNull;
@@ -19,6 +20,7 @@ struct YamlNode {
   std::vector<YamlEntry> entries;  // of a map: in the order of the file, the same key perhaps twice
 };
 
+// Keys are nodes too: a reader can then report a key that is no scalar at its place.
 struct YamlEntry {
   YamlNode key;
   YamlNode value;

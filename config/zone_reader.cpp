@@ -1,3 +1,5 @@
+// Turns the two groups of a zone into indices of watched pairs. A pair of the zone that is neither
+// watched nor allowed to touch is a mistake, since the zone would never see it.
 #include "config/zone_reader.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +37,7 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
       unwatched.push_back(key);
     }
   }
-  if (!list.complete) return;  // what is missing here has been complained about
+  if (!list.complete) return;  // what is missing here has been reported
   if (!unwatched.empty()) {
     const PairKey key = unwatched.front();
     diagnostics.add(
@@ -118,6 +120,7 @@ class ZoneReader {
 
 }  // namespace
 
+// Zones stay in the order of the file: their index is their id in a report.
 std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects, const PairList& pairs,
                              GroupIndex& group_index, const Quantities& quantities) {
   std::vector<Zone> zones;
