@@ -1,3 +1,4 @@
+// Sends the log to stderr: stdout belongs to results.
 #include "monitor/app/log.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>

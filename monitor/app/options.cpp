@@ -1,3 +1,5 @@
+// Wraps conditions in CLI11 validators whose messages read "found ...; expected ...", as those of
+// cell files do.
 #include "monitor/app/options.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 namespace clearance {
 namespace {
 
+// The form of every message about an option.
 std::string unexpected(const std::string& found, const std::string& expected) {
   return fmt::format("found '{}'; expected {}", found, expected);
 }
@@ -50,10 +53,12 @@ CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
   return {fault, ""};
 }
 
+// One wording for all programs.
 void add_force(CLI::App& app, bool& force) {
   app.add_flag("--force", force, "Overwrite files that exist");
 }
 
+// spdlog's names of its levels.
 void add_log_level(CLI::App& app, std::string& level) {
   app.add_option("--log-level", level, "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))

@@ -1,3 +1,5 @@
+// Compares files by identity (device and inode) where they exist, so that links and relative paths
+// are recognised.
 #include "monitor/app/output_file.hpp"
 
 #include <cstdio>
@@ -7,6 +9,7 @@
 
 namespace clearance {
 
+// An output that does not exist yet equals no input.
 bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
                             std::initializer_list<std::filesystem::path> inputs) {
   std::error_code missing;  // a file that does not exist is no other one
@@ -19,6 +22,8 @@ bool output_is_not_an_input(const char* program, const std::filesystem::path& ou
   return true;
 }
 
+// A file may still appear between this check and its creation; the check is for mistakes, not for
+// races.
 bool can_create(const char* program, const std::filesystem::path& file, bool force) {
   std::error_code unknown;
   if (file.has_parent_path() && !std::filesystem::exists(file.parent_path(), unknown)) {
@@ -31,6 +36,7 @@ bool can_create(const char* program, const std::filesystem::path& file, bool for
   return false;
 }
 
+// Devices and pipes (/dev/stdout) are left alone.
 void remove_unfinished(const char* program, const std::filesystem::path& file) {
   std::error_code failed;
   const bool regular =

@@ -1,3 +1,4 @@
+// Puts the signal handling, the exceptions and the exit codes of all programs in one place.
 #include "monitor/app/program.hpp"
 
 #include <cstdio>
@@ -11,6 +12,7 @@
 
 namespace clearance {
 
+// StopSignal blocks the signals before anything else starts a thread.
 int run_program(const char* name, const std::function<int(StopSignal&)>& body,
                 const ExitCodeOf& exit_code_of) {
   StopSignal stop;
@@ -22,6 +24,7 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body,
   }
 }
 
+// CLI11 has its own exit codes for mistakes; here they all are kUsage.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", std::string("clearance ") + kBuild);
   try {
@@ -38,6 +41,7 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
+// The number of errors stands last, where a person looks first.
 std::optional<Scene> scene_or_errors(CellResult cell) {
   if (Scene* const scene = std::get_if<Scene>(&cell)) return std::move(*scene);
   const auto& errors = std::get<std::vector<CellError>>(cell);

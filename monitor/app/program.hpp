@@ -1,4 +1,4 @@
-// What every program does in the same way: exit status, --version, and what it says when it fails.
+// What every program does in the same way: its exit status, --version, and its message on failure.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,13 +11,14 @@
 
 namespace clearance {
 
+// The same for all programs; each --help lists those that it uses.
 enum ExitCode : int {
   kOk = 0,
   kFailed = 1,
   kUsage = 2,
   kBadCell = 3,
   kDdsFailed = 4,
-  kIncomplete = 5,  // what was to be recorded, read or heard is not all there: --help says more
+  kIncomplete = 5,  // a file or a stream is not complete: --help says which
 };
 
 // The exit code of a program that an exception ended.

@@ -1,3 +1,5 @@
+// Blocks the signals in every thread and waits for them with sigtimedwait; a handler is needed only
+// where a program must end at once.
 #include "monitor/app/stop_signal.hpp"
 
 #include <pthread.h>
@@ -9,9 +11,11 @@
 namespace clearance {
 namespace {
 
+// A handler takes no argument of ours, hence the two globals; they are set before it is installed.
 int status_at_the_end = 0;
 const char* words_at_the_end = "";
 
+// Only async-signal-safe calls: write and _exit.
 extern "C" void end_now(int) {
   [[maybe_unused]] const auto written =
       write(STDERR_FILENO, words_at_the_end, std::strlen(words_at_the_end));
@@ -29,6 +33,7 @@ StopSignal::StopSignal() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
+// A signal that is pending is delivered when the mask is restored.
 void StopSignal::end_with(int status, const char* last_words) {
   status_at_the_end = status;
   words_at_the_end = last_words;
@@ -38,6 +43,7 @@ void StopSignal::end_with(int status, const char* last_words) {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
+// A timeout of 0 polls.
 bool StopSignal::wait(std::int64_t timeout_ms) {
   const timespec timeout{.tv_sec = timeout_ms / 1000, .tv_nsec = timeout_ms % 1000 * 1'000'000};
   if (!came_) came_ = sigtimedwait(&signals_, nullptr, &timeout) > 0;

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as something to wait for, in one place of the program.
+// Lets one place of the program wait for SIGINT and SIGTERM.
 #pragma once
 
 #include <csignal>

@@ -1,4 +1,4 @@
-// Which build this is: two of one name give the same bits.
+// The name of this build: two builds of one name compute the same bits.
 #pragma once
 
 namespace clearance {

@@ -1,3 +1,4 @@
+// Names the columns of a pose log; the table does the rest.
 #include "monitor/csv/pose_log.hpp"
 
 #include <array>
@@ -8,12 +9,14 @@ namespace {
 
 constexpr std::array<std::string_view, 9> kColumnNames = {"t_ns", "object", "px", "py", "pz",
                                                           "qw",   "qx",     "qy", "qz"};
+// Places in kColumnNames.
 enum Column : std::size_t { kTime, kObject, kX, kY, kZ, kW, kQx, kQy, kQz };
 
 }  // namespace
 
 CsvPoseLog::CsvPoseLog(const std::filesystem::path& file) : table_(file, kColumnNames) {}
 
+// The first field that cannot be read ends the log, with its line and column name in the error.
 bool CsvPoseLog::next(CsvPose& pose) {
   if (!table_.next() || !table_.time_ns(kTime, pose.t_ns)) return false;
   pose.object = table_.text(kObject);

@@ -14,6 +14,7 @@
 
 namespace clearance {
 
+// One row. The quaternion is as written: the tick refuses those that are not unit.
 struct CsvPose {
   std::int64_t t_ns = 0;
   std::string object;

@@ -1,3 +1,5 @@
+// zlib reads the lines, since it reads plain files as well as gzip. A line is split into views of
+// its text, so a row allocates nothing once the buffers have grown.
 #include "monitor/csv/table.hpp"
 
 #include <fmt/format.h>
@@ -31,6 +33,7 @@ bool parsed(std::string_view text, Number& value) {
   return result.ec == std::errc{} && result.ptr == end;
 }
 
+// For messages.
 std::string joined(std::span<const std::string_view> names) {
   std::string text;
   for (const std::string_view name : names) text.append(text.empty() ? "" : ",").append(name);
@@ -39,8 +42,10 @@ std::string joined(std::span<const std::string_view> names) {
 
 }  // namespace
 
+// unique_ptr needs a deleter; void keeps zlib.h out of the header.
 void CsvTable::CloseGzip::operator()(void* file) const { gzclose(static_cast<gzFile>(file)); }
 
+// A larger buffer than zlib's 8 KiB: pose logs have millions of lines.
 CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::string_view> columns)
     : path_(file),
       columns_(columns.begin(), columns.end()),
@@ -54,10 +59,12 @@ CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::strin
   read_header();
 }
 
+// Lines count from 1, the header included.
 std::string CsvTable::located(const std::string& what) const {
   return fmt::format("{}:{}: {}", path_.string(), line_, what);
 }
 
+// After the first error every further call fails, too.
 bool CsvTable::fail(const std::string& what) {
   error_ = located(what);
   return false;

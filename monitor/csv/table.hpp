@@ -12,6 +12,8 @@
 
 namespace clearance {
 
+// A subset of RFC 4180: fields are separated by commas and may be quoted, but contain neither
+// commas nor line breaks.
 class CsvTable {
  public:
   // `columns` must all be there, each once, in any order; others are ignored. A column is known by
@@ -30,6 +32,7 @@ class CsvTable {
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[place_[column]]; }
   [[nodiscard]] bool number(std::size_t column, double& value);
   [[nodiscard]] bool time_ns(std::size_t column, std::int64_t& value);
+  // Sets error() for the row just read and returns false.
   bool fail(const std::string& what);
 
  private:

@@ -1,3 +1,6 @@
+// Creates the ports, the queues and the loop in the order of their dependencies, runs the loop in a
+// thread of its own, and empties the queues after the last tick. Scheduling is set before the
+// threads that inherit it are created.
 #include "monitor/daemon/daemon.hpp"
 
 #include <spdlog/spdlog.h>
@@ -10,10 +13,14 @@
 namespace clearance {
 namespace {
 
+// 64 ms of reports at 1 kHz; DDS writes seldom take longer.
 constexpr std::size_t kQueuedReports = 64;
+// Batches of full size that one tick takes in; more wait for the next tick.
 constexpr std::size_t kBatchesATick = 64;
+// How late the end after --ticks may be noticed.
 constexpr std::int64_t kSignalPollMs = 50;
 
+// The sentence of a Refusal says how to get what was refused.
 void log_refusal(const Refusal& refusal) {
   if (refusal) spdlog::warn("{}", *refusal);
 }
@@ -94,6 +101,7 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
   done = true;
 }
 
+// Reports that DDS refused count as dropped, too.
 std::string Daemon::summary() const {
   const std::uint64_t dropped = publish_queue_.dropped_reports() + reports_.failed_writes();
   return run_summary(scene_, loop_->statistics(), seconds_, dropped) +

@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Exit status:
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80)";
 
+// The command line, with its defaults.
 struct Arguments {
   std::string cell;
   bool check = false;
@@ -55,6 +56,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
+// --check: the same reader as for a run, so what passes here starts.
 int check_only(const std::string& cell) {
   const auto scene = scene_or_errors(read_cell(cell));
   if (!scene) return kBadCell;
@@ -62,6 +64,7 @@ int check_only(const std::string& cell) {
   return kOk;
 }
 
+// The summary goes to stdout at the end, the log to stderr all the time.
 int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   arguments.daemon.dds = arguments.dds.resolve(scene.domain, scene.partition);
   route_dds_log();
@@ -71,6 +74,7 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
+// Everything that can be refused is refused before DDS is joined.
 int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app(
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
@@ -93,6 +97,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   return run_daemon(*scene, arguments, signal);
 }
 
+// As kFooter says.
 ExitCode exit_code_of(const std::exception& error) {
   return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
 }

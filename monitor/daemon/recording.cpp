@@ -1,3 +1,5 @@
+// A thread empties a queue of batches and reports into the recorder. The queue is bounded: when a
+// slow disk has filled it, what no longer fits is counted as missing.
 #include "monitor/daemon/recording.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +22,7 @@ std::size_t slots(std::size_t bytes_a_slot) {
   return std::clamp(kQueueBytes / std::max<std::size_t>(bytes_a_slot, 1), kFewestSlots, kMostSlots);
 }
 
+// A slot of a report holds at most all pairs, a slot of a batch as many poses as the reader takes.
 ReportQueueOptions queue_options(const Scene& scene) {
   const std::size_t samples = PoseReader::samples_a_batch(scene);
   return {.reports = slots(sizeof(PairReport) * scene.pairs.size()),
@@ -29,6 +32,7 @@ ReportQueueOptions queue_options(const Scene& scene) {
 
 }  // namespace
 
+// The file and its catalogue are written before the first tick, so that errors come at the start.
 Recording::Recording(const std::filesystem::path& file, bool over, const Scene& scene,
                      const PoseReader& poses)
     : scene_(scene),
@@ -42,6 +46,7 @@ Recording::Recording(const std::filesystem::path& file, bool over, const Scene& 
 
 Recording::~Recording() { finish(); }
 
+// Ends the thread when the queue is empty. A second call does nothing.
 void Recording::finish() {
   if (!thread_.joinable()) return;
   queue_.close();

@@ -14,6 +14,7 @@
 
 namespace clearance {
 
+// The file cannot be created. Errors after that do not stop the daemon; see complete().
 class RecordError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -16,6 +16,8 @@
 
 namespace clearance {
 
+// The four options that every DDS program has. An option that is not given leaves the choice to the
+// cell.
 struct DdsArguments {
   std::optional<std::uint32_t> domain;   // not given: the cell's
   std::optional<std::string> partition;  // not given: the cell's
@@ -47,6 +49,7 @@ struct DdsArguments {
         });
   }
 
+  // The options with the command line before the cell.
   [[nodiscard]] DdsOptions resolve(std::uint32_t cell_domain,
                                    const std::string& cell_partition) const {
     DdsOptions resolved = options;

@@ -1,3 +1,4 @@
+// Cyclone calls the sink from its own threads, so the rate limit uses atomics instead of a lock.
 #include "monitor/dds/dds_log.hpp"
 
 #include <dds/dds.h>

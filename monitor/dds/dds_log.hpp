@@ -1,4 +1,4 @@
-// Cyclone's own messages in the program's log.
+// Routes Cyclone's own messages into the program's log.
 #pragma once
 
 namespace clearance {

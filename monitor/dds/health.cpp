@@ -1,3 +1,5 @@
+// make_health fills a sample from counts that only grow. HealthLog compares each sample with the
+// one before and logs the growth, so that the log says when something began.
 #include "monitor/dds/health.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +11,9 @@
 namespace clearance {
 namespace {
 
+// Units of the health topic are us.
 constexpr double kUsPerNs = 1e-3;
+// Lines of one update; beyond them it logs only how many it left out.
 constexpr int kLinesAtOnce = 5;
 
 // Times of the loop, as microseconds.
@@ -38,6 +42,7 @@ void add_rejection(clearance_msg_Health& out, const std::string& object, const c
   entry.count = count;
 }
 
+// As in Reject, spelt for people.
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
 
 // By source, by object and, for ids that no object has, by cause alone: what the totals hold beyond
@@ -102,6 +107,7 @@ void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
 
 }  // namespace
 
+// A new sample each time: its strings differ in length from second to second.
 Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
                                          const PoseReader& poses, std::uint64_t dropped_reports) {
   Sample<clearance_msg_Health> sample;
@@ -114,8 +120,11 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   return sample;
 }
 
+// No object has been seen at the start, so no object is late.
 HealthLog::HealthLog(const Scene& scene) : stale_(scene.objects.size()) {}
 
+// Refusals, then late inputs, then the three totals. The limit on lines is for a cell that loses
+// all its objects at once.
 void HealthLog::update(const clearance_msg_Health& health) {
   int lines = 0;
   for (std::uint32_t i = 0; i < health.rejected._length; ++i) {

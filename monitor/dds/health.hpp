@@ -1,4 +1,5 @@
-// What the health topic says, put together from the loop's statistics and the ports' counts.
+// Makes the samples of the health topic from the statistics of the loop and the counts of the
+// ports.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,8 @@
 
 namespace clearance {
 
+// Allocates: called once a second, in the thread that publishes or records. `dropped_reports` are
+// those that never reached DDS or the file.
 [[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene,
                                                        const LoopStatistics& statistics,
                                                        const PoseReader& poses,
@@ -23,6 +26,7 @@ namespace clearance {
 class HealthLog {
  public:
   explicit HealthLog(const Scene& scene);
+  // To be called with every sample, in order.
   void update(const clearance_msg_Health& health);
 
  private:

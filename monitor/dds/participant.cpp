@@ -1,3 +1,6 @@
+// Configures the domain in the process instead of by a file, creates the participant, and gives
+// every endpoint the QoS of the topic table. Every call is checked; a failure is a DdsError that
+// says what was attempted.
 #include "monitor/dds/participant.hpp"
 
 #include <fmt/format.h>
@@ -25,11 +28,13 @@ constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
 
 constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
 
+// Qos objects are freed by Cyclone.
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
+// An empty name is the default partition, which is the absence of the policy.
 Qos partition_qos(const std::string& partition) {
   Qos qos(dds_create_qos());
   if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
@@ -137,13 +142,16 @@ Participant::Participant(const DdsOptions& options) : where_(describe(options)) 
       check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
 }
 
+// Deletes its topics, readers and writers as well.
 Participant::~Participant() { dds_delete(participant_); }
 
+// Cyclone shares topics of one name and type, so creating one twice is allowed.
 dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const std::string& name) {
   return check_dds(dds_create_topic(participant_, &type, name.c_str(), nullptr, nullptr),
                    fmt::format("making topic {}", name));
 }
 
+// Latched topics keep the depth of the table: a reader with a greater one would not get more.
 dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
                                  const dds_listener_t* listener) {
   const Topic& row = topic(kind);
@@ -153,6 +161,7 @@ dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::i
                    fmt::format("making a reader of {}", name));
 }
 
+// Depth and durability are those of the table, whatever readers ask for.
 dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
                                  const dds_listener_t* listener) {
   const Topic& row = topic(kind);
@@ -174,6 +183,7 @@ DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_
   }
 }
 
+// The guard is reset here, so one wake() ends one wait.
 bool DataWait::wait(std::int64_t timeout_ns) {
   const dds_return_t triggered = dds_waitset_wait(waitset_, nullptr, 0, timeout_ns);
   bool woken = false;

@@ -1,4 +1,4 @@
-// Cyclone DDS, as much of it as we use: a participant of one domain and partition, and its
+// The part of Cyclone DDS that we use: a participant of one domain and partition, and its
 // endpoints.
 #pragma once
 
@@ -26,6 +26,8 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 // Whether a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
 [[nodiscard]] bool can_be_looked_up(const std::string& peer);
 
+// Where on DDS a program is. Only programs of the same domain, partition and network see each
+// other.
 struct DdsOptions {
   std::uint32_t domain = 0;             // 0 to 232
   std::string partition = "";           // empty: the default one

@@ -1,3 +1,6 @@
+// A thread waits for data, takes samples and puts them into the ring as batches. Whatever can be
+// slow or allocate (new sources, logging) happens in that thread, behind a mutex that the tick
+// thread never takes.
 #include "monitor/dds/pose_reader.hpp"
 
 #include <spdlog/spdlog.h>
@@ -21,11 +24,13 @@ void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_
       status.last_policy_id);
 }
 
+// Cyclone calls this in a thread of its own.
 void log_matched(dds_entity_t, const dds_subscription_matched_status_t status, void*) {
   spdlog::info("a writer of poses {}: {} now",
                status.current_count_change > 0 ? "appeared" : "left", status.current_count);
 }
 
+// The listener is copied by Cyclone, so ours is deleted at once.
 dds_entity_t make_reader(const Scene& scene, Participant& participant) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
@@ -43,6 +48,8 @@ std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
   return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
 }
 
+// All memory is reserved before the thread starts; only a source that sends for the first time
+// allocates later.
 PoseReader::PoseReader(const Scene& scene, Participant& participant)
     : scene_(scene),
       samples_a_batch_(samples_a_batch(scene)),
@@ -56,6 +63,7 @@ PoseReader::PoseReader(const Scene& scene, Participant& participant)
   thread_ = std::thread([this] { run(); });
 }
 
+// Ends the thread before the ring is destroyed.
 PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
@@ -71,6 +79,7 @@ const PoseBatch* PoseReader::next() noexcept {
   return batch;
 }
 
+// A copy, since the taking thread goes on changing them.
 std::vector<SourceTally> PoseReader::tallies() const {
   const std::lock_guard lock(tallies_mutex_);
   return tallies_;

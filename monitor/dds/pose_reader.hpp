@@ -35,6 +35,7 @@ struct RefusedSource {
   std::uint64_t poses = 0;
 };
 
+// next() is called by the tick thread and takes no lock; everything else by other threads.
 class PoseReader final : public PoseSource {
  public:
   // Poses that one batch may hold; what a source sends beyond it is counted and not used.
@@ -44,6 +45,7 @@ class PoseReader final : public PoseSource {
   // Samples of a source that may arrive while the taking thread is held up.
   static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
+  // Starts the thread. Scene and participant must outlive this.
   PoseReader(const Scene& scene, Participant& participant);
   ~PoseReader() override;
 

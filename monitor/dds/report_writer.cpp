@@ -1,3 +1,5 @@
+// A thread empties the report queue in order: distances first, then the zones that the report
+// changed. Health is written when statistics arrive, once a second.
 #include "monitor/dds/report_writer.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 namespace clearance {
 namespace {
 
+// A reader with other QoS gets nothing, which nobody would notice without this line.
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
                       void*) {
   if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
@@ -38,6 +41,7 @@ std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint
                      zone.swept_clearance);
 }
 
+// The name of the topic is the cell's, which the table points to.
 dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind kind) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_offered_incompatible_qos(listener, log_incompatible);
@@ -48,6 +52,7 @@ dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind
 
 }  // namespace
 
+// The catalogue is latched: clients that come later get it as well.
 ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses)
     : scene_(scene),
@@ -74,6 +79,7 @@ void ReportWriter::finish() {
   thread_.join();
 }
 
+// Matched readers, as Cyclone counts them.
 std::uint32_t ReportWriter::distance_readers() const {
   dds_publication_matched_status_t status{};
   return dds_get_publication_matched_status(distances_, &status) == DDS_RETCODE_OK
@@ -121,6 +127,7 @@ void ReportWriter::write_zones(const Report& report) {
   }
 }
 
+// Failed writes count as dropped: the client got neither.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
   const auto sample =
       make_health(scene_, statistics, poses_, queue_.dropped_reports() + failed_writes_.load());

@@ -1,4 +1,4 @@
-// Reports onto DDS: a thread of its own converts and writes what the tick thread queued.
+// Publishes reports on DDS: a thread of its own converts and writes what the tick thread queued.
 #pragma once
 
 #include <atomic>
@@ -15,6 +15,8 @@
 
 namespace clearance {
 
+// The only thread that writes to DDS. A report that cannot be written is counted and left out; the
+// tick thread never waits for it.
 class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.

@@ -1,3 +1,4 @@
+// Puts errno into words, with the path and what a person can do.
 #include "monitor/files/file_error.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 namespace clearance {
 namespace {
 
+// Has to be called before anything else changes errno.
 std::string system_reason() { return std::system_category().message(errno); }
 
 }  // namespace

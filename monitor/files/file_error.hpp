@@ -1,4 +1,4 @@
-// What a person reads when a file cannot be read or written: what was attempted, the file, and why.
+// Messages about files that cannot be read or written: what was attempted, the file, and why.
 //
 // Each is called right after the call that failed: the reason is what errno says then.
 #pragma once

@@ -1,3 +1,4 @@
+// The kernel's clocks through clock_gettime, which enters no kernel on common hardware (vDSO).
 #include <cerrno>
 #include <ctime>
 
@@ -8,6 +9,7 @@ namespace {
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
+// Cannot fail for these two clocks.
 std::int64_t read(clockid_t clock) noexcept {
   timespec time{};
   clock_gettime(clock, &time);
@@ -19,6 +21,7 @@ std::int64_t read(clockid_t clock) noexcept {
 std::int64_t SystemClock::realtime_ns() noexcept { return read(CLOCK_REALTIME); }
 std::int64_t SystemClock::monotonic_ns() noexcept { return read(CLOCK_MONOTONIC); }
 
+// Absolute, so that time spent before the call does not add up; a signal does not end it early.
 void SystemClock::sleep_until(std::int64_t monotonic_ns) noexcept {
   const timespec until{.tv_sec = monotonic_ns / kNsPerS, .tv_nsec = monotonic_ns % kNsPerS};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {

@@ -1,3 +1,5 @@
+// Logarithmic bins with 64 linear sub-bins for each power of two, as in HdrHistogram: the error of
+// a percentile is below 1/64.
 #include "monitor/loop/histogram.hpp"
 
 #include <algorithm>
@@ -5,6 +7,7 @@
 
 namespace clearance {
 
+// The highest set bit selects the octave, the six bits below it the sub-bin.
 std::size_t Histogram::bin_of(std::uint64_t ns) noexcept {
   constexpr std::uint64_t kLinear = std::uint64_t{1} << kSubBits;
   if (ns < kLinear) return ns;
@@ -14,6 +17,7 @@ std::size_t Histogram::bin_of(std::uint64_t ns) noexcept {
   return std::min(bin, kBins - 1);
 }
 
+// The largest value that bin_of puts into this bin.
 std::int64_t Histogram::upper_edge_ns(std::size_t bin) noexcept {
   constexpr std::size_t kLinear = std::size_t{1} << kSubBits;
   if (bin < kLinear) return static_cast<std::int64_t>(bin);
@@ -22,6 +26,7 @@ std::int64_t Histogram::upper_edge_ns(std::size_t bin) noexcept {
   return static_cast<std::int64_t>(((sub + 1) << shift) - 1);
 }
 
+// A clock may step back between two readings; that counts as 0.
 void Histogram::add(std::int64_t ns) noexcept {
   const std::int64_t value = std::max<std::int64_t>(ns, 0);
   ++bins_[bin_of(static_cast<std::uint64_t>(value))];
@@ -29,6 +34,7 @@ void Histogram::add(std::int64_t ns) noexcept {
   max_ns_ = std::max(max_ns_, value);
 }
 
+// The nearest-rank definition: the smallest edge below which at least this share lies.
 std::int64_t Histogram::percentile_ns(double share) const noexcept {
   if (count_ == 0) return 0;
   const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));

@@ -1,4 +1,4 @@
-// How long something took, over many times: percentiles from fixed bins.
+// Durations of many repetitions, as percentiles from fixed bins.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// How the loop is doing: what the health topic says of the tick thread.
+// Statistics of the tick thread, which the health topic publishes.
 #pragma once
 
 #include <array>

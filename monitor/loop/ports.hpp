@@ -1,4 +1,4 @@
-// The three seams of the fixed-rate loop: where poses come from, where reports go, what time it is.
+// The three ports of the fixed-rate loop: the source of poses, the sinks of reports, and the clock.
 //
 // The daemon puts Cyclone DDS and the kernel's clocks behind them, the tests a list of batches and
 // a clock of their own. All are called from the tick thread: none may block (but for sleep_until),
@@ -14,6 +14,7 @@
 
 namespace clearance {
 
+// Where poses come from.
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
@@ -22,6 +23,7 @@ class PoseSource {
   virtual const PoseBatch* next() noexcept = 0;
 };
 
+// Where reports go. What a sink wants to keep it copies.
 class ReportSink {
  public:
   virtual ~ReportSink() = default;
@@ -33,6 +35,8 @@ class ReportSink {
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 
+// Realtime for stamps that other machines compare, monotonic for deadlines that no clock adjustment
+// moves.
 class Clock {
  public:
   virtual ~Clock() = default;

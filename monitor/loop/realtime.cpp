@@ -1,3 +1,5 @@
+// Each function makes one system call. A refusal is not an error, since the daemon works without,
+// only later.
 #include "monitor/loop/realtime.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +16,10 @@
 
 namespace clearance {
 
+// The timer slack in ns; 1 is the least, 0 would reset it to the default of 50 us.
 void use_precise_timers() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
+// SCHED_FIFO threads run until they sleep; SCHED_OTHER has priority 0 only.
 Refusal use_fifo_scheduling(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -28,6 +32,7 @@ Refusal use_fifo_scheduling(int priority) {
       priority, std::strerror(error));
 }
 
+// An empty set is refused by the kernel, so a number out of range needs no check of its own.
 Refusal pin_to_cpu(int cpu) {
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -1,4 +1,4 @@
-// What Linux is asked for so that the tick thread wakes on time. Each returns nothing when it was
+// Requests to Linux that make the tick thread wake on time. Each returns nothing when it was
 // granted, and otherwise a sentence that says what was refused and how to get it.
 #pragma once
 

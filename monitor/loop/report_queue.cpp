@@ -1,3 +1,5 @@
+// Every slot has its final size before the first tick, so that copying a report into it allocates
+// nothing. One semaphore wakes the consumer for reports and statistics alike.
 #include "monitor/loop/report_queue.hpp"
 
 #include <algorithm>
@@ -7,12 +9,14 @@ namespace {
 
 constexpr std::size_t kStatisticsSlots = 4;  // one a second
 
+// Relaxed: the numbers order nothing.
 void count(std::atomic<std::uint64_t>& counter) noexcept {
   counter.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace
 
+// Sizes are those of the largest report, health and batch of this scene.
 ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     : reports_(options.reports),
       inputs_(std::max<std::size_t>(options.inputs, 1)),
@@ -33,6 +37,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
   }
 }
 
+// Does not wake the consumer: the report that follows does.
 void ReportQueue::input(const PoseBatch& batch) noexcept {
   if (!keeps_inputs_) return;
   PoseBatch* slot = inputs_.back();

@@ -15,6 +15,7 @@
 
 namespace clearance {
 
+// A slot: the report and the batches that its tick used.
 struct QueuedReport {
   Report report;
   std::array<SourceUse, kMaxSources> sources_used;
@@ -31,6 +32,7 @@ struct ReportQueueOptions {
   std::size_t samples_a_batch = 0;  // a batch larger than that is dropped and counted
 };
 
+// One producer, the tick thread, and one consumer. Each of the three rings is lock-free.
 class ReportQueue final : public ReportSink {
  public:
   ReportQueue(const Scene& scene, const ReportQueueOptions& options);

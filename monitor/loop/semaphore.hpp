@@ -8,6 +8,7 @@
 
 namespace clearance {
 
+// A POSIX semaphore, whose post() is async-signal-safe and therefore never blocks.
 class Semaphore {
  public:
   Semaphore() { sem_init(&semaphore_, 0, 0); }

@@ -1,4 +1,4 @@
-// What a person reads: figures of a run.
+// The figures of a run as text for a person.
 #pragma once
 
 #include <string>

@@ -1,3 +1,5 @@
+// Sleeps until an absolute deadline, takes in the batches that have arrived, ticks, and hands over
+// the report. Everything is allocated by the constructor.
 #include "monitor/loop/tick_loop.hpp"
 
 #include <algorithm>

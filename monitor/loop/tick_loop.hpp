@@ -1,5 +1,5 @@
 // The fixed-rate loop: on each deadline it takes in what has arrived, runs Monitor::tick and hands
-// the report on. Knows no DDS and no kernel clock: both come through the seams.
+// the report on. Knows no DDS and no kernel clock: both come through ports.
 #pragma once
 
 #include <array>

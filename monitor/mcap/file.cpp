@@ -1,3 +1,5 @@
+// Reads with fseeko and fread, whose buffer makes the many small reads of record headers cheap. The
+// position is remembered, since seeking would empty that buffer.
 #include "monitor/mcap/file.hpp"
 
 #include <sys/stat.h>

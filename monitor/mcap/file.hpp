@@ -10,13 +10,16 @@
 
 namespace clearance {
 
+// Owns the file handle. Not for several threads at once, since it has one position.
 class McapFile {
  public:
+  // A file that cannot be opened, or is not a regular one, gives open() == false; errno says why.
   explicit McapFile(const std::filesystem::path& path);
+  // The bytes must outlive this.
   explicit McapFile(std::span<const std::byte> bytes) : memory_(bytes), size_(bytes.size()) {}
   [[nodiscard]] bool open() const noexcept { return file_ != nullptr || memory_.data() != nullptr; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
-  // False: not all of it is there.
+  // Fills `out` from this place of the file; false when the file ends before.
   [[nodiscard]] bool read(std::uint64_t offset, std::span<std::byte> out);
 
  private:

@@ -19,9 +19,11 @@ namespace clearance {
 
 static_assert(std::endian::native == std::endian::little, "MCAP integers are copied as they are");
 
+// At the beginning and at the end of a file (mcap.dev/spec, "Magic").
 inline constexpr std::array<unsigned char, 8> kMcapMagic = {0x89, 'M', 'C',  'A',
                                                             'P',  '0', '\r', '\n'};
 
+// Opcodes of the specification, section "Records". 0x00 is not valid, 0x80 and above are private.
 enum class McapKind : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -40,11 +42,14 @@ enum class McapKind : std::uint8_t {
   kDataEnd = 0x0f,
 };
 
+// Bytes; both are fixed by the specification.
 inline constexpr std::size_t kMcapRecordHeader = 9;  // kind and length
 inline constexpr std::size_t kMcapFooterBody = 20;   // summary start, offsets start, CRC
 
+// Ordered by key, so that the same map gives the same bytes.
 using McapMap = std::map<std::string, std::string>;
 
+// Record 0x03, without its id.
 struct McapSchema {
   std::string name;      // e.g. clearance::msg::PoseBatch
   std::string encoding;  // e.g. omgidl
@@ -52,6 +57,7 @@ struct McapSchema {
   bool operator==(const McapSchema&) const = default;
 };
 
+// Record 0x04, together with its schema.
 struct McapChannel {
   std::uint16_t id = 0;
   std::uint16_t schema_id = 0;  // 0: none
@@ -62,6 +68,7 @@ struct McapChannel {
   bool operator==(const McapChannel&) const = default;
 };
 
+// Record 0x08: where a chunk is and which log times it spans, so that a reader can skip it.
 struct McapChunkIndex {
   std::uint64_t start_ns = 0, end_ns = 0;  // smallest and largest log time
   std::uint64_t offset = 0, length = 0;    // of the chunk record, its 9-byte header included
@@ -71,6 +78,7 @@ struct McapChunkIndex {
   std::uint64_t compressed = 0, uncompressed = 0;  // bytes
 };
 
+// Record 0x0b: counts and the span of log times of the whole file.
 struct McapStatistics {
   std::uint64_t messages = 0;
   std::uint32_t chunks = 0;
@@ -89,20 +97,24 @@ class McapBytes {
   [[nodiscard]] std::size_t size() const noexcept { return bytes_.size(); }
   void clear() noexcept { bytes_.clear(); }
 
+  // Any integer, as its bytes stand in memory.
   template <class Integer>
   void put(Integer value) {
     put_raw(std::as_bytes(std::span(&value, 1)));
   }
+  // Bytes as they are, without a length.
   void put_raw(std::span<const std::byte> bytes) {
     if (bytes.empty()) return;
     const std::size_t begin = bytes_.size();
     bytes_.resize(begin + bytes.size());
     std::memcpy(bytes_.data() + begin, bytes.data(), bytes.size());
   }
+  // u32 length and UTF-8 bytes.
   void put_text(std::string_view text) {
     put(static_cast<std::uint32_t>(text.size()));
     put_raw(std::as_bytes(std::span(text)));
   }
+  // u32 length in bytes, then keys and values in turn.
   void put_map(const McapMap& map) {
     const std::size_t length = begin_length<std::uint32_t>();
     for (const auto& [key, value] : map) {
@@ -123,6 +135,7 @@ class McapBytes {
     const auto length = static_cast<Length>(bytes_.size() - begin);
     std::memcpy(bytes_.data() + begin - sizeof(Length), &length, sizeof(Length));
   }
+  // Returns the place that end_record() needs; records do not nest except in chunks.
   [[nodiscard]] std::size_t begin_record(McapKind kind) {
     put(static_cast<std::uint8_t>(kind));
     return begin_length<std::uint64_t>();
@@ -149,6 +162,7 @@ class McapFields {
     if (ok_) std::memcpy(&value, bytes.data(), sizeof(Integer));
     return value;
   }
+  // A view; empty once anything was missing.
   [[nodiscard]] std::span<const std::byte> get_raw(std::uint64_t size) noexcept {
     if (!ok_ || size > rest_.size()) {
       ok_ = false;
@@ -158,10 +172,12 @@ class McapFields {
     rest_ = rest_.subspan(static_cast<std::size_t>(size));
     return bytes;
   }
+  // As put_text() wrote it. The text is not checked for UTF-8.
   [[nodiscard]] std::string get_text() {
     const std::span<const std::byte> bytes = get_raw(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
+  // A key that stands twice keeps its last value.
   [[nodiscard]] McapMap get_map() {
     McapFields entries(get_raw(get<std::uint32_t>()));
     McapMap map;

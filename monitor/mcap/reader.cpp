@@ -1,3 +1,5 @@
+// Streams records from the front and hands out messages; chunks are opened in memory. The reader
+// stops at the first record that makes no sense, and every message before it has been handed out.
 #include "monitor/mcap/reader.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +28,8 @@ McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name
   begin();
 }
 
+// With a window and a summary, chunks are read through the index. Otherwise the file is streamed,
+// which needs no summary.
 void McapReader::begin() {
   if (!read_magic()) return;
   summary_ = read_mcap_summary(file_);
@@ -36,6 +40,7 @@ void McapReader::begin() {
   metadata_ = summary_->metadata;
 }
 
+// The three ways in which a file is not MCAP at all get messages of their own.
 bool McapReader::read_magic() {
   std::array<std::byte, kMcapMagic.size()> magic{};
   done_ = true;
@@ -61,6 +66,7 @@ bool McapReader::read_magic() {
   return true;
 }
 
+// By bytes, not by messages: their number is known only for a closed file.
 double McapReader::progress() const noexcept {
   return file_.size() == 0 ? 1.0 : static_cast<double>(offset_) / static_cast<double>(file_.size());
 }
@@ -76,6 +82,7 @@ void McapReader::damage(std::uint64_t offset, const std::string& what) {
     error_ += fmt::format(", the last {} after the first", seconds(last_ns_ - first_ns_));
 }
 
+// The commonest damage has its likely causes in the message.
 void McapReader::cut_off(std::uint64_t offset) {
   damage(offset,
          "the file is cut off here (the recorder was stopped hard, or the copy is incomplete)");
@@ -95,6 +102,7 @@ bool McapReader::next(McapMessage& message) {
   return found;
 }
 
+// Dispatches by kind. Definitions and messages may stand outside chunks as well.
 void McapReader::take(const Record& record, McapMessage& message, bool& found) {
   // Behind the data stands the summary, which repeats definitions.
   if (data_ended_ && record.kind != McapKind::kFooter) return pass_over(record);
@@ -123,6 +131,7 @@ void McapReader::take(const Record& record, McapMessage& message, bool& found) {
   if (!sound && !done_) damage(record.offset, "a record whose content does not fit its length");
 }
 
+// Record 0x06: times, uncompressed size, CRC, compression, length, records.
 void McapReader::open_chunk(const Record& record) {
   // A chunk that the end of the file cuts through still gives its first messages.
   const std::uint64_t there = file_.size() - offset_;
@@ -153,6 +162,7 @@ void McapReader::open_chunk(const Record& record) {
   }
 }
 
+// zstd and lz4 would be two dependencies more; the official tool decompresses files.
 void McapReader::refuse_compression(const std::string& compression) {
   done_ = true;
   readable_ = false;
@@ -183,6 +193,7 @@ void McapReader::take_from_chunk(McapMessage& message, bool& found) {
   if (!sound && !done_) damage(offset, "a record in a chunk whose content does not fit its length");
 }
 
+// Schemas, channels and metadata. A second definition of an id must equal the first.
 bool McapReader::take_definition(McapKind kind, std::span<const std::byte> body) {
   McapFields fields(body);
   if (kind == McapKind::kMetadata) {

@@ -20,6 +20,7 @@
 
 namespace clearance {
 
+// One message; its payload is a view into the reader.
 struct McapMessage {
   const McapChannel* channel = nullptr;  // valid as long as the reader
   std::uint32_t sequence = 0;
@@ -27,7 +28,7 @@ struct McapMessage {
   std::span<const std::byte> payload;            // valid until the next call
 };
 
-// What the end of a closed file says about the rest.
+// The summary section at the end of a closed file.
 struct McapSummary {
   McapStatistics statistics;
   std::map<std::uint16_t, McapChannel> channels;
@@ -43,6 +44,8 @@ struct McapWindow {  // log times, ns, both included
   std::uint64_t end_ns = std::numeric_limits<std::uint64_t>::max();
 };
 
+// Not for several threads at once. Exceptions come from memory allocation only; what is wrong with
+// a file is in error().
 class McapReader {
  public:
   // Only messages inside the window are returned; when the file is indexed, only their chunks are
@@ -72,6 +75,7 @@ class McapReader {
   [[nodiscard]] double progress() const noexcept;
 
  private:
+  // The header of a record.
   struct Record {
     McapKind kind;
     std::uint64_t offset;  // of its first byte in the file

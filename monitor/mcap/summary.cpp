@@ -1,3 +1,6 @@
+// The footer has a fixed length, so it is found from the end of the file and says where the summary
+// begins. The summary is read as a whole, and used only if its checksum and every record in it are
+// right.
 #include <algorithm>
 #include <array>
 
@@ -8,6 +11,7 @@ namespace {
 
 constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 28;  // 256 MiB: some 2 million chunks
 
+// Record 0x02. The place of the summary offsets is not needed.
 struct Footer {
   std::uint64_t offset = 0;  // of the record
   std::uint64_t summary_start = 0;
@@ -51,6 +55,7 @@ McapStatistics read_statistics(McapFields& fields) {
   return statistics;
 }
 
+// Field order as in the specification, record 0x08.
 McapChunkIndex read_chunk_index(McapFields& fields) {
   McapChunkIndex index;
   index.start_ns = fields.get<std::uint64_t>();

@@ -1,3 +1,5 @@
+// Messages are collected in a chunk in memory; a chunk and its indexes go to the file in one write.
+// What the summary needs is kept until the file is closed.
 #include "monitor/mcap/writer.hpp"
 
 #include <fcntl.h>
@@ -11,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// Record 0x03: id, name, encoding, text.
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema) {
   const std::size_t record = out.begin_record(McapKind::kSchema);
   out.put(id);
@@ -20,6 +23,7 @@ void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema) {
   out.end_record(record);
 }
 
+// Record 0x04: id, schema id, topic, message encoding, metadata.
 void put_channel(McapBytes& out, const McapChannel& channel) {
   const std::size_t record = out.begin_record(McapKind::kChannel);
   out.put(channel.id);
@@ -40,6 +44,7 @@ void put_channel_map(McapBytes& out, const std::map<std::uint16_t, std::uint64_t
   out.end_length<std::uint32_t>(length);
 }
 
+// Record 0x08; read_chunk_index in summary.cpp reads it.
 void put_chunk_index(McapBytes& out, const McapChunkIndex& index) {
   const std::size_t record = out.begin_record(McapKind::kChunkIndex);
   out.put(index.start_ns);
@@ -54,6 +59,7 @@ void put_chunk_index(McapBytes& out, const McapChunkIndex& index) {
   out.end_record(record);
 }
 
+// Record 0x0b.
 void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_t schemas,
                     std::size_t channels) {
   constexpr std::uint32_t kAttachments = 0;
@@ -72,6 +78,7 @@ void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_
 
 }  // namespace
 
+// Magic and header go to the file at once: a file that is only this long is a valid beginning.
 McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOptions& options)
     : file_(file), options_(options) {
   const int existing = options.overwrite ? O_TRUNC : O_EXCL;
@@ -89,8 +96,10 @@ McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOption
   put_out(out_.view());
 }
 
+// Errors of closing are lost here; callers who care call close().
 McapWriter::~McapWriter() { close(); }
 
+// The first error is kept: later ones are its consequences.
 void McapWriter::fail(const std::string& what) {
   if (error_.empty()) error_ = what;
 }

@@ -16,6 +16,7 @@
 
 namespace clearance {
 
+// The defaults lose at most 0.2 s in a crash, and chunks stay small enough to be read at once.
 struct McapWriterOptions {
   // A chunk goes to the file when it holds this much or spans this much log time, whichever comes
   // first.

@@ -1,3 +1,5 @@
+// Reads the log twice: the first pass checks every row, the second one writes. A mistake in the
+// last row thus leaves no half-made recording behind.
 #include "monitor/recording/csv_recording.hpp"
 
 #include <fmt/format.h>
@@ -7,14 +9,15 @@
 #include <string_view>
 
 #include "config/spelling.hpp"
-#include "monitor/pose_batch.hpp"
 #include "monitor/csv/pose_log.hpp"
+#include "monitor/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
 
+// All batches of a log have this one source.
 constexpr std::string_view kSource = "csv";
 
 // Ids for the objects of a log.
@@ -127,6 +130,7 @@ class BatchWriter {
 
 }  // namespace
 
+// Rows of fixed objects are counted but not written: the cell gives their poses.
 CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::filesystem::path& out,
                               const Scene* scene, const std::function<bool()>& stop) {
   CsvRecordingResult result;

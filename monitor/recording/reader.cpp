@@ -1,3 +1,5 @@
+// Passes on the MCAP messages whose schema is one of ours. The outline reads only as far as the
+// summary leaves questions open.
 #include "monitor/recording/reader.hpp"
 
 #include "monitor/recording/writer.hpp"
@@ -43,6 +45,7 @@ bool RecordingReader::next(RecordedMessage& message) {
   return false;
 }
 
+// Metadata written by the recorder; files of other origin have none.
 std::string RecordingReader::build() const {
   const auto about = mcap_.metadata().find(std::string(kRecordingMetadata));
   if (about == mcap_.metadata().end()) return {};

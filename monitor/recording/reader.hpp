@@ -14,6 +14,7 @@
 
 namespace clearance {
 
+// One message of ours; not decoded yet, since most readers want some kinds only.
 struct RecordedMessage {
   TopicKind kind = TopicKind::kCatalogue;
   std::int64_t log_ns = 0, publish_ns = 0;
@@ -21,6 +22,8 @@ struct RecordedMessage {
   const McapChannel* channel = nullptr;  // valid as long as the reader
 };
 
+// Any MCAP file may be given: messages of other types are passed over, and damage is reported as
+// McapReader does.
 class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& file, const McapWindow& window = {});

@@ -1,3 +1,5 @@
+// Encodes each batch when it comes and holds it until the report of the tick that used it. The file
+// is thus in the order of use, which is what an exact replay needs.
 #include "monitor/recording/recorder.hpp"
 
 #include <algorithm>
@@ -60,6 +62,7 @@ void Recorder::write_used(std::span<const SourceUse> sources, std::int64_t log_n
   if (waiting_.size() > kMostWaiting) write_waiting(waiting_.size(), log_ns);
 }
 
+// The first `count` batches, stamped with the log time of the report that used them.
 void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
   for (std::size_t i = 0; i < count; ++i) {
     writer_.write(TopicKind::kPoses, log_ns, waiting_[i].stamp_ns,
@@ -68,6 +71,7 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+// As the daemon does on DDS: each zone at the start, then its changes.
 void Recorder::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < scene_.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
@@ -84,6 +88,7 @@ void Recorder::health(const clearance_msg_Health& health) {
   writer_.write(TopicKind::kHealth, std::max(last_ns_, health.now_ns), health.now_ns, health);
 }
 
+// Batches that no report has named yet are written as well: they did arrive.
 bool Recorder::close() {
   write_waiting(waiting_.size(), last_ns_);
   return writer_.close();

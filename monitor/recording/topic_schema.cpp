@@ -1,3 +1,5 @@
+// Cuts from the text of clearance.idl the definitions that one type needs, backwards from the type.
+// This is no IDL parser: it relies on how that file is written.
 #include "monitor/recording/topic_schema.hpp"
 
 #include <fmt/format.h>
@@ -38,6 +40,7 @@ std::set<std::string> words(std::string_view text) {
   return found;
 }
 
+// A constant or struct, from its keyword to its semicolon.
 struct Definition {
   std::string name;
   std::string text;
@@ -54,6 +57,7 @@ std::size_t end_of_definition(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
+// The word that follows the keyword.
 std::string name_after(std::string_view text, std::string_view keyword) {
   const std::size_t begin = text.find(keyword) + keyword.size();
   const std::size_t end = std::min(text.find_first_of(" {\n", begin), text.size());
@@ -96,6 +100,7 @@ std::string self_contained_idl(std::string_view idl, std::string_view type) {
   return fmt::format("{}}};\n}};\n", text);
 }
 
+// Five comparisons, once for each channel.
 std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
   for (const Topic& topic : kTopics) {
     if (type_name == topic.type->m_typename) return topic.kind;
@@ -103,6 +108,7 @@ std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
   return std::nullopt;
 }
 
+// Made once, on first use; initialisation of statics is thread-safe.
 const McapSchema& topic_schema(TopicKind kind) {
   static const std::array<McapSchema, kTopics.size()> kSchemas = [] {
     std::array<McapSchema, kTopics.size()> all;

@@ -10,6 +10,7 @@
 
 namespace clearance {
 
+// Well-known encodings of the MCAP registry (mcap.dev/spec/registry).
 inline constexpr std::string_view kCdrEncoding = "cdr";
 inline constexpr std::string_view kIdlEncoding = "omgidl";
 

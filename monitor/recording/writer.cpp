@@ -1,3 +1,5 @@
+// Gives each of the five topics a channel at the start, so that channel ids do not depend on what
+// is written first.
 #include "monitor/recording/writer.hpp"
 
 namespace clearance {
@@ -11,6 +13,7 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics
   }
 }
 
+// Metadata stands outside the messages, so that a reader finds the cell without decoding one.
 void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
   McapMap about = {{"version", CLEARANCE_VERSION},
                    {"scene", catalogue.scene},
@@ -20,12 +23,14 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
   mcap_.metadata(kRecordingMetadata, about);
 }
 
+// The same content as metadata and as a message of the topic.
 void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
                                 const std::string& build) {
   describe(catalogue, build);
   write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
 }
 
+// MCAP times are unsigned; ours are never negative.
 void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                             std::span<const std::byte> cdr) {
   mcap_.write(channels_[index(kind)], static_cast<std::uint64_t>(log_ns),

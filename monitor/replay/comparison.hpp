@@ -7,8 +7,8 @@ namespace clearance {
 
 enum class Comparison : std::uint8_t {
   kBits,    // every field of the tick, to the bit
-  kBounds,  // only what is certain: bounds of one pair overlap; for other builds, or without the
-            // history
+  kBounds,  // only what is certified: bounds of one pair overlap. For other builds, or when
+            // the history before the recording is missing
 };
 
 }  // namespace clearance

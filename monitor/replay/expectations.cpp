@@ -1,3 +1,5 @@
+// Judges the bound over all pairs, which one comparison does in a tick; single pairs are searched
+// only to name the one that broke an expectation.
 #include "monitor/replay/expectations.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// For a message about a zone that does not exist.
 std::string zone_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const Zone& zone : scene.zones) names.push_back(zone.name);
@@ -74,7 +77,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
 std::optional<std::string> Expectations::check_distance(const Report& report,
                                                         const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
-  if (report.lower_all >= *min_distance_) return check_passages(report, monitor);
+  if (report.lower_all >= *min_distance_) return check_sweep(report, monitor);
   distance_broken_ = true;
   std::uint32_t nearest = 0;
   for (std::uint32_t p = 1; p < scene_.pairs.size(); ++p) {
@@ -91,8 +94,7 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 }
 
 // Nothing is too near now; was something since the last tick?
-std::optional<std::string> Expectations::check_passages(const Report& report,
-                                                        const Monitor& monitor) {
+std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
     const SweptBounds found = monitor.sweep(p, *min_distance_);

@@ -1,4 +1,5 @@
-// What a user's test expects of every tick: the first tick that breaks an expectation is told.
+// Expectations of a user's test that every tick must meet; the first tick that breaks one is
+// reported.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,8 @@
 
 namespace clearance {
 
+// Each expectation is told once, at the tick that breaks it first. Bounds decide: what is not
+// certified counts as broken.
 class Expectations {
  public:
   // `min_distance`, m: of every pair in every tick and at every instant since the last. Zone names
@@ -37,8 +40,8 @@ class Expectations {
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
                                                           const Monitor& monitor);
-  [[nodiscard]] std::optional<std::string> check_passages(const Report& report,
-                                                          const Monitor& monitor);
+  [[nodiscard]] std::optional<std::string> check_sweep(const Report& report,
+                                                       const Monitor& monitor);
 
   const Scene& scene_;
   std::optional<double> min_distance_;

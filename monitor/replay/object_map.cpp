@@ -1,3 +1,5 @@
+// Builds a table from recorded ids to the scene's ids by name, once; each batch is then translated
+// by looking ids up.
 #include "monitor/replay/object_map.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// No object of the scene has this id: there are at most 4096.
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace

@@ -1,3 +1,6 @@
+// Feeds each tick of the recording to a Monitor and passes the report to the comparison, the
+// expectations and the reference, each of which keeps its first failure. Failures are collected
+// rather than thrown: one run finds the first of each kind.
 #include "monitor/replay/offline_replay.hpp"
 
 #include <fmt/format.h>
@@ -24,6 +27,7 @@ std::int64_t whole_ns(double seconds) {
   return std::llround(std::min(seconds, kCentury) * 1e9);
 }
 
+// Nothing unless a reference was given.
 std::optional<ReferenceCheck> reference_of(const Scene& scene,
                                            const OfflineReplayOptions& options) {
   if (options.reference.empty()) return std::nullopt;
@@ -121,6 +125,7 @@ std::string Replay::refusal() const {
   return {};
 }
 
+// Once: the result is moved out.
 OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tick) {
   result_.error = refusal();
   if (!result_.error.empty()) return std::move(result_);
@@ -133,6 +138,7 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   return std::move(result_);
 }
 
+// A stop is asked for before each tick, so that the ticks counted are whole.
 void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) {
   TickInput input;
   while (feed_.next(input)) {
@@ -275,11 +281,13 @@ void Replay::finish_reference() {
   }
 }
 
+// A cycle of 0 stands for the replay as a whole.
 void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what) {
   const TickNumber tick{cycle, cycle > 0 ? cycle + cycle_offset_ : 0};
   result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
+// What was left out, at the end and as totals.
 void Replay::note_counts() {
   const auto note = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
@@ -303,6 +311,7 @@ void Replay::show_progress() {
 
 }  // namespace
 
+// The outline is read first: a file that is no recording is an error rather than a failure.
 OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
                              const OfflineReplayOptions& options,
                              const std::function<void(const ReplayedTick&)>& on_tick) {

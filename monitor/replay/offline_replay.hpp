@@ -1,6 +1,6 @@
-// A recording through Monitor::tick, without a clock and without DDS: the same reports again, as
-// fast as they can be computed. For a user's own tests, which find_package(clearance) and link
-// clearance::replay:
+// Runs Monitor::tick on a recording, without a clock and without DDS, and gets the same reports
+// again as fast as they can be computed. This is for a user's own tests, which
+// find_package(clearance) and link clearance::replay:
 //
 //   #include <config/cell_file.hpp>
 //   #include <monitor/replay/offline_replay.hpp>
@@ -32,6 +32,7 @@ namespace clearance {
 
 class Monitor;  // monitor/monitor.hpp, in the source tree
 
+// All are optional: without any, the replay only runs.
 struct OfflineReplayOptions {
   // Ticks in this window are compared, judged and handed out; s after the first tick. Those before
   // it are run all the same, since bounds and zones have a history.
@@ -72,6 +73,7 @@ struct TickNumber {
   [[nodiscard]] std::string text() const;
 };
 
+// The first failure of one expectation or comparison.
 struct ReplayFailure {
   TickNumber tick;
   std::int64_t now_ns = 0;
@@ -79,6 +81,7 @@ struct ReplayFailure {
   std::string what;     // which pair, zone or field, and the figures
 };
 
+// The result of a whole replay.
 struct OfflineReplay {
   std::string error;                    // not empty: it could not be run at all
   std::string damage;                   // not empty: the recording was read up to a damage

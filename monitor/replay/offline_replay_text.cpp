@@ -1,16 +1,18 @@
-// What a replay tells a person.
+// The result of a replay as text for a person.
 #include <fmt/format.h>
 
 #include "monitor/replay/offline_replay.hpp"
 
 namespace clearance {
 
+// Both numbers where they differ: one finds the tick in the replay, the other in the daemon's log.
 std::string TickNumber::text() const {
   const std::string name = fmt::format("tick {}", cycle);
   if (recorded == cycle) return name;
   return fmt::format("{} of the replay, {} of the daemon", name, recorded);
 }
 
+// Errors first, then failures, then notes.
 std::string OfflineReplay::text() const {
   std::string out;
   const auto line = [&out](const std::string& what) { out.append(what).append("\n"); };

@@ -1,3 +1,5 @@
+// Reads the whole table of reference distances, then compares value by value as the ticks pass
+// their times. Differences are judged with the rounding of the digits written.
 #include "monitor/replay/reference_check.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +20,7 @@ namespace clearance {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumns = {"t_ns", "object_a", "object_b", "distance"};
+// Places in kColumns.
 enum Column : std::size_t { kTime, kObjectA, kObjectB, kDistance };
 
 using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t, std::less<>>;
@@ -114,12 +117,14 @@ void ReferenceCheck::compare(const Value& value, const PairReport& ours,
   }
 }
 
+// Values after the last tick met no tick either.
 ReferenceTotals ReferenceCheck::totals() const {
   ReferenceTotals totals = totals_;
   totals.other_times += values_.size() - next_;
   return totals;
 }
 
+// Sentences about values that were not compared.
 std::vector<std::string> ReferenceCheck::notes() const {
   std::vector<std::string> notes;
   const ReferenceTotals all = totals();

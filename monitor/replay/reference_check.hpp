@@ -1,4 +1,4 @@
-// Distances that something else computed, held against those of a replay.
+// Compares the distances of a replay with those that another program computed.
 //
 // A CSV table, plain or gzip: t_ns, object_a, object_b, distance (m), found by name in any order,
 // times not going back. Either object may come first. Where the reference is 0 the bodies touch or
@@ -17,6 +17,8 @@
 
 namespace clearance {
 
+// Judges each value twice: the distance within a tolerance, and the bounds with the rounding of the
+// reference only.
 class ReferenceCheck {
  public:
   // Reads the whole table; what is wrong with it is in error(). The scene must outlive this.

@@ -5,6 +5,7 @@
 
 namespace clearance {
 
+// Counts of reference values.
 struct ReferenceTotals {
   std::uint64_t compared = 0;
   std::uint64_t off = 0;      // farther from our distance than the tolerance, or ours is not known

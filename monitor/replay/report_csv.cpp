@@ -1,3 +1,5 @@
+// Builds rows in memory with std::to_chars, the shortest text that reads back exactly, and writes
+// them in pieces of 256 KiB.
 #include "monitor/replay/report_csv.hpp"
 
 #include <array>
@@ -36,6 +38,7 @@ void put(std::string& row, const Vec3& vector) {
 
 }  // namespace
 
+// The header is the first row in memory; it reaches the file with the first piece.
 ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool all_pairs)
     : path_(file), scene_(scene), all_pairs_(all_pairs), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) {
@@ -62,6 +65,7 @@ void ReportCsv::add(const ReplayedTick& tick) {
   if (rows_.size() >= kWriteAt) write();
 }
 
+// In the order of the header.
 void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   const ObjectPair& objects = scene_.pairs[pair.pair];
   put(rows_, report.cycle);
@@ -89,6 +93,7 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   rows_ += '\n';
 }
 
+// After an error the rows are dropped: the file is incomplete anyway.
 void ReportCsv::write() {
   if (std::fwrite(rows_.data(), 1, rows_.size(), file_.get()) != rows_.size()) {
     error_ = cannot_write(path_);

@@ -1,4 +1,4 @@
-// Replayed ticks as a table: one row a tick and pair.
+// Writes replayed ticks as a table with one row for each tick and pair.
 #pragma once
 
 #include <cstdio>

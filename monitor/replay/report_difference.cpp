@@ -1,3 +1,5 @@
+// Compares in wire types, where both sides are available without conversion, and stops at the first
+// field that differs.
 #include "monitor/replay/report_difference.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 namespace clearance {
 namespace {
 
+// 17 digits identify a double.
 std::string text(double value) { return fmt::format("{:.17g}", value); }
 template <class T>
 std::string text(const T& value) {
@@ -77,6 +80,8 @@ class Comparer {
     within_.reset();
   }
 
+  // Bounds of one pair contain the same true distance, so they must overlap, whatever build made
+  // them.
   void bounds(std::optional<std::uint32_t> place, const clearance_msg_PairDistance& recorded,
               const clearance_msg_PairDistance& replayed) {
     if (difference_ || recorded.pair != replayed.pair) return;

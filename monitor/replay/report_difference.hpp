@@ -1,4 +1,4 @@
-// In what do two reports of the same tick differ?
+// Finds the first difference between two reports of the same tick.
 #pragma once
 
 #include <cstdint>

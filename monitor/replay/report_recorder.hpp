@@ -1,4 +1,4 @@
-// Replayed ticks as a recording: catalogue, reports and zone changes, in bytes that depend on
+// Writes replayed ticks as a recording: catalogue, reports and zone changes. The bytes depend on
 // nothing but the replayed recording, the cell and the build.
 #pragma once
 
@@ -10,6 +10,7 @@
 
 namespace clearance {
 
+// Overwrites the file. Without a tick, close() still writes the catalogue, stamped 0.
 class ReportRecorder {
  public:
   ReportRecorder(const std::filesystem::path& file, const Scene& scene)

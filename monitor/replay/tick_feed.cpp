@@ -1,3 +1,5 @@
+// Reads the file ahead until the batches of the next tick are known, and keeps what belongs to
+// later ticks. Batches are identified by source and sequence number.
 #include "monitor/replay/tick_feed.hpp"
 
 #include <algorithm>
@@ -51,6 +53,7 @@ bool TickFeed::read_one() {
   return true;
 }
 
+// Decodes a batch and gives it the ids of the scene.
 void TickFeed::read_batch(const RecordedMessage& message) {
   if (!decoder_.decode(message.cdr, wire_batch_)) {
     ++undecodable_;
@@ -111,6 +114,7 @@ bool TickFeed::consumed(const SourceUse& use) const {
   return last != consumed_.end() && last->second == use.sequence_number;
 }
 
+// Whether the batches that a report names have been read or were used before.
 bool TickFeed::all_there(std::span<const SourceUse> sources) const {
   return std::ranges::all_of(sources, [this](const SourceUse& use) {
     return place_of(use) < batches_waiting_.size() || consumed(use);

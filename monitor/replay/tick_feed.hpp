@@ -1,4 +1,4 @@
-// A recording, tick by tick: what each tick of the daemon had taken in, and at what time.
+// Reads a recording tick by tick: the poses that each tick of the daemon took in, and its time.
 //
 // Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
 // report names as used (by source and sequence number), wherever they stand in the file. Where it
@@ -23,6 +23,7 @@
 
 namespace clearance {
 
+// What Monitor::tick gets, and the report that the daemon made of it.
 struct TickInput {
   std::int64_t now_ns = 0;
   std::vector<PoseSample> samples;
@@ -32,6 +33,7 @@ struct TickInput {
   bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
 };
 
+// Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
   TickFeed(const std::filesystem::path& file, const Scene& scene, const RecordingOutline& outline);

@@ -1,3 +1,5 @@
+// Reduces both sides to changes of state and finds the first position, zone by zone, where the two
+// lists differ.
 #include "monitor/replay/zone_difference.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +28,7 @@ States changes_of(const States& recorded, std::uint32_t zone) {
   return changes;
 }
 
+// NaN equals itself here, and -0 differs from 0.
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
@@ -36,6 +39,7 @@ bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
          same_bits(a.clearance, b.clearance) && same_bits(a.swept_clearance, b.swept_clearance);
 }
 
+// 17 digits, so that values that differ look different.
 std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
   return fmt::format("{} at tick {}, clearance {:.17g} m, since the last tick {:.17g} m ({})",
                      state.active ? "active" : "inactive", state.cycle, state.clearance,

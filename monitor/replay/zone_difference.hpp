@@ -1,4 +1,4 @@
-// Did the zones change at the same ticks as recorded, and for the same reason?
+// Checks that zones change at the same ticks as recorded, and for the same reason.
 #pragma once
 
 #include <cstdint>

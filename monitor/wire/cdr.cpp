@@ -1,3 +1,5 @@
+// Uses Cyclone's own serializer, so that a recording has the bytes of the network. Input is first
+// normalised, which checks every length, and only then read.
 #include "monitor/wire/cdr.hpp"
 
 #include <dds/ddsi/ddsi_cdrstream.h>
@@ -13,6 +15,7 @@ constexpr std::size_t kHeader = 4;      // representation id (2), options (2); b
 constexpr std::size_t kMaxPadding = 3;  // what may follow the last field
 constexpr std::byte kXcdr1LittleEndian{1};
 
+// What the first two bytes say (DDSI-RTPS 2.3, section 10.2).
 struct Encapsulation {
   std::uint32_t xcdr_version;
   bool big_endian;
@@ -41,10 +44,12 @@ bool read_encapsulation(std::span<const std::byte> cdr, Encapsulation& out) {
 
 }  // namespace
 
+// Keeps Cyclone's header out of ours.
 struct CdrEncoder::Stream {
   dds_ostreamLE_t out;
 };
 
+// XCDR version 1; the size 0 lets the buffer grow when needed.
 CdrEncoder::CdrEncoder() : stream_(new Stream) { dds_ostreamLE_init(&stream_->out, 0, 1); }
 
 CdrEncoder::~CdrEncoder() {
@@ -52,6 +57,8 @@ CdrEncoder::~CdrEncoder() {
   delete stream_;
 }
 
+// The low two bits of the options are the number of padding bytes (DDS-XTypes 1.3, section
+// 7.6.3.1.2).
 std::span<const std::byte> CdrEncoder::encode(const void* sample,
                                               const dds_topic_descriptor_t& type) {
   dds_ostream_t& out = stream_->out.x;
@@ -70,6 +77,7 @@ std::span<const std::byte> CdrEncoder::encode(const void* sample,
   return bytes_;
 }
 
+// The bytes are copied, since normalising swaps them in place and needs alignment to 8.
 bool CdrDecoder::decode(std::span<const std::byte> cdr, void* sample,
                         const dds_topic_descriptor_t& type) {
   Encapsulation encapsulation{};

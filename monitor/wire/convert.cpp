@@ -1,3 +1,5 @@
+// Field by field, in the order of idl/clearance.idl. Functions for the tick thread and beside it
+// write into sequences that make_distances or make_batch sized.
 #include "monitor/wire/convert.hpp"
 
 #include <algorithm>
@@ -19,8 +21,10 @@ void copy_text(std::string_view text, char (&out)[N]) noexcept {
   std::memset(out + length, 0, N - length);
 }
 
+// Strings of a sample are freed by Cyclone, so they are allocated by it.
 char* duplicate(const std::string& text) { return dds_string_dup(text.c_str()); }
 
+// Part names in their order: a part id is a place in it.
 void fill(const Object& object, std::uint32_t id, clearance_msg_CatalogueObject& out) {
   out.id = id;
   out.name = duplicate(object.name);
@@ -30,6 +34,7 @@ void fill(const Object& object, std::uint32_t id, clearance_msg_CatalogueObject&
     out.parts._buffer[out.parts._length++] = duplicate(part.name);
 }
 
+// Thresholds in m, as in the scene.
 void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) {
   out.id = id;
   out.name = duplicate(zone.name);
@@ -164,6 +169,7 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
   }
 }
 
+// The sequence keeps its buffer from batch to batch.
 Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses) {
   Sample<clearance_msg_PoseBatch> sample;
   reserve_sequence(sample->poses, poses);

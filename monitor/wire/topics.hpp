@@ -23,6 +23,7 @@ enum class Delivery : std::uint8_t {
   kLatched,  // transient-local, depth 1: a late reader gets the last sample of each key
 };
 
+// One row of the table.
 struct Topic {
   TopicKind kind;
   std::string Topics::*name;  // in a scene; Topics has the defaults
