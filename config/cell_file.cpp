@@ -31,8 +31,10 @@ namespace {
 constexpr std::int64_t kMaxBudget = 1'000'000'000;
 constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bits
 // Discovery announces names in bounded strings (DDSI-RTPS: string<256>).
-constexpr std::size_t kMaxDdsName = 255;                 // bytes
+constexpr std::size_t kMaxDdsName = 255;  // bytes
+// The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
+// From one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 // The sections of a cell, one function each.
@@ -49,6 +51,7 @@ class CellReader {
   void read_dds(const YamlNode& node, Scene& scene);
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
+  // Has to be last: it needs every pair with its parts.
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;

@@ -53,6 +53,7 @@ void Diagnostics::add(int line, int column, const std::string& text) {
   diagnostics_.push_back({line, column, std::move(one_line)});
 }
 
+// Stable for equal input: ties of place are ordered by their text.
 std::vector<CellError> Diagnostics::sorted() const {
   std::vector<Diagnostic> ordered = diagnostics_;
   std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {

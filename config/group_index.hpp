@@ -16,6 +16,7 @@ namespace clearance {
 // Two objects in one number, the smaller index first: order of keys is order of pairs in the scene.
 using PairKey = std::uint64_t;
 
+// In either order of its arguments.
 [[nodiscard]] inline PairKey pair_key(std::uint32_t a, std::uint32_t b) {
   return a < b ? PairKey{a} << 32 | b : PairKey{b} << 32 | a;
 }
@@ -51,6 +52,7 @@ class GroupIndex {
   void refuse_unused_groups() const;
 
  private:
+  // A name: a group of objects, or a single object.
   struct Entry {
     std::vector<std::uint32_t> objects;
     bool is_group = false;

@@ -65,6 +65,7 @@ void MapReader::refuse_unknown_keys() {
   }
 }
 
+// A reference to something static stands for the list that is none.
 const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
                                        Diagnostics& diagnostics) {
   static const std::vector<YamlNode> kEmpty;

@@ -9,6 +9,7 @@
 
 namespace clearance {
 
+// The end of a sentence: "'x.stl' cannot be opened: ...".
 struct MeshFault {
   std::string reason;
 };

@@ -30,6 +30,7 @@ class ObjectReader {
   void read_groups(const YamlNode& node, Object& object, bool& names_known);
   void read_parts(MapReader& map, const YamlNode& node, Object& object);
   void read_part(const YamlNode& node, Object& object);
+  // `node` is where a part that is refused is reported.
   void add_part(const YamlNode& node, NamedShape shape, std::string name, const Pose& pose,
                 Object& object);
   void read_motion(MapReader& map, Object& object);

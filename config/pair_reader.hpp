@@ -9,6 +9,7 @@
 
 namespace clearance {
 
+// The pairs to watch, and those that the cell allows to touch.
 struct PairList {
   std::vector<ObjectPair> pairs;  // ascending by first, then second
   std::vector<PairKey> allowed;   // ascending: pairs that an exception removed

@@ -13,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// A longer time limit is a mistake, and a day in ns is far below the range of its type.
 constexpr double kMaxMilliseconds = 86'400'000.0;  // a day
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
@@ -43,6 +44,7 @@ std::optional<std::array<double, N>> numbers(const YamlNode& node, const std::st
 const char* word(LengthUnit unit) { return unit == LengthUnit::kMetre ? "m" : "mm"; }
 const char* word(AngleUnit unit) { return unit == AngleUnit::kRadian ? "rad" : "deg"; }
 
+// Multiples of 90 deg in a pose do not come through here; see turn().
 double radians(double value, AngleUnit unit) {
   return unit == AngleUnit::kRadian ? value : value * kRadPerDeg;
 }
@@ -119,6 +121,7 @@ std::optional<double> Quantities::speed(const YamlNode& node, const std::string&
   return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
 }
 
+// Fractions of a millisecond are allowed; the result is rounded to whole nanoseconds.
 std::optional<std::int64_t> Quantities::milliseconds(const YamlNode& node, const std::string& what,
                                                      const Range& range) const {
   const Range limited{range.least, std::fmin(range.most, kMaxMilliseconds), range.above_least};
@@ -126,6 +129,7 @@ std::optional<std::int64_t> Quantities::milliseconds(const YamlNode& node, const
   return value ? std::optional<std::int64_t>(std::llround(*value * 1e6)) : std::nullopt;
 }
 
+// Each number is checked against the range on its own.
 std::optional<Vec3> Quantities::lengths(const YamlNode& node, const std::string& what,
                                         const Range& range) const {
   const std::string unit = word(units_.length);
@@ -137,6 +141,7 @@ std::optional<Vec3> Quantities::lengths(const YamlNode& node, const std::string&
               metres((*values)[2], units_.length));
 }
 
+// Used for angular velocities about the axes, too: their unit is the angle's a second.
 std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& what) const {
   const std::string unit = word(units_.angle);
   const auto values = numbers<3>(node, fmt::format("{} in {}", what, unit),
@@ -146,6 +151,7 @@ std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& 
               radians((*values)[2], units_.angle));
 }
 
+// Vertices of the base of a prism.
 std::optional<Eigen::Vector2d> Quantities::lengths_2d(const YamlNode& node,
                                                       const std::string& what) const {
   const std::string unit = word(units_.length);

@@ -13,6 +13,7 @@
 
 namespace clearance {
 
+// The units that a cell file may state.
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
@@ -20,6 +21,7 @@ enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 // mistake of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
+// What the `units:` section says.
 struct Units {
   LengthUnit length = LengthUnit::kMetre;
   AngleUnit angle = AngleUnit::kRadian;
@@ -31,6 +33,7 @@ struct Units {
 [[nodiscard]] std::optional<AngleUnit> read_angle_unit(const YamlNode& node,
                                                        Diagnostics& diagnostics);
 
+// A length in this unit, in metres.
 [[nodiscard]] double metres(double value, LengthUnit unit);
 
 // Every reading function returns nothing after a diagnostic. `what` says what the quantity is: "the
@@ -40,6 +43,7 @@ class Quantities {
   Quantities(const Units& units, Diagnostics& diagnostics)
       : units_(units), diagnostics_(diagnostics) {}
 
+  // For readers of shapes that state a unit of their own.
   [[nodiscard]] const Units& units() const { return units_; }
   [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
 

@@ -17,6 +17,8 @@ struct RefreshCost {
   [[nodiscard]] std::uint64_t queries(std::uint64_t ticks) const noexcept;
 };
 
+// Queries that refreshing takes in each tick. A cell whose budget is smaller is refused when it is
+// loaded.
 struct RefreshShare {
   std::uint64_t ticks = 1;  // every pair is refreshed within so many
   // Published pairs are evaluated in every tick in which the budget lasts, apart from all others.

@@ -11,6 +11,7 @@
 
 namespace clearance {
 
+// What URDF and SRDF do not say.
 struct RobotCellOptions {
   std::filesystem::path urdf;
   std::filesystem::path srdf;       // empty: no pair is disabled

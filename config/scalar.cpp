@@ -92,6 +92,7 @@ std::string number_hint(const YamlNode& node) {
 
 }  // namespace
 
+// Numbers in hexadecimal or octal are text here: no cell needs them, and 0x10 is more often a name.
 ScalarType scalar_type(const YamlNode& scalar) {
   if (scalar.quoted) return ScalarType::kText;
   if (is_special(scalar.text, "true", "True", "TRUE") ||

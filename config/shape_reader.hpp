@@ -45,8 +45,10 @@ class ShapeReader {
   std::optional<ShapeResult> read_half_space(const YamlNode& node) const;
   std::optional<ShapeResult> read_polyhedron(const YamlNode& node) const;
   std::optional<ShapeResult> read_mesh(const YamlNode& node);
+  // One inequality normal . x <= offset, in metres.
   std::optional<HalfSpace> read_row(const YamlNode& node) const;
   Vec3 read_scale(const YamlNode* node) const;
+  // The vertices of a mesh file in its own unit; null after a diagnostic.
   const std::vector<Vec3>* load(const YamlNode& file_node, const std::string& file);
 
   const Quantities& quantities_;

@@ -59,6 +59,7 @@ class XmlReader {
     return value;
   }
 
+  // A child element that must be there; the first one if there are more.
   const XMLElement& child(const XMLElement& element, const char* name) const {
     const XMLElement* found = element.FirstChildElement(name);
     if (found == nullptr) {
@@ -67,12 +68,14 @@ class XmlReader {
     return *found;
   }
 
+  // One finite number. URDF is in SI units.
   double number(const XMLElement& element, const char* name) const {
     double value = 0.0;
     numbers(element, name, std::span(&value, 1));
     return value;
   }
 
+  // Three finite numbers.
   Vec3 vector(const XMLElement& element, const char* name) const {
     std::array<double, 3> values{};
     numbers(element, name, values);

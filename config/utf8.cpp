@@ -38,6 +38,7 @@ bool begins_with(std::string_view text, const Form& form) {
 
 }  // namespace
 
+// Character by character; each is judged by its own bytes only.
 std::size_t end_of_utf8(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {

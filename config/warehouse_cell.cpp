@@ -75,8 +75,10 @@ constexpr const char* kZones = R"(
 - {name: aisle, between: [vehicles, standing], enter_below: 0.25, leave_above: 0.3}
 - {name: stop, between: [arm, station], enter_below: 0.05, leave_above: 0.07})";
 
+// What drives or walks in the aisles.
 enum class Kind : std::uint8_t { kForklift, kRobot, kPerson };
 
+// One kind of moving object.
 struct Vehicle {
   const char* name;
   const char* group;
@@ -115,6 +117,7 @@ class Warehouse {
     standing_ = options.objects - moving_;
   }
 
+  // The order of the calls is the order of draws: changing it changes every warehouse.
   std::string yaml() {
     add_racks();
     add_station();

@@ -96,6 +96,7 @@ class TreeBuilder : public YAML::EventHandler {
     finish(YamlNode(found->second), 0);
   }
 
+  // yaml-cpp tells quoted scalars from plain ones by their tag alone.
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     YamlNode node = node_at(mark, YamlNode::Kind::kScalar);
@@ -104,6 +105,7 @@ class TreeBuilder : public YAML::EventHandler {
     finish(std::move(node), anchor);
   }
 
+  // Tags and styles of collections mean nothing here.
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
     open_.push_back({node_at(mark, YamlNode::Kind::kSequence), anchor, {}, false});

@@ -60,6 +60,7 @@ class ZoneReader {
              const Quantities& quantities)
       : objects_(objects), pairs_(pairs), group_index_(group_index), quantities_(quantities) {}
 
+  // A zone with a mistake stays in the list, so that the ids of those after it do not change.
   Zone read(const YamlNode& node) {
     Diagnostics& diagnostics = quantities_.diagnostics();
     Zone zone;

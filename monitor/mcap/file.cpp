@@ -19,6 +19,7 @@ McapFile::McapFile(const std::filesystem::path& path) : file_(std::fopen(path.c_
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
 
+// Checked without sums that could overflow: offset and size come from the file.
 bool McapFile::read(std::uint64_t offset, std::span<std::byte> out) {
   if (offset > size_ || out.size() > size_ - offset) return false;
   if (!file_) {

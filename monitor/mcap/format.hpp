@@ -93,6 +93,7 @@ struct McapStatistics {
 // Appends little-endian values to a buffer.
 class McapBytes {
  public:
+  // Everything put so far; valid until the next put.
   [[nodiscard]] std::span<const std::byte> view() const noexcept { return bytes_; }
   [[nodiscard]] std::size_t size() const noexcept { return bytes_.size(); }
   void clear() noexcept { bytes_.clear(); }
@@ -140,6 +141,7 @@ class McapBytes {
     put(static_cast<std::uint8_t>(kind));
     return begin_length<std::uint64_t>();
   }
+  // Fills in the length that begin_record() left open.
   void end_record(std::size_t begin) { end_length<std::uint64_t>(begin); }
 
  private:
@@ -152,6 +154,7 @@ class McapFields {
  public:
   explicit McapFields(std::span<const std::byte> bytes) : rest_(bytes) {}
 
+  // False once something was missing; every value read since is zero or empty.
   [[nodiscard]] bool ok() const noexcept { return ok_; }
   [[nodiscard]] std::span<const std::byte> rest() const noexcept { return rest_; }
 

@@ -65,11 +65,13 @@ class McapReader {
   // instead of being no MCAP file, or one that this reader does not take.
   [[nodiscard]] bool readable() const noexcept { return readable_; }
 
+  // Nothing where the file was cut off or its end is damaged.
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept { return summary_; }
   // Those seen so far.
   [[nodiscard]] const std::map<std::string, McapMap>& metadata() const noexcept {
     return metadata_;
   }
+  // Messages of the window handed out so far.
   [[nodiscard]] std::uint64_t messages() const noexcept { return messages_; }
   // Share of the file that has been read, 0 to 1.
   [[nodiscard]] double progress() const noexcept;
@@ -83,6 +85,7 @@ class McapReader {
   };
 
   void begin();
+  // Both set error() and end the reading.
   void damage(std::uint64_t offset, const std::string& what);
   void cut_off(std::uint64_t offset);
   [[nodiscard]] bool read_magic();
@@ -91,6 +94,7 @@ class McapReader {
   // False, and the reading has ended: it is cut off, or too long.
   [[nodiscard]] bool read_body(const Record& record);
   void pass_over(const Record& record);
+  // One record outside chunks; sets `found` when it is a message of the window.
   void take(const Record& record, McapMessage& message, bool& found);
   void open_chunk(const Record& record);
   void refuse_compression(const std::string& compression);

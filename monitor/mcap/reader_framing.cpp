@@ -9,6 +9,7 @@
 namespace clearance {
 namespace {
 
+// A length that a flipped bit made huge must not allocate that much.
 constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 30;  // 1 GiB, in memory at once
 
 }  // namespace

@@ -34,9 +34,11 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
+  // False after the first error of the system.
   [[nodiscard]] bool ok() const noexcept { return error_.empty(); }
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] std::uint64_t messages() const noexcept { return statistics_.messages; }
+  // Of the file so far, with the chunk that is still in memory.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return offset_ + chunk_.size(); }
 
   // Equal schemas are written once. Returns the channel's id, from 1.
@@ -57,16 +59,19 @@ class McapWriter {
   bool close();
 
  private:
+  // What a channel has written.
   struct Channel {
     std::uint32_t sequence = 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // (log time, offset) in this chunk
   };
+  // Record 0x0d, written with the summary.
   struct MetadataIndex {
     std::uint64_t offset, length;
     std::string name;
   };
 
   void fail(const std::string& what);
+  // To the file, through the checksum.
   void put_out(std::span<const std::byte> bytes);
   void write_message_indexes(McapChunkIndex& index);
   void write_summary();
