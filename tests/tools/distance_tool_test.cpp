@@ -303,8 +303,8 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
 TEST_F(DistanceTool, CountsWhichWayTheAnswersCame) {
   std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n' << cubes("overlapping", 0.25);
   const Outcome r = run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl"));
-  EXPECT_NE(r.err.find("by the walk 1, by the loop 1 (1 touch or overlap, 0 by the robust path), "
-                       "by the last overlap 0"),
+  EXPECT_NE(r.err.find("by feature tracking 1, by the active set 1 (1 touch or overlap, 0 by GJK), "
+                       "by the last penetration 0"),
             std::string::npos)
       << r.err;
 }

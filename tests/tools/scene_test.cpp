@@ -99,8 +99,8 @@ TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   EXPECT_EQ(block["hull"]["facets"], 6);
   EXPECT_GE(block["hull"]["error"], 0.5);  // halfway between the two
   EXPECT_LE(block["hull"]["error"], 0.5 / 0.98);
-  EXPECT_GE(block["ball"]["radius"], 1.5);
-  EXPECT_FALSE(objects[1].contains("ball"));
+  EXPECT_GE(block["sphere"]["radius"], 1.5);
+  EXPECT_FALSE(objects[1].contains("sphere"));
   EXPECT_FALSE(objects[1].contains("hull"));
 
   ASSERT_EQ(run({"--report", file("cell.yaml")}), 0) << output_;

@@ -1,5 +1,7 @@
 #include "tools/bench/adjacency.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -46,7 +48,7 @@ void time_adjacency(benchmark::State& state, FindNeighbours find, int order) {
 
 void register_adjacency(const std::string& who, FindNeighbours find) {
   for (const int order : kOrders) {
-    const std::string name = "adjacency/" + who + "/f" + std::to_string(order);
+    const std::string name = fmt::format("adjacency/{}/f{}", who, order);
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
       time_adjacency(state, find, order);
     })->Unit(benchmark::kMicrosecond);

@@ -1,5 +1,7 @@
 #include "tools/bench/batches.hpp"
 
+#include <fmt/format.h>
+
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
 
@@ -155,17 +157,18 @@ void register_fleet(const std::string& name, const std::string& load, std::int64
 
 void register_batches() {
   for (const std::string& load : workload_names()) {
-    register_fleet<Batched>("batch/" + load, load, 0);
-    register_fleet<OneByOne>("batch/single/" + load, load, 0);
+    register_fleet<Batched>(fmt::format("batch/{}", load), load, 0);
+    register_fleet<OneByOne>(fmt::format("batch/single/{}", load), load, 0);
     for (const std::int64_t target : {HWY_SCALAR, HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {
       if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) continue;
-      register_fleet<Batched>(std::string("batch/") + hwy::TargetName(target) + "/" + load, load,
+      register_fleet<Batched>(fmt::format("batch/{}/{}", hwy::TargetName(target), load), load,
                               target);
     }
   }
   for (const std::string load : {"boxes", "links"}) {
-    register_fleet<Batched>("batch/own/" + load, load, 0, Shapes::kOfTheirOwn);
-    register_fleet<OneByOne>("batch/own/single/" + load, load, 0, Shapes::kOfTheirOwn);
+    register_fleet<Batched>(fmt::format("batch/own/{}", load), load, 0, Shapes::kOfTheirOwn);
+    register_fleet<OneByOne>(fmt::format("batch/own/single/{}", load), load, 0,
+                             Shapes::kOfTheirOwn);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tools/bench/cells.hpp"
 
+#include <fmt/format.h>
+
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include "config/cell_file.hpp"
 #include "core/batch.hpp"
 #include "core/distance.hpp"
+#include "monitor/app/print.hpp"
 #include "tools/bench/measure.hpp"
 
 namespace clearance::bench {
@@ -134,11 +137,11 @@ void time_batch(benchmark::State& state, const Workload& load) {
 
 void register_cell(const std::string& name, Scene scene) {
   const auto load = make_workload(std::move(scene));
-  benchmark::RegisterBenchmark(("cell/tracked/" + name).c_str(),
+  benchmark::RegisterBenchmark((fmt::format("cell/tracked/{}", name)).c_str(),
                                [load](benchmark::State& s) { time_queries(s, *load, true); });
-  benchmark::RegisterBenchmark(("cell/cold/" + name).c_str(),
+  benchmark::RegisterBenchmark((fmt::format("cell/cold/{}", name)).c_str(),
                                [load](benchmark::State& s) { time_queries(s, *load, false); });
-  benchmark::RegisterBenchmark(("cell/batch/" + name).c_str(),
+  benchmark::RegisterBenchmark((fmt::format("cell/batch/{}", name)).c_str(),
                                [load](benchmark::State& s) { time_batch(s, *load); });
 }
 
@@ -151,13 +154,13 @@ void register_cells(const std::filesystem::path& folder) {
     if (entry.path().extension() == ".yaml") files.insert(entry.path());
   }
   if (gone) {
-    std::fprintf(stderr, "clearance-bench: no rows of cells: %s cannot be read: %s\n",
-                 folder.c_str(), gone.message().c_str());
+    print(stderr, "clearance-bench: no rows of cells: {} cannot be read: {}\n", folder.string(),
+          gone.message());
   }
   for (const auto& file : files) {
     CellResult cell = read_cell(file);
     if (auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-      for (const CellError& e : *errors) std::fprintf(stderr, "%s\n", e.text.c_str());
+      for (const CellError& e : *errors) print(stderr, "{}\n", e.text);
       continue;
     }
     register_cell(file.stem().string(), std::move(std::get<Scene>(cell)));

@@ -1,5 +1,7 @@
 #include "tools/bench/crowd.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -97,13 +99,13 @@ Crowd orbiting_crowd(const OrbitingOptions& options) {
   const std::uint32_t count = options.count, moving = options.moving;
   Random draw(count);
   Crowd crowd;
-  crowd.scene.name = crowd.name = std::to_string(count) + "_of_which_" + std::to_string(moving);
+  crowd.scene.name = crowd.name = fmt::format("{}_of_which_{}", count, moving);
   crowd.scene.revision = count;
   const std::uint32_t side = grid_side(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const double radius = draw.uniform(0.15, 0.28);
     crowd.scene.objects.push_back(
-        object_of("body_" + std::to_string(i),
+        object_of(fmt::format("body_{}", i),
                   options.order > 0 ? facet_ball(radius, options.order) : body(i, radius, draw)));
     crowd.scene.objects.back().max_speed *= std::max(1.0, options.speed);
     Crowd::Orbit orbit;
@@ -131,13 +133,13 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
   constexpr double kLength = 0.14;  // m, of a link
   Random draw(obstacles);
   Crowd crowd;
-  crowd.scene.name = crowd.name = "robot_among_" + std::to_string(obstacles);
+  crowd.scene.name = crowd.name = fmt::format("robot_among_{}", obstacles);
   crowd.scene.revision = obstacles;
   SimulatedChain chain;
   chain.name = "arm";
   for (std::uint32_t i = 0; i < kLinks; ++i) {
     crowd.scene.objects.push_back(
-        object_of("link_" + std::to_string(i),
+        object_of(fmt::format("link_{}", i),
                   made(segment(Vec3(0, 0, 0.02), Vec3(0, 0, kLength - 0.02), 0.05))));
     SimulatedJoint joint;
     joint.objects = {i};
@@ -149,7 +151,7 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
   crowd.scene.simulation.chains.push_back(chain);
   for (std::uint32_t i = 0; i < obstacles; ++i) {
     Object object =
-        object_of("obstacle_" + std::to_string(i), body(i, draw.uniform(0.15, 0.28), draw));
+        object_of(fmt::format("obstacle_{}", i), body(i, draw.uniform(0.15, 0.28), draw));
     object.fixed = true;
     const double angle = draw.uniform(0.0, 2.0 * kPi), from_axis = draw.uniform(1.6, 4.0);
     object.world_from_object.position =
@@ -175,7 +177,7 @@ Crowd warehouse_crowd(std::uint32_t objects) {
 
 Crowd shipped_crowd(const std::string& name) {
   Crowd crowd;
-  crowd.scene = std::get<Scene>(read_cell(CLEARANCE_CELLS "/" + name + ".yaml"));
+  crowd.scene = std::get<Scene>(read_cell(fmt::format("{}{}.yaml", CLEARANCE_CELLS "/", name)));
   crowd.name = name;
   return crowd;
 }

@@ -1,6 +1,8 @@
 // Table 4.5: how long a pair must be tracked for tracking to pay.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "tools/bench/measure.hpp"
@@ -16,7 +18,7 @@ template <class Solver>
 void register_intervals(const std::string& prefix) {
   for (const char* load : kIntervalLoads) {
     for (const int steps : kIntervals) {
-      register_row<Solver>(prefix + "interval/" + std::to_string(steps) + "/" + load, load, steps);
+      register_row<Solver>(fmt::format("{}interval/{}/{}", prefix, steps, load), load, steps);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "monitor/app/print.hpp"
 #include "monitor/build_info/build_info.hpp"
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
@@ -21,7 +22,8 @@
 namespace {
 
 constexpr const char* kHelp =
-    "clearance-bench: times the core and the tick. Queries are timed in thread CPU time, ticks on "
+    "clearance-bench measures the core and the tick. Queries are timed in thread CPU time, ticks "
+    "on "
     "the wall.\n"
     "\n"
     "  tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order;\n"
@@ -33,11 +35,12 @@ constexpr const char* kHelp =
     "                     no two of which have a shape in common, batch/own/single/... one by one\n"
     "  overlap/tracked/KIND/HOW, overlap/cold/...  how deep: boxes, links, f10, v10, f40, v40;\n"
     "                     shallow, half, near, nearer, middle (tools/README.md); no reference\n"
-    "  variant/WHICH/...  the thesis's loop without certificates: base, dual, consistent,\n"
+    "  variant/WHICH/...  the thesis's active-set iteration, uncertified: base, dual, consistent,\n"
     "                     aggressive, all-facets, moved (its tables, at every query);\n"
     "                     moved-before and base-repeated: what a query takes without that, and\n"
     "                     base in the same way, each query 64 times\n"
-    "  adjacency/WHO/f2   adjacency from half-spaces: walk (the thesis's), core, qhull\n"
+    "  adjacency/WHO/f2   adjacency from half-spaces: walk (the facet walk of the\n"
+    "                     thesis), core, qhull\n"
     "  peer/WHO/...       the same by other solvers: fcl, fcl-tight, fcl-gjk, bullet, libccd, qp\n"
     "  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, "
     "tracked\n"
@@ -63,12 +66,12 @@ constexpr const char* kHelp =
     "may be off; overlapping, how many pairs are; widest_gap, m: of our bounds. The console\n"
     "shortens them: 4f is 4e-15, 4a 4e-18, and calls ns, a rate to it, s. `steps` is `iterations`\n"
     "under a name that Google's own counter does not have. Of batches: single, the part of the\n"
-    "pairs that were asked one by one. Of adjacency: wrong, pairs of facets too many or\n"
+    "pairs that were evaluated one by one. Of adjacency: wrong, pairs of facets too many or\n"
     "missing. Of cells: ns and widest_gap; the poses are the cell's own, and nothing judges them.\n"
     "The warning of a DEBUG library is about how Debian builds Google Benchmark, not about ours.\n"
     "\n"
-    "  --tick             the ticks alone, as --benchmark_filter=^tick/ does\n"
-    "  --version          says which one it is\n"
+    "  --tick             runs the ticks alone, as --benchmark_filter=^tick/ does\n"
+    "  --version          prints the version and the build\n"
     "  --report DIR       runs all but cells, ticks, sweeps, variants of all but\n"
     "                     facet-balls and variant/moved/cold, in two to four minutes,\n"
     "                     and writes\n"
@@ -110,7 +113,7 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--version") {
-      std::printf("clearance %s\n", clearance::kBuild);
+      clearance::print(stdout, "clearance {}\n", clearance::kBuild);
       return 0;
     }
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);

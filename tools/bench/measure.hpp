@@ -10,6 +10,8 @@
 //   };
 #pragma once
 
+#include <fmt/format.h>
+
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -148,8 +150,8 @@ void register_row(const std::string& name, const std::string& load, int interval
 template <class Solver>
 void register_rows(const std::string& prefix) {
   for (const std::string& name : workload_names()) {
-    register_row<Solver>(prefix + "tracked/" + name, name, kTracked);
-    register_row<Solver>(prefix + "cold/" + name, name, kCold);
+    register_row<Solver>(fmt::format("{}tracked/{}", prefix, name), name, kTracked);
+    register_row<Solver>(fmt::format("{}cold/{}", prefix, name), name, kCold);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tools/bench/ours.hpp"
 
+#include <fmt/format.h>
+
 #include "core/distance.hpp"
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
@@ -33,8 +35,8 @@ void register_ours() {
   register_rows<Ours>("");
   register_intervals<Ours>("");
   for (const std::string& load : overlap_names()) {
-    register_row<Ours>("overlap/tracked/" + load, load, kTracked);
-    register_row<Ours>("overlap/cold/" + load, load, kCold);
+    register_row<Ours>(fmt::format("overlap/tracked/{}", load), load, kTracked);
+    register_row<Ours>(fmt::format("overlap/cold/{}", load), load, kCold);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tools/bench/overlaps.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -59,7 +61,8 @@ std::vector<Trajectory> overlapping(const std::string& kind, const OverlapDepth&
 std::vector<std::string> overlap_names() {
   std::vector<std::string> names;
   for (const std::string kind : kOverlapKinds) {
-    for (const OverlapDepth& depth : kOverlapDepths) names.push_back(kind + "/" + depth.name);
+    for (const OverlapDepth& depth : kOverlapDepths)
+      names.push_back(fmt::format("{}/{}", kind, depth.name));
   }
   return names;
 }

@@ -41,7 +41,7 @@ double TickRun::tick() {
   return std::max(0.0, wall_ns() - start - clock_cost_);
 }
 
-std::vector<double> proved_minima(const Crowd& crowd, int ticks) {
+std::vector<double> certified_minima(const Crowd& crowd, int ticks) {
   TickRun run(crowd);
   run.start_up();
   std::vector<double> minima;

@@ -35,8 +35,9 @@ class TickRun {
   const Report* report_ = nullptr;
 };
 
-// Our minimum of each of the first `ticks` ticks after the start-up, m; NaN where it is not proved.
-[[nodiscard]] std::vector<double> proved_minima(const Crowd& crowd, int ticks);
+// Our minimum of each of the first `ticks` ticks after the start-up, m; NaN where it is not
+// certified.
+[[nodiscard]] std::vector<double> certified_minima(const Crowd& crowd, int ticks);
 
 // What the ticks themselves take: `least` holds the time of each tick of a run, ns; runs them
 // again, `runs` times, with a new monitor each, and leaves the least that each has taken. The

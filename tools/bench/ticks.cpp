@@ -1,5 +1,7 @@
 #include "tools/bench/ticks.hpp"
 
+#include <fmt/format.h>
+
 #include <malloc.h>
 
 #include <algorithm>
@@ -53,7 +55,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
   PlainArithmetic control(median({start_up.begin() + start_up.size() / 2, start_up.end()}));
 
   std::vector<double> times, control_times;
-  std::uint64_t queries = 0, proved = 0;
+  std::uint64_t queries = 0, certified = 0;
   Hash hash;
   for (auto _ : state) {
     run.prepare();
@@ -61,7 +63,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
     state.SetIterationTime(1e-9 * ns);
     times.push_back(ns);
     queries += run.report().queries;
-    proved += run.report().minimum_certified;
+    certified += run.report().minimum_certified;
     hash.add(run.report());
   }
   // After the ticks: in between it would leave them colder caches.
@@ -71,7 +73,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
   count_times(times, state);
   count_times(control_times, state, "control_");
   state.counters["queries"] = static_cast<double>(queries) / ticks;
-  state.counters["proved"] = static_cast<double>(proved) / ticks;
+  state.counters["certified"] = static_cast<double>(certified) / ticks;
   state.counters["pairs"] = pairs;
   state.counters["bytes_per_pair"] = bytes / pairs;
   state.counters["start_ms"] = 1e-6 * construction;
@@ -105,7 +107,7 @@ Crowd all_evaluated(Crowd crowd) {
 }
 
 void register_plain(const std::string& name, int ticks, const MakeCrowd& make) {
-  register_crowd(name + "/plain", ticks, 1, [make] { return all_evaluated(make()); });
+  register_crowd(fmt::format("{}/plain", name), ticks, 1, [make] { return all_evaluated(make()); });
 }
 
 void time_workers(benchmark::State& state, const Crowd& crowd, unsigned workers) {
@@ -130,14 +132,14 @@ void register_all(const std::string& name, const Ticks& ticks, const MakeCrowd& 
   register_crowd(name, ticks.ours, ticks.runs, make);
   if (ticks.plain > 0) register_plain(name, ticks.plain, make);
 #ifdef CLEARANCE_BENCH_FCL
-  if (ticks.fcl > 0) register_fcl_manager(name + "/fcl", ticks.fcl, make);
+  if (ticks.fcl > 0) register_fcl_manager(fmt::format("{}/fcl", name), ticks.fcl, make);
 #endif
 }
 
 void register_workers(const std::string& name, int ticks, const MakeCrowd& make) {
   for (const unsigned workers : {1u, 2u}) {
     register_tick_row(
-        name + "/plain/workers:" + std::to_string(workers), ticks,
+        fmt::format("{}/plain/workers:{}", name, workers), ticks,
         [make, workers](benchmark::State& s) { time_workers(s, all_evaluated(make()), workers); });
   }
 }
@@ -154,10 +156,11 @@ Crowd swept_crowd(const OrbitingOptions& options) {
 void register_sweeps() {
   const auto sweep = [](const std::string& name, const OrbitingOptions& options) {
     const int plain = options.count > 500 ? 10 : 50;
-    register_all("sweep/" + name, {1'000, plain, 100}, [options] { return swept_crowd(options); });
+    register_all(fmt::format("sweep/{}", name), {1'000, plain, 100},
+                 [options] { return swept_crowd(options); });
   };
   for (const std::uint32_t count : {30u, 100u, 300u, 1000u}) {
-    sweep("objects/" + std::to_string(count), {.count = count, .moving = count});
+    sweep(fmt::format("objects/{}", count), {.count = count, .moving = count});
   }
   for (const char* speed : {"0.1", "0.3", "1", "3", "10"}) {
     sweep(std::string("speed/") + speed, {.count = 300, .moving = 300, .speed = std::stod(speed)});
@@ -172,9 +175,9 @@ void register_sweeps() {
 
 void count_times(std::vector<double> times, benchmark::State& state, const std::string& prefix) {
   std::sort(times.begin(), times.end());
-  state.counters[prefix + "p50_us"] = 1e-3 * quantile(times, 0.5);
-  state.counters[prefix + "p99.9_us"] = 1e-3 * quantile(times, 0.999);
-  state.counters[prefix + "max_us"] = 1e-3 * times.back();
+  state.counters[fmt::format("{}p50_us", prefix)] = 1e-3 * quantile(times, 0.5);
+  state.counters[fmt::format("{}p99.9_us", prefix)] = 1e-3 * quantile(times, 0.999);
+  state.counters[fmt::format("{}max_us", prefix)] = 1e-3 * times.back();
 }
 
 void register_tick_row(const std::string& name, int ticks,

@@ -1,5 +1,7 @@
 #include "tools/bench/variants.hpp"
 
+#include <fmt/format.h>
+
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
@@ -130,8 +132,8 @@ void time_repeated(benchmark::State& state, const std::string& name) {
 template <class Pair>
 void register_repeated(const std::string& name) {
   for (const int order : kOrders) {
-    const std::string load = "f" + std::to_string(order);
-    benchmark::RegisterBenchmark(("variant/" + name + "/tracked/" + load).c_str(),
+    const std::string load = fmt::format("f{}", order);
+    benchmark::RegisterBenchmark((fmt::format("variant/{}/tracked/{}", name, load)).c_str(),
                                  [=](benchmark::State& s) { time_repeated<Pair>(s, load); });
   }
 }
@@ -139,8 +141,8 @@ void register_repeated(const std::string& name) {
 template <class Solver>
 void register_variant(const std::string& name) {
   for (const std::string& load : workload_names()) {
-    register_row<Solver>("variant/" + name + "/tracked/" + load, load, kTracked);
-    register_row<Solver>("variant/" + name + "/cold/" + load, load, kCold);
+    register_row<Solver>(fmt::format("variant/{}/tracked/{}", name, load), load, kTracked);
+    register_row<Solver>(fmt::format("variant/{}/cold/{}", name, load), load, kCold);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tools/bench/workload.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -112,10 +114,10 @@ std::vector<Trajectory> trajectories(const std::string& name) {
   }
   for (const char* kind : kOverlapKinds) {
     for (const OverlapDepth& depth : kOverlapDepths) {
-      if (name == std::string(kind) + "/" + depth.name) return overlapping(kind, depth);
+      if (name == fmt::format("{}/{}", kind, depth.name)) return overlapping(kind, depth);
     }
   }
-  throw std::invalid_argument("there is no workload named '" + name + "'");
+  throw std::invalid_argument(fmt::format("there is no workload named '{}'", name));
 }
 
 }  // namespace
@@ -141,7 +143,7 @@ const Workload& workload(const std::string& name) {
 std::vector<std::string> workload_names() {
   std::vector<std::string> names;
   for (const char kind : {'f', 'v'}) {
-    for (const int order : kOrders) names.push_back(kind + std::to_string(order));
+    for (const int order : kOrders) names.push_back(fmt::format("{}{}", kind, order));
   }
   names.insert(names.end(), {"boxes", "parallel-boxes", "links"});
   return names;

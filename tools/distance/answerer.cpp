@@ -98,8 +98,9 @@ void Answerer::print_summary(std::size_t lines, std::size_t bad_lines) const {
 void Answerer::print_paths() const {
   const std::size_t robust = paths_[DistancePath::kRobust];
   print(stderr,
-        "clearance-distance: by the walk {}, by the loop {} ({} touch or overlap, {} by the robust "
-        "path), by the last overlap {}\n",
+        "clearance-distance: by feature tracking {}, by the active set {} ({} touch or overlap, {} "
+        "by "
+        "GJK), by the last penetration {}\n",
         paths_[DistancePath::kWalk], paths_[DistancePath::kLoop] + robust, paths_.met, robust,
         paths_[DistancePath::kOverlap]);
 }

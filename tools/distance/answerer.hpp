@@ -1,5 +1,5 @@
-// Answers cases with every figure that the core gives, keeps the time, and counts which way the
-// answers came.
+// Answers cases with every figure that the core gives, measures the time, and counts by which
+// method the answers were found.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ struct DistanceAnswer {
   Vec3 own_point_on_b;  // the witness point in B's own frame, before the radius
 };
 
-// How many answers came each way, by DistancePath; and how many of those that left the walk touch
-// or overlap.
+// How many answers each method gave, by DistancePath; and how many pairs touch or overlap of those
+// that feature tracking did not answer.
 struct PathCount {
   std::array<std::size_t, static_cast<std::size_t>(DistancePath::kSpheres) + 1> by_path{};
   std::size_t met = 0;
@@ -32,8 +32,8 @@ struct PathCount {
 
 class Answerer {
  public:
-  // `cold`: forget the state between the poses of a motion. `repeat`: ask everything so often, for
-  // the clock.
+  // `cold`: forget the state between the poses of a motion. `repeat`: evaluate each query this many
+  // times, for the measurement of time.
   Answerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
   // An answer as --help describes it: one entry a pose where it is a motion.

@@ -31,7 +31,7 @@ struct Hull {
 
 struct Models {
   const Object* object = nullptr;
-  double ball_radius = kInfinity, ball_error = kInfinity;  // m
+  double sphere_radius = kInfinity, sphere_error = kInfinity;  // m
   std::optional<Hull> hull;
   Size full;
   double full_error = 0.0;  // rounding of its numbers, m
@@ -42,17 +42,17 @@ class Judge {
  public:
   explicit Judge(const Scene& scene)
       : hulls_(bounding_hulls(scene)),
-        balls_(bounding_spheres(scene.objects.size(), parts_of(scene))) {}
+        spheres_(bounding_spheres(scene.objects.size(), parts_of(scene))) {}
 
   Models models(const Scene& scene, std::size_t i) {
     const Object& object = scene.objects[i];
     Models all;
     all.object = &object;
     const std::vector<PlacedShape> shapes = shapes_of(object);
-    const Sphere& ball = balls_[i].in_object;
-    if (ball.radius < kInfinity) {
-      all.ball_radius = ball.radius;
-      all.ball_error = excess_of_ball(ball.centre, ball.radius, shapes);
+    const Sphere& sphere = spheres_[i].in_object;
+    if (sphere.radius < kInfinity) {
+      all.sphere_radius = sphere.radius;
+      all.sphere_error = excess_of_ball(sphere.centre, sphere.radius, shapes);
     }
     if (hulls_[i]) all.hull = {size_of(*hulls_[i]), hull_error(i, shapes)};
     for (const Part& part : object.parts) {
@@ -75,7 +75,7 @@ class Judge {
   }
 
   std::vector<BoundingHull> hulls_;
-  std::vector<BoundingSphere> balls_;
+  std::vector<BoundingSphere> spheres_;
   std::vector<std::pair<const ConvexPolyhedron*, double>> errors_;
 };
 
@@ -103,7 +103,7 @@ std::string line(const Models& m, std::size_t width) {
                        metres(m.hull->error), kib(m.hull->size.bytes));
   }
   return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>8.1e} {:>6}\n",
-                     m.object->name, width, metres(m.ball_radius), metres(m.ball_error), hull,
+                     m.object->name, width, metres(m.sphere_radius), metres(m.sphere_error), hull,
                      m.object->parts.size(), m.full.facets, m.full.vertices, m.full_error,
                      kib(m.full.bytes));
 }
@@ -114,7 +114,7 @@ std::string model_table(const Scene& scene) {
   std::size_t width = 6;
   for (const Object& object : scene.objects) width = std::max(width, object.name.size());
   std::string text =
-      fmt::format("{:<{}} | {:^17} | {:^29} | {:^35}\n", "", width, "ball", "hull", "full") +
+      fmt::format("{:<{}} | {:^17} | {:^29} | {:^35}\n", "", width, "sphere", "hull", "full") +
       fmt::format(
           "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>8} {:>6}\n",
           "object", width, "radius m", "error m", "facets", "verts", "error m", "KiB", "parts",
@@ -127,13 +127,14 @@ std::string model_table(const Scene& scene) {
     ++hulls;
     hull_bytes += m.hull->size.bytes;
   }
-  return text + fmt::format(
-                    "{} objects, {} with a hull: {} KiB if none were shared, beside {} KiB of full "
-                    "models\n"
-                    "error: no point of a model is farther than this from the object's nearest "
-                    "part; of full ones, the rounding of their numbers\n"
-                    "-: unbounded, or one simple part, which is asked at once\n",
-                    scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
+  return text +
+         fmt::format(
+             "{} objects, {} with a hull: {} KiB if none were shared, beside {} KiB of full "
+             "models\n"
+             "error: no point of a model is farther than this from the object's nearest "
+             "part; of full ones, the rounding of their numbers\n"
+             "-: unbounded, or one simple part, which is evaluated without a coarser model\n",
+             scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
 }
 
 std::string model_json(const Scene& scene) {
@@ -144,8 +145,8 @@ std::string model_json(const Scene& scene) {
   };
   for (const Models& m : all_models(scene)) {
     nlohmann::ordered_json object{{"object", m.object->name}};
-    if (m.ball_radius < kInfinity) {
-      object["ball"] = {{"radius", m.ball_radius}, {"error", m.ball_error}};
+    if (m.sphere_radius < kInfinity) {
+      object["sphere"] = {{"radius", m.sphere_radius}, {"error", m.sphere_error}};
     }
     if (m.hull) {
       object["hull"] = size(m.hull->size);

@@ -1,4 +1,4 @@
-// The models of every object of a cell, from coarse to fine: how large they are, how far off.
+// Reports the models of every object of a cell from coarse to fine, with their sizes and errors.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-// A table, a line an object, and what it means.
+// A table with one line for each object, and an explanation of its columns.
 [[nodiscard]] std::string model_table(const Scene& scene);
 
 // The same as JSON: an array of objects, lengths in m.

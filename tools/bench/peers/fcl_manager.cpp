@@ -160,7 +160,7 @@ void time_manager(benchmark::State& state, const MakeCrowd& make, int ticks) {
     state.SetIterationTime(1e-9 * times.back());
   }
   count_times(times, state);
-  const std::vector<double> ours = proved_minima(crowd, ticks);
+  const std::vector<double> ours = certified_minima(crowd, ticks);
   double max_error = 0.0, compared = 0.0;
   for (std::size_t t = 0; t < ours.size() && t < minima.size(); ++t) {
     if (std::isnan(ours[t])) continue;

@@ -2,13 +2,14 @@
 
 #include <cstdio>
 
+#include "monitor/app/print.hpp"
 #include "tools/bench/adjacency.hpp"
 
 namespace clearance::bench {
 namespace {
 
 void left_out [[maybe_unused]] (const char* who, const char* package) {
-  std::fprintf(stderr, "%s is left out: it needs %s (tools/setup --bench)\n", who, package);
+  print(stderr, "{} is left out: it needs {} (tools/setup --bench)\n", who, package);
 }
 
 }  // namespace

@@ -1,15 +1,16 @@
 // How a figure is written into a table.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "tools/bench/report/figures.hpp"
-#include "tools/bench/report/print.hpp"
 
 namespace clearance::bench {
 
 [[nodiscard]] inline std::string time_of(double ns) {
-  return ns < 10000.0 ? print("%.0f", ns) : print("%.2e", ns);
+  return ns < 10000.0 ? fmt::format("{:.0f}", ns) : fmt::format("{:.2e}", ns);
 }
 
 [[nodiscard]] inline std::string ns(const Figure* f) { return f ? time_of(f->ns) : "-"; }
@@ -17,7 +18,8 @@ namespace clearance::bench {
 // Time, and how many queries failed if any did.
 [[nodiscard]] inline std::string ns_and_failures(const Figure* f) {
   if (!f) return "-";
-  return f->failures > 0.0 ? time_of(f->ns) + print(" (%.0f)", f->failures) : time_of(f->ns);
+  return f->failures > 0.0 ? fmt::format("{} ({:.0f})", time_of(f->ns), f->failures)
+                           : time_of(f->ns);
 }
 
 }  // namespace clearance::bench

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "monitor/app/print.hpp"
+
 namespace clearance::bench {
 namespace {
 
@@ -28,7 +30,7 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
     figures_.add(run);
-    std::fprintf(stderr, "\r\033[K%s", run.run_name.function_name.c_str());
+    print(stderr, "\r\033[K{}", run.run_name.function_name);
   }
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -25,8 +27,8 @@ struct Solver {
 // Colours after Okabe and Ito, which most colour-blind people tell apart.
 constexpr Solver kSolvers[] = {
     {"", "Clearance, with its certificate", "#D55E00"},
-    {"variant/base/", "the thesis's loop, base", "#000000"},
-    {"variant/aggressive/", "the thesis's loop, aggressive", "#999999"},
+    {"variant/base/", "the thesis's iteration, base", "#000000"},
+    {"variant/aggressive/", "the thesis's iteration, aggressive", "#999999"},
     {"peer/fcl/", "FCL (libccd), 1e-6", "#0072B2"},
     {"peer/fcl-tight/", "FCL (libccd), 1e-12", "#56B4E9"},
     {"peer/fcl-gjk/", "FCL, own GJK", "#009E73"},
@@ -55,7 +57,7 @@ class Panel {
     for (int e = kFirstError; e <= kLastError; e += 2) {
       const double y = at_error(std::pow(10.0, e));
       line(left_, y, left_ + kPanelWidth, y, "#e6e6e6");
-      text(left_ - 8, y + 4, "1e" + std::to_string(e), "end", 12);
+      text(left_ - 8, y + 4, fmt::format("1e{}", e), "end", 12);
     }
     const double failure = at_error(1e-6);
     line(left_, failure, left_ + kPanelWidth, failure, "#b00000", "5 4");
@@ -69,10 +71,10 @@ class Panel {
   void draw(const Solver& solver, const Figures& figures, const std::string& mode) const {
     std::string path, circles;
     for (const Size& size : kSizes) {
-      const Figure* f = figures.at(solver.prefix + mode + "/" + size.load);
+      const Figure* f = figures.at(fmt::format("{}{}/{}", solver.prefix, mode, size.load));
       if (!f) continue;
       const double x = at_time(f->ns), y = at_error(f->max_error);
-      path += print("%s%.1f %.1f", path.empty() ? "M" : " L", x, y);
+      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x, y);
       circles += svg_circle(x, y, size.radius, f->failures > 0.0 ? "#ffffff" : solver.colour,
                             solver.colour);
     }
@@ -108,8 +110,8 @@ void legend(std::ostream& out, const Panel& page) {
   int i = 0;
   for (const Solver& solver : kSolvers) {
     const double x = kLeft + kColumn * (i % kColumns), y = kFirst + kLine * (i / kColumns);
-    out << print("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"6\" fill=\"%s\"/>\n", x, y - 4,
-                 solver.colour);
+    out << fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"6\" fill=\"{}\"/>\n", x, y - 4,
+                       solver.colour);
     page.text(x + 14, y, solver.label, "start", 13);
     ++i;
   }

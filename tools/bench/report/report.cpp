@@ -1,8 +1,11 @@
 #include "tools/bench/report/report.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <fstream>
 
+#include "monitor/app/print.hpp"
 #include "monitor/build_info/build_info.hpp"
 
 namespace clearance::bench {
@@ -13,8 +16,7 @@ bool write(const std::filesystem::path& file, const std::string& text) {
   out << text;
   out.close();
   if (out) return true;
-  std::fprintf(stderr, "cannot write %s: is the folder writable and the disk not full?\n",
-               file.c_str());
+  print(stderr, "cannot write {}: is the folder writable and the disk not full?\n", file.string());
   return false;
 }
 
@@ -24,16 +26,15 @@ bool write_both(const std::filesystem::path& folder, const char* table_file,
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    std::fprintf(stderr, "cannot make the folder %s: %s\n", folder.c_str(),
-                 error.message().c_str());
+    print(stderr, "cannot make the folder {}: {}\n", folder.string(), error.message());
     return false;
   }
-  if (!write(folder / table_file, table + "Made by clearance-bench " + kBuild + ".\n")) {
+  if (!write(folder / table_file, fmt::format("{}Made by clearance-bench {}.\n", table, kBuild))) {
     return false;
   }
   if (!write(folder / picture_file, picture)) return false;
-  std::fprintf(stderr, "\r\033[Kwritten: %s and %s\n", (folder / table_file).c_str(),
-               (folder / picture_file).c_str());
+  print(stderr, "\r\033[Kwritten: {} and {}\n", (folder / table_file).string(),
+        (folder / picture_file).string());
   return true;
 }
 

@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include "tools/bench/report/print.hpp"
-
 namespace clearance::bench {
 
 // All lengths in px; `anchor`: start, middle or end.

@@ -1,11 +1,12 @@
-// The thesis's tables, in their shape.
+// Writes the tables of the thesis in their original shape, with our figures.
+#include <fmt/format.h>
+
 #include <sstream>
 #include <string>
 
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/report/cell.hpp"
-#include "tools/bench/report/print.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/report/table.hpp"
 #include "tools/bench/workload.hpp"
@@ -13,18 +14,19 @@
 namespace clearance::bench {
 namespace {
 
-std::string both_sizes(int order) { return std::to_string(2 * even_directions(order).size()); }
-std::string ball_name(int order) { return "f" + std::to_string(order); }
+std::string both_sizes(int order) { return fmt::format("{}", 2 * even_directions(order).size()); }
+std::string ball_name(int order) { return fmt::format("f{}", order); }
 
 std::string against_qp(const Figures& figures, const std::string& mode) {
   Table table({"N1+N2", "DQP3, all facets", "DQP3, neighbours", "ours", "QP", "QP / ours"});
   for (const int order : kOrders) {
-    const std::string load = mode + "/" + ball_name(order);
+    const std::string load = fmt::format("{}/{}", mode, ball_name(order));
     const Figure* ours = figures.at(load);
-    const Figure* qp = figures.at("peer/qp/" + load);
-    table.row({both_sizes(order), ns_and_failures(figures.at("variant/all-facets/" + load)),
-               ns_and_failures(figures.at("variant/base/" + load)), ns_and_failures(ours),
-               ns_and_failures(qp), ours && qp ? print("%.0fx", qp->ns / ours->ns) : "-"});
+    const Figure* qp = figures.at(fmt::format("peer/qp/{}", load));
+    table.row(
+        {both_sizes(order), ns_and_failures(figures.at(fmt::format("variant/all-facets/{}", load))),
+         ns_and_failures(figures.at(fmt::format("variant/base/{}", load))), ns_and_failures(ours),
+         ns_and_failures(qp), ours && qp ? fmt::format("{:.0f}x", qp->ns / ours->ns) : "-"});
   }
   return table.text();
 }
@@ -32,10 +34,10 @@ std::string against_qp(const Figures& figures, const std::string& mode) {
 std::string variants(const Figures& figures, const std::string& mode) {
   Table table({"N1+N2", "base", "aggressive", "dual", "consistent", "ours"});
   for (const int order : kOrders) {
-    const std::string load = mode + "/" + ball_name(order);
+    const std::string load = fmt::format("{}/{}", mode, ball_name(order));
     Cells cells{both_sizes(order)};
     for (const char* which : {"base", "aggressive", "dual", "consistent"}) {
-      cells.push_back(ns_and_failures(figures.at("variant/" + (which + ("/" + load)))));
+      cells.push_back(ns_and_failures(figures.at(fmt::format("variant/{}/{}", which, load))));
     }
     cells.push_back(ns_and_failures(figures.at(load)));
     table.row(cells);
@@ -47,15 +49,16 @@ std::string moving(const Figures& figures) {
   Table table(
       {"N1+N2", "repeated: moved before", "poses inside", "once: moving counted", "poses inside"});
   for (const int order : kOrders) {
-    const std::string load = "/tracked/" + ball_name(order);
-    table.row({both_sizes(order), ns(figures.at("variant/moved-before" + load)),
-               ns(figures.at("variant/base-repeated" + load)),
-               ns(figures.at("variant/moved" + load)), ns(figures.at("variant/base" + load))});
+    const std::string load = fmt::format("/tracked/{}", ball_name(order));
+    table.row({both_sizes(order), ns(figures.at(fmt::format("variant/moved-before{}", load))),
+               ns(figures.at(fmt::format("variant/base-repeated{}", load))),
+               ns(figures.at(fmt::format("variant/moved{}", load))),
+               ns(figures.at(fmt::format("variant/base{}", load)))});
   }
   return table.text();
 }
 
-// Its table 4.3: microseconds of its loop on the faster of its two machines, 900 MHz.
+// Its table 4.3: microseconds of its iteration on the faster of its two machines, 900 MHz.
 struct Then {
   int order;
   double cold_us, tracked_us;
@@ -69,9 +72,10 @@ std::string then_and_now(const Figures& figures) {
   for (const Then& then : kThen) {
     Cells cells{both_sizes(then.order)};
     const auto add = [&](const char* mode, double then_us) {
-      const Figure* now = figures.at(print("variant/all-facets/%s/", mode) + ball_name(then.order));
-      cells.insert(cells.end(), {print("%.0f", 1e3 * then_us), ns_and_failures(now),
-                                 now ? print("%.1f", 1e3 * then_us / now->ns) : "-"});
+      const Figure* now =
+          figures.at(fmt::format("variant/all-facets/{}/{}", mode, ball_name(then.order)));
+      cells.insert(cells.end(), {fmt::format("{:.0f}", 1e3 * then_us), ns_and_failures(now),
+                                 now ? fmt::format("{:.1f}", 1e3 * then_us / now->ns) : "-"});
     };
     add("cold", then.cold_us);
     add("tracked", then.tracked_us);
@@ -86,11 +90,12 @@ std::string tracked_and_cold(const Figures& figures) {
   for (const int order : kOrders) {
     Cells cells{both_sizes(order)};
     for (const char* kind : {"f", "v"}) {
-      const std::string load = kind + std::to_string(order);
-      const Figure* cold = figures.at("cold/" + load);
-      const Figure* tracked = figures.at("tracked/" + load);
-      cells.insert(cells.end(), {ns(cold), ns(tracked),
-                                 cold && tracked ? print("%.1f", cold->ns / tracked->ns) : "-"});
+      const std::string load = fmt::format("{}{}", kind, order);
+      const Figure* cold = figures.at(fmt::format("cold/{}", load));
+      const Figure* tracked = figures.at(fmt::format("tracked/{}", load));
+      cells.insert(cells.end(),
+                   {ns(cold), ns(tracked),
+                    cold && tracked ? fmt::format("{:.1f}", cold->ns / tracked->ns) : "-"});
     }
     table.row(cells);
   }
@@ -101,16 +106,16 @@ std::string intervals(const Figures& figures) {
   Cells head{"steps"};
   for (const char* load : kIntervalLoads) {
     for (const char* who : {"ours", "base", "fcl-gjk", "bullet", "qp"}) {
-      head.push_back(print("%s: %s", load, who));
+      head.push_back(fmt::format("{}: {}", load, who));
     }
   }
   Table table(head);
   for (const int steps : kIntervals) {
-    Cells cells{std::to_string(steps)};
+    Cells cells{fmt::format("{}", steps)};
     for (const char* load : kIntervalLoads) {
-      const std::string name = "interval/" + std::to_string(steps) + "/" + load;
+      const std::string name = fmt::format("interval/{}/{}", steps, load);
       for (const char* who : {"", "variant/base/", "peer/fcl-gjk/", "peer/bullet/", "peer/qp/"}) {
-        cells.push_back(ns_and_failures(figures.at(who + name)));
+        cells.push_back(ns_and_failures(figures.at(fmt::format("{}{}", who, name))));
       }
     }
     table.row(cells);
@@ -119,14 +124,14 @@ std::string intervals(const Figures& figures) {
 }
 
 std::string adjacency(const Figures& figures) {
-  Table table({"facets", "walk of 3.6.2, us", "wrong", "exact hull of the core, us", "wrong",
+  Table table({"facets", "facet walk of 3.6.2, us", "wrong", "exact hull of the core, us", "wrong",
                "Qhull, us", "wrong"});
   for (const int order : kOrders) {
-    Cells cells{std::to_string(even_directions(order).size())};
+    Cells cells{fmt::format("{}", even_directions(order).size())};
     for (const char* who : {"walk", "core", "qhull"}) {
-      const Figure* f = figures.at("adjacency/" + (who + ("/" + ball_name(order))));
-      cells.push_back(f ? print("%.0f", 1e-3 * f->ns) : "-");
-      cells.push_back(f ? print("%.0f", f->wrong) : "-");
+      const Figure* f = figures.at(fmt::format("adjacency/{}/{}", who, ball_name(order)));
+      cells.push_back(f ? fmt::format("{:.0f}", 1e-3 * f->ns) : "-");
+      cells.push_back(f ? fmt::format("{:.0f}", f->wrong) : "-");
     }
     table.row(cells);
   }
@@ -140,11 +145,13 @@ std::string thesis_tables(const Figures& figures) {
   out << "## Table 3.3: against a QP, without tracking\n\n"
       << against_qp(figures, "cold") << "## Table 3.4: against a QP, with tracking\n\n"
       << against_qp(figures, "tracked")
-      << "## Table 4.1: variants of the loop, without tracking\n\n"
-      << variants(figures, "cold") << "## Table 4.1: variants of the loop, with tracking\n\n"
+      << "## Table 4.1: variants of the active-set iteration, without tracking\n\n"
+      << variants(figures, "cold")
+      << "## Table 4.1: variants of the active-set iteration, with tracking\n\n"
       << variants(figures, "tracked") << "## Table 4.2: translation and rotation, tracked\n\n"
       << moving(figures)
-      << "## Table 4.3: the thesis's loop, its faster machine and this one\n\nNanoseconds; here "
+      << "## Table 4.3: the thesis's iteration, its faster machine and this one\n\nNanoseconds; "
+         "here "
          "the variant all-facets, which moves the bodies within.\n\n"
       << then_and_now(figures) << "The same on this machine, ours:\n\n"
       << tracked_and_cold(figures) << "## Table 4.5: queries between two cold starts\n\n"

@@ -1,4 +1,6 @@
 // What a tick costs against the number of pairs, speed and density; both axes logarithmic.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -79,7 +81,7 @@ class Panel {
     for (int e = axis_.first; e <= axis_.last; ++e) {
       const double x = at_x(std::pow(10.0, e));
       out += svg_line(x, kTop, x, bottom, "#dddddd") +
-             svg_text(x, bottom + 18, print("%g", std::pow(10.0, e)), "middle", 12);
+             svg_text(x, bottom + 18, fmt::format("{:g}", std::pow(10.0, e)), "middle", 12);
     }
     for (int e = kFirstTime; e <= kLastTime; ++e) {
       const double y = at_us(std::pow(10.0, e - 3));
@@ -98,7 +100,7 @@ class Panel {
     std::string path, circles;
     for (const Point& point : points_of(figures, axis_, curve)) {
       const double x = at_x(point.x), y = at_us(point.us);
-      path += print("%s%.1f %.1f", path.empty() ? "M" : " L", x, y);
+      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x, y);
       circles += svg_circle(x, y, 3.5, curve.colour, curve.colour);
     }
     return path.empty() ? "" : svg_path(path, curve.colour, curve.dashes) + circles;

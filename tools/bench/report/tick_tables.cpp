@@ -1,9 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tools/bench/report/print.hpp"
 #include "tools/bench/report/report.hpp"
 #include "tools/bench/report/table.hpp"
 
@@ -11,38 +12,38 @@ namespace clearance::bench {
 namespace {
 
 std::string us(double value) {
-  return value < 9.95  ? print("%.1f", value)
-         : value < 1e5 ? print("%.0f", value)
-                       : print("%.2e", value);
+  return value < 9.95  ? fmt::format("{:.1f}", value)
+         : value < 1e5 ? fmt::format("{:.0f}", value)
+                       : fmt::format("{:.2e}", value);
 }
 
 std::string three(const Figure& f) {
-  return us(f.counted("p50_us")) + " / " + us(f.counted("p99.9_us")) + " / " +
-         us(f.counted("max_us"));
+  return fmt::format("{} / {} / {}", us(f.counted("p50_us")), us(f.counted("p99.9_us")),
+                     us(f.counted("max_us")));
 }
 
 // What is the tick's own: of each tick the least time of several runs.
 std::string own(const Figure& f) {
   if (f.counted("own_runs") == 0.0) return "-";
-  return us(f.counted("own_p99.9_us")) + " / " + us(f.counted("own_max_us")) +
-         print(" (%.0f)", f.counted("own_runs"));
+  return fmt::format("{} / {} ({:.0f})", us(f.counted("own_p99.9_us")), us(f.counted("own_max_us")),
+                     f.counted("own_runs"));
 }
 
 // What the machine makes of the same time of plain arithmetic.
 std::string noise(const Figure& f) {
-  return us(f.counted("control_p99.9_us")) + " / " + us(f.counted("control_max_us"));
+  return fmt::format("{} / {}", us(f.counted("control_p99.9_us")), us(f.counted("control_max_us")));
 }
 
 // Median, and as a multiple of ours.
 std::string against(const Figure* f, const Figure& ours) {
   if (f == nullptr) return "not run";
   const double median = f->counted("p50_us");
-  return us(median) + print(" = %.3gx", median / ours.counted("p50_us"));
+  return fmt::format("{} = {:.3g}x", us(median), median / ours.counted("p50_us"));
 }
 
 std::string error(const Figure* f) {
   if (f == nullptr) return "-";
-  return print("%.0e (%.0f)", f->counted("max_error"), f->counted("compared"));
+  return fmt::format("{:.0e} ({:.0f})", f->counted("max_error"), f->counted("compared"));
 }
 
 // "tick/NAME" and "sweep/WHAT/VALUE", but not what is compared with them.
@@ -81,7 +82,7 @@ constexpr const char* kOfATick[] = {"pairs",
                                     "FCL's minimum alone, median us",
                                     "its error, m (ticks)",
                                     "queries",
-                                    "proved",
+                                    "certified",
                                     "bytes a pair",
                                     "start-up ms"};
 
@@ -92,12 +93,14 @@ Table head(Cells which) {
 
 void add_row(const Figures& figures, const Row& row, Cells which, Table& table) {
   const Figure& ours = *row.ours;
-  const Figure* fcl = figures.at(row.name + "/fcl");
+  const Figure* fcl = figures.at(fmt::format("{}/fcl", row.name));
   for (const std::string& cell :
-       {print("%.0f", ours.counted("pairs")), three(ours), own(ours), noise(ours),
-        against(figures.at(row.name + "/plain"), ours), against(fcl, ours), error(fcl),
-        print("%.0f", ours.counted("queries")), print("%.3g", ours.counted("proved")),
-        print("%.0f", ours.counted("bytes_per_pair")), print("%.1f", ours.counted("start_ms"))}) {
+       {fmt::format("{:.0f}", ours.counted("pairs")), three(ours), own(ours), noise(ours),
+        against(figures.at(fmt::format("{}/plain", row.name)), ours), against(fcl, ours),
+        error(fcl), fmt::format("{:.0f}", ours.counted("queries")),
+        fmt::format("{:.3g}", ours.counted("certified")),
+        fmt::format("{:.0f}", ours.counted("bytes_per_pair")),
+        fmt::format("{:.1f}", ours.counted("start_ms"))}) {
     which.push_back(cell);
   }
   table.row(which);
@@ -118,8 +121,9 @@ std::string sweeps(const Figures& figures) {
   for (const Row& row : sorted_rows(figures, prefix)) {
     const std::string name = row.name.substr(prefix.size());
     add_row(figures, row,
-            {name.substr(0, name.find('/')), print("%.0f", row.ours->counted("objects")),
-             print("%g", row.ours->counted("speed")), print("%.3g", row.ours->counted("density"))},
+            {name.substr(0, name.find('/')), fmt::format("{:.0f}", row.ours->counted("objects")),
+             fmt::format("{:g}", row.ours->counted("speed")),
+             fmt::format("{:.3g}", row.ours->counted("density"))},
             table);
   }
   return table.text();
@@ -128,19 +132,17 @@ std::string sweeps(const Figures& figures) {
 }  // namespace
 
 std::string tick_tables(const Figures& figures) {
-  return "Time of one tick on the wall; multiples are of our median in the same run. Its own: the "
-         "same ticks run again, each with the least time that it took in any of the runs; what is "
-         "slow in all of "
-         "them is the tick. Arithmetic: "
-         "multiplications in registers that take as long as the median tick, timed as often "
-         "right after the ticks; what is slow there is the machine. Plain: every "
-         "pair evaluated in every tick; not run where that takes seconds. FCL: "
-         "DynamicAABBTreeCollisionManager::distance, which gives the minimum over all pairs and "
-         "nothing else; its error is against our proved minimum.\n\n" +
-         cells(figures) +
-         "Bodies in a cubic grid, one in each of its cells, all moving: 300 at 1 m/s in a grid of "
-         "1 m, but for what is swept.\n\n" +
-         sweeps(figures);
+  return fmt::format(
+      "Time of one tick on the wall; multiples are of our median in the same run. Its own: the "
+      "same ticks run again, each with the least time that it took in any of the runs; what is "
+      "slow in all of them is the tick. Arithmetic: multiplications in registers that take as long "
+      "as the median tick, timed as often right after the ticks; what is slow there is the "
+      "machine. Plain: every pair evaluated in every tick; not run where that takes seconds. FCL: "
+      "DynamicAABBTreeCollisionManager::distance, which gives the minimum over all pairs and "
+      "nothing else; its error is against our certified minimum.\n\n{}Bodies in a cubic grid, one "
+      "in each of its cells, all moving: 300 at 1 m/s in a grid of 1 m, but for what is "
+      "swept.\n\n{}",
+      cells(figures), sweeps(figures));
 }
 
 }  // namespace clearance::bench
