@@ -37,12 +37,12 @@ Reads one case a line and writes one answer a line, in the same order. A case is
   poses        instead of these: [[pose_a, pose_b], ...], a motion; each query starts where the last ended
 An answer has id; distance, lower, upper (0 where the bodies overlap); witness_a, witness_b: closest points, where
 the bodies overlap a point of both; penetration, penetration_lower, penetration_upper: the length of the shortest
-translation that parts them (0 where they are apart); normal: its direction for b, as that from a to b otherwise;
+translation that separates them (0 where they are apart); normal: its direction for b, as that from a to b otherwise;
 deepest_a, deepest_b: the points that meet when b has been moved by it; status, iterations. All in the world; for a
 motion each is a list with one entry a pose. Numbers read back as the same doubles; null is "unknown", and where no
-translation parts two unbounded bodies: penetration and its bounds are null then, the normal is [0, 0, 0].
-A line that cannot be answered gets {"line": n, "error": "..."} and the rest goes on; the first such line is told
-on stderr as well.)";
+translation separates two unbounded bodies: penetration and its bounds are null then, the normal is [0, 0, 0].
+A line that cannot be answered gets {"line": n, "error": "..."}, and the other lines are answered; the first such
+line is reported on stderr as well.)";
 
 constexpr const char* kExample =
     R"(With --check, cases carry exact answers: "distance" as text ("distances": a list of them, for a motion), and if

@@ -80,8 +80,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-// Listens to the distances: how old the newest pose was when the first report that used it arrived
-// here.
+// Measures the age of the newest pose when the first report that used it arrived here.
 class LatencyMeter {
  public:
   LatencyMeter(Participant& participant, const std::string& topic)
@@ -94,7 +93,7 @@ class LatencyMeter {
     thread_.join();
   }
 
-  // `where`: the domain that reports were waited for in.
+  // `where`: the domain in which reports were awaited.
   void tell(const std::string& where) {
     const std::lock_guard lock(mutex_);
     if (all_.count() == 0) {
@@ -154,7 +153,7 @@ class Robot {
 
   [[nodiscard]] std::size_t objects() const noexcept { return poses_.size(); }
 
-  // Where everything is `t_s` seconds after the start, stamped with the time of sending.
+  // The poses `t_s` seconds after the start, stamped with the time of sending.
   void send(double t_s) {
     poses_at(scene_, t_s, poses_);
     const std::int64_t stamp = clock_.realtime_ns();
@@ -183,7 +182,7 @@ class Robot {
   std::uint64_t failed_ = 0;
 };
 
-// Sends on absolute deadlines until told to stop; returns how late it woke.
+// Sends at absolute deadlines until it is stopped; returns the delays of its wake-ups.
 Histogram send_all(Robot& robot, const Arguments& arguments, const std::atomic<bool>& stop) {
   name_thread("send");
   SystemClock clock;

@@ -39,7 +39,7 @@ struct Arguments {
   bool json = false, force = false;
 };
 
-// The NAME=DIRECTORY of --package.
+// Parses the NAME=DIRECTORY of --package; false when it is something else.
 bool add_package(const std::string& argument, RobotCellOptions& options) {
   const std::size_t equals = argument.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == argument.size()) return false;

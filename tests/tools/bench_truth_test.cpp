@@ -1,4 +1,4 @@
-// What clearance-bench counts its errors against, held against exact rationals.
+// Compares the reference distances of clearance-bench with exact rationals.
 #include "tools/bench/truth.hpp"
 
 #include <gtest/gtest.h>

@@ -240,7 +240,7 @@ TEST_F(DistanceTool, ACheckOfNothingFails) {
     const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), bad));
     EXPECT_EQ(r.status, 1) << bad;
   }
-  // No translation parts two whole half-spaces that overlap: the depth is not a number.
+  // No translation separates two half-spaces that overlap: the depth is not a number.
   const std::string half = R"({"halfspaces":[[1,0,0,1]]})";
   const Outcome r = run("--cases - --out - --check",
                         R"({"id":"x","distance":"0","penetration":"1","a":)" + half + R"(,"b":)" +

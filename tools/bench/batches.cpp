@@ -25,12 +25,11 @@ constexpr std::size_t kPairs = 512;
 // Pairs that start on the same trajectory are this many steps apart.
 constexpr std::size_t kApart = 8;
 
-// As in a cell, bodies in many places have their shapes in common; or not one has, and all shapes
-// are in memory as often as bodies are.
+// Whether bodies share shapes, as in a cell, or each body has a shape of its own in memory.
 enum class Shapes { kInCommon, kOfTheirOwn };
 
 // Many pairs of a workload at once, each of two bodies that move by themselves, back and forth
-// along its way.
+// along its trajectory.
 struct Fleet {
   Fleet(const Workload& of, Shapes whose) : load(of) {
     copies.reserve(2 * kPairs);
@@ -99,7 +98,7 @@ class OneByOne {
 };
 
 // All steps of a fleet, after an untimed round, so that every pair is tracked. Only the queries are
-// timed: the poses are where a caller would have put them.
+// timed: the poses have been set before, as by a caller.
 template <class Solver>
 void time_fleet(benchmark::State& state, Fleet& fleet) {
   Solver solver(fleet);

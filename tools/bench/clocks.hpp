@@ -1,4 +1,4 @@
-// The two clocks that things are timed by.
+// The two clocks of the benchmark.
 #pragma once
 
 #include <time.h>
@@ -14,14 +14,14 @@ inline double ns_of(clockid_t clock) {
   return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
-// What this thread has computed so far: other programs do not count.
+// CPU time of this thread, which excludes other programs.
 inline double cpu_ns() { return ns_of(CLOCK_THREAD_CPUTIME_ID); }
 
-// The time on the wall, which is what somebody waits for: whatever else the machine does counts.
+// Wall-clock time, which includes whatever else the machine does.
 inline double wall_ns() { return ns_of(CLOCK_MONOTONIC); }
 
-// What reading a clock costs, which is in every difference of two readings: 0.02 us on the wall;
-// for the thread's time the kernel is asked, 0.2 to 0.8 us.
+// The cost of reading a clock, which is part of every difference of two readings: 0.02 us for the
+// wall clock, 0.2 to 0.8 us for the thread's time, which takes a system call.
 template <class Clock>
 double cost_of(const Clock& clock) {
   std::array<double, 1001> costs;

@@ -31,7 +31,7 @@ ConvexPolyhedron facet_ball(double radius, int order = 6) {
   return made(polyhedron_from_halfspaces(rows));
 }
 
-// One of four kinds, within a ball of `radius`.
+// One of four kinds of bodies, inside a sphere of `radius`.
 ConvexPolyhedron body(std::uint32_t kind, double radius, Random& draw) {
   switch (kind % 4) {
     case 0: {

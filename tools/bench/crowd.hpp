@@ -1,5 +1,5 @@
-// Cells in motion, generated ones above all: how does a tick's cost grow with the number of objects
-// and pairs?
+// Cells in motion, mostly generated ones, which show how the cost of a tick grows with the number
+// of objects and pairs.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace clearance::bench {
 
-// A cell and where everything in it is at any time.
+// A cell and the motion of its objects.
 struct Crowd {
-  // Goes round a circle at a constant speed and spins at a constant rate.
+  // Moves on a circle at a constant speed and spins at a constant rate.
   struct Orbit {
     std::uint32_t object = 0;
     Vec3 centre, across, along;  // radii of the circle, orthogonal, m
-    double turn_rate = 0.0;      // round the circle, rad/s
+    double turn_rate = 0.0;      // about the centre of the circle, rad/s
     Vec3 spin_axis;              // unit
     double spin_rate = 0.0;      // rad/s
   };
   std::string name;
   Scene scene;
   std::vector<Orbit> orbits;
-  std::map<std::string, double> swept;  // what a sweep chose: a counter each
+  std::map<std::string, double> swept;  // parameters of a sweep, which become counters
 
-  // A sample for everything that moves at `t_s` seconds, stamped `stamp_ns`.
+  // One sample for each moving object at `t_s` seconds, stamped `stamp_ns`.
   void samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const;
 };
 
@@ -39,7 +39,7 @@ struct OrbitingOptions {
 };
 
 // Boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of a cubic
-// grid, of which `moving` go round in circles of 0.18 m. No two ever meet; in a grid of 1 m
+// grid, of which `moving` move on circles of 0.18 m radius. No two ever meet; in a grid of 1 m
 // neighbours come as near as 0.08 m. All pairs are watched; what does not move sends the same pose
 // in every tick.
 [[nodiscard]] Crowd orbiting_crowd(const OrbitingOptions& options);

@@ -1,4 +1,5 @@
-// §3.6.2: a facet's neighbours by walking around it, every step a search through all half-spaces.
+// The facet walk of §3.6.2: finds the neighbours of a facet by following its boundary; each step
+// searches all half-spaces.
 #pragma once
 
 #include "tools/bench/adjacency.hpp"
@@ -6,7 +7,7 @@
 namespace clearance::bench {
 
 // O(N^2). In doubles and with the tie at a vertex of more than three facets decided by index: at
-// such vertices it names neighbours that share a point only.
+// such vertices it finds neighbours that share only a point.
 [[nodiscard]] Neighbours walk_facets(std::span<const HalfSpace> rows);
 
 }  // namespace clearance::bench

@@ -26,22 +26,22 @@
 namespace clearance::bench {
 
 struct Answer {
-  double distance;  // 0 or less: they overlap; infinity: they do not, and that is all it says
-  bool ok = true;   // false: the solver says itself that it failed
+  double distance;  // 0 or less: they overlap; infinity: they do not, and nothing more is known
+  bool ok = true;   // false: the solver reports a failure
   int iterations = 0;
   double width = 0.0;  // m: upper - lower bound, for those who certify
 };
 
-// A query has failed when it says so, is NaN, or is off by more than this, m.
+// A query has failed when it reports so, is NaN, or is wrong by more than this, m.
 inline constexpr double kFailure = 1e-6;
 
 // Over all queries of a workload, from a pass of its own outside the timed loop.
 struct Verdict {
-  double max_error = 0.0;  // m, of those that did not say themselves that they failed
+  double max_error = 0.0;  // m, of the queries that did not report a failure
   double failures = 0.0;
   double iterations = 0.0;  // mean
   double widest_gap = 0.0;  // m: of the solver's own bounds
-  double truth_gap = 0.0;   // m: how far the truth itself may be off
+  double truth_gap = 0.0;   // m: the error bound of the reference itself
   double overlapping = 0.0;
   bool measures = false;  // an answer was more than that they do not overlap
 
@@ -136,7 +136,7 @@ class Row {
   Verdict verdict_;
 };
 
-// Nothing is made before the row is run.
+// The workload is made when the row is run.
 template <class Solver>
 void register_row(const std::string& name, const std::string& load, int interval) {
   const auto row = std::make_shared<std::unique_ptr<Row<Solver>>>();

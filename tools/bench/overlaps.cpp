@@ -25,7 +25,7 @@ bool are_apart(const Trajectory& pair, const Pose& a, const Pose& b) {
   return distance(*pair.a, *pair.b, relative_pose(a, b), state, {.depth = false}).lower > 0.0;
 }
 
-// How far the origins are apart along a direction when the bodies touch, m.
+// The distance of the origins along a direction at which the bodies touch, m.
 double apart_at_touch(const Trajectory& pair, const Pose& a, Pose b, const Vec3& along) {
   double least = 0.0, most = pair.a->bounding_radius + pair.b->bounding_radius;
   for (int round = 0; round < 40; ++round) {

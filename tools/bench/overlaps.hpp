@@ -1,4 +1,4 @@
-// Pairs of bodies that overlap, for what a depth costs (tools/README.md, "Overlapping").
+// Pairs of penetrating bodies, to measure the cost of a depth (tools/README.md, "Overlapping").
 #pragma once
 
 #include <string>
@@ -10,15 +10,16 @@ namespace clearance::bench {
 
 inline constexpr const char* kOverlapKinds[] = {"boxes", "links", "f10", "v10", "f40", "v40"};
 
-// How far the bodies' origins are apart.
+// One distance of the bodies' origins.
 struct OverlapDepth {
   const char* name;
-  double apart;  // of what it is when the bodies touch
+  double apart;  // as a share of the distance at which the bodies touch
 };
 inline constexpr OverlapDepth kOverlapDepths[] = {
     {"shallow", 0.97}, {"half", 0.5}, {"near", 0.1}, {"nearer", 0.01}, {"middle", 0.0}};
 
-// Ten ways of 100 steps, in which B swings by a hundredth of the distance and by 0.01 rad.
+// Ten trajectories of 100 steps, in which B oscillates by a hundredth of the distance and by 0.01
+// rad.
 [[nodiscard]] std::vector<Trajectory> overlapping(const std::string& kind,
                                                   const OverlapDepth& depth);
 

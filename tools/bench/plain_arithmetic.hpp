@@ -1,5 +1,5 @@
-// The machine's own noise: a fixed number of multiplications in registers, which take the same time
-// again and again where nothing else (the host, interrupts) takes part.
+// Measures the noise of the machine: a fixed number of multiplications in registers, which take the
+// same time again and again where nothing else (the host, interrupts) takes part.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,14 +12,14 @@ namespace clearance::bench {
 
 class PlainArithmetic {
  public:
-  // Takes as long as something that takes `ns`, when nothing disturbs it.
+  // A number of multiplications that takes `ns` when nothing disturbs it.
   explicit PlainArithmetic(double ns) {
     double least = 1e9;
     for (int i = 0; i < 50; ++i) least = std::min(least, time());
     rounds_ = static_cast<int>(ns / least * kSample);
   }
 
-  // Once more; ns.
+  // Runs them once more and returns the time, ns.
   double time() {
     const double start = wall_ns();
     for (int i = 0; i < rounds_; ++i) value_ = value_ * 0.999 + 1.0;

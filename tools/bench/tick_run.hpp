@@ -1,4 +1,4 @@
-// A monitor of a crowd, tick by tick, and what those ticks take.
+// Runs a monitor of a crowd tick by tick and measures the time of each tick.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace clearance::bench {
 
-// Tick `tick` of a run, from 0, after the start-up: when, and where everything is.
+// The time and the poses of tick `tick` of a run, counted from 0 after the start-up.
 [[nodiscard]] std::int64_t stamp_ns(int tick);
 
-// A monitor of a crowd and the time in its world. Two of the same crowd do the same to the bit.
+// A monitor of a crowd and the time in its world. Two runs of the same crowd agree to the bit.
 class TickRun {
  public:
   explicit TickRun(const Crowd& crowd, unsigned workers = 1);
 
-  // Until everything has been looked at once; returns what each tick took, ns.
+  // Ticks until every pair has been evaluated or bounded once; returns the time of each tick, ns.
   std::vector<double> start_up();
   void prepare();
-  // What one tick takes on the wall, ns.
+  // Runs one tick and returns its wall-clock time, ns.
   double tick();
   [[nodiscard]] const Report& report() const { return *report_; }
 
@@ -39,7 +39,7 @@ class TickRun {
 // certified.
 [[nodiscard]] std::vector<double> certified_minima(const Crowd& crowd, int ticks);
 
-// What the ticks themselves take: `least` holds the time of each tick of a run, ns; runs them
+// The time of the ticks themselves: `least` holds the time of each tick of a run, ns; runs them
 // again, `runs` times, with a new monitor each, and leaves the least that each has taken. The
 // machine disturbs some tick in every run, but hardly the same tick in all.
 void keep_least(const Crowd& crowd, int runs, std::vector<double>& least);

@@ -30,7 +30,7 @@ double median(std::vector<double> times) {
   return quantile(times, 0.5);
 }
 
-// What the ticks said, in one number: a faster answer that is a different answer shows.
+// A hash of the reports, so that a faster answer which is a different answer shows.
 class Hash {
  public:
   void add(const Report& report) {
@@ -45,7 +45,7 @@ class Hash {
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
-// Times a run and counts what it did; returns what each tick took, ns.
+// Measures a run and counts its work; returns the time of each tick, ns.
 std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
   const double bytes_before = allocated_bytes(), start = wall_ns();
   TickRun run(crowd);
@@ -66,14 +66,14 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
     certified += run.report().minimum_certified;
     hash.add(run.report());
   }
-  // After the ticks: in between it would leave them colder caches.
+  // Measured after the ticks: in between it would leave colder caches for them.
   for (std::size_t i = 0; i < times.size(); ++i) control_times.push_back(control.time());
   const double ticks = static_cast<double>(times.size());
   const double pairs = static_cast<double>(crowd.scene.pairs.size());
   count_times(times, state);
   count_times(control_times, state, "control_");
   state.counters["queries"] = static_cast<double>(queries) / ticks;
-  state.counters["certified"] = static_cast<double>(certified) / ticks;
+  state.counters["proved"] = static_cast<double>(certified) / ticks;
   state.counters["pairs"] = pairs;
   state.counters["bytes_per_pair"] = bytes / pairs;
   state.counters["start_ms"] = 1e-6 * construction;

@@ -45,8 +45,8 @@ TrueDistance::Point TrueDistance::nearest() const {
   return sum;
 }
 
-// Wolfe's minor cycle: to the nearest point of the corners' affine hull, dropping corners that
-// would get a negative weight on the way.
+// Wolfe's minor cycle: to the nearest point of the corners' affine hull, dropping corners whose
+// weight would become negative.
 void TrueDistance::minimise() {
   while (corners_.size() > 1) {
     const auto others = static_cast<Eigen::Index>(corners_.size()) - 1;

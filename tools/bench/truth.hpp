@@ -1,4 +1,4 @@
-// The distance that every row's error is counted against, from a method that shares nothing with
+// The reference distance for the error of every row, from a method that shares nothing with
 // the core: Wolfe's nearest point (P. Wolfe, "Finding the nearest point in a polytope", 1976) over
 // all differences of vertices, in 80-bit long doubles, each answer with the gap between its primal
 // and its dual value. Bodies are the hulls of the polyhedra's vertices; poses are the exact
@@ -20,7 +20,7 @@ struct Truth {
 class TrueDistance {
  public:
   TrueDistance(const ConvexPolyhedron& a, const ConvexPolyhedron& b);
-  // Remembers where it ended: neighbouring poses are quick.
+  // Starts where the last call ended, which is fast for neighbouring poses.
   [[nodiscard]] Truth at(const Pose& world_from_a, const Pose& world_from_b);
 
  private:

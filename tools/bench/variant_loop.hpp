@@ -1,5 +1,6 @@
-// The thesis's loop in its variants (§4.1), over the core's tables and its delta, alpha and lambda,
-// without what the core adds: no certificate, no rule for ties, no walk from feature to feature.
+// The thesis's active-set iteration in its variants (§4.1), over the core's tables and its delta,
+// alpha and lambda, without what the core adds: no certificate, no rule for ties, no feature
+// tracking.
 #pragma once
 
 #include "core/active_set/active_feature.hpp"
@@ -23,7 +24,7 @@ enum class Scan {
 };
 
 struct LoopEnd {
-  bool ok;  // false: still going after kCycles, which here means going in circles
+  bool ok;  // false: not finished after kCycles, which here means that it cycles
   int cycles;
 };
 
@@ -31,7 +32,8 @@ namespace variant {
 
 constexpr int kCycles = 1000;
 constexpr double kContact = 1e-13;  // m
-constexpr double kRate = 1e-12;     // below this share of the distance a release gains nothing
+// A release that gains less than this share of the distance is no gain.
+constexpr double kRate = 1e-12;
 
 template <Scan kScan>
 bool step(ActiveFeature& a, ActiveFeature& b) {
@@ -61,7 +63,7 @@ bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
   return a_wants || b_wants;
 }
 
-// Every active facet with a negative multiplier at once: the feature that is left.
+// Drops every active facet with a negative multiplier at once; returns the feature that is left.
 inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, double least) {
   const Lambda best = lambda(side, towards_in_common);
   if (!(best.rate > least)) return false;

@@ -11,7 +11,7 @@
 namespace clearance::bench {
 namespace {
 
-// As in the thesis: from the last active set, or else from the middle.
+// As in the thesis, starts from the last active set, or else from the centres.
 void place(ActiveFeature& side, const TrackingState::Side& hint) {
   if (!side.place_tracked(hint)) side.place_inside(side.body().interior);
 }
@@ -79,7 +79,7 @@ class Moved {
   TrackingState tracking_;
 };
 
-// The base variant at poses that it is told before.
+// The base variant at poses that are set before the query.
 class Unmoved {
  public:
   Unmoved(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : pair_(&a, &b) {}
@@ -96,8 +96,9 @@ class Unmoved {
   Pose world_from_a_, world_from_b_;
 };
 
-// What remains of a query when its bodies have been moved. Reading the clock costs as much as
-// several queries, so each is repeated, from what the last pose left, after one that is not timed.
+// The part of a query that remains when its bodies have been transformed before. Reading the clock
+// costs as much as several queries, so each is repeated, from what the last pose left, after one
+// that is not timed.
 template <class Pair>
 void time_repeated(benchmark::State& state, const std::string& name) {
   constexpr int kRepeats = 64;

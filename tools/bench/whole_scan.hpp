@@ -15,7 +15,7 @@ namespace clearance::bench {
   return kNone;
 }
 
-// The same as alpha(), found the long way.
+// The same result as alpha(), found by scanning all facets.
 [[nodiscard]] inline Alpha alpha_over_all(const ActiveFeature& side, const Vec3& move_in_common) {
   if (side.feature() == FeatureKind::kVertex || side.feature() == FeatureKind::kInside) {
     return alpha(side, move_in_common);

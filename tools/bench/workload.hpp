@@ -14,7 +14,7 @@ namespace clearance::bench {
 
 using Body = std::shared_ptr<const ConvexPolyhedron>;
 
-// One pair on its way.
+// One pair on its trajectory.
 struct Trajectory {
   Body a, b;
   std::vector<std::pair<Pose, Pose>> poses;  // world_from_a, world_from_b
@@ -31,8 +31,9 @@ struct Workload {
 // The same on every machine; 40 trajectories of 100 steps, but for those of overlaps.hpp:
 //   fN, vN          §3.5, §4.1: two facet-balls of order N, or their duals; each moves 0.02 radius
 //                   and turns 0.01 rad a step; centres come as close as 2.6 to 7 radii
-//   boxes           random boxes on the same kind of way, centres 0.8 to 2 m apart at closest
-//   parallel-boxes  boxes of one orientation (half of them along the axes) that slide past each
+//   boxes           random boxes on the same kind of trajectory, centres 0.8 to 2 m apart at
+//   closest parallel-boxes  boxes of one orientation (half of them along the axes) that slide past
+//   each
 //                   other face to face
 //   links           hulls like those of robot links, 2 mm and 5 mrad a step
 // Made at first use and kept. Throws std::invalid_argument for any other name.

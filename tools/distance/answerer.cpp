@@ -17,7 +17,8 @@ using Clock = std::chrono::steady_clock;
 
 OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
-// Of two bodies that overlap, in frame A: where a search for the closest points ends.
+// A point of both bodies, in frame A, when they penetrate: where a search for the closest points
+// ends.
 Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                   const RelativePose& a_from_b) {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
@@ -40,7 +41,7 @@ OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
   const auto positive = [](double value) { return std::max(0.0, value); };
   const Vec3 normal = transform({Vec3::Zero(), world_from_a.orientation}, r.normal);
   const Vec3 on_a = transform(world_from_a, r.point_on_a);
-  // Through A's frame it would be off by what rounding makes of how far the two are apart.
+  // Computed through A's frame it would have a rounding error that grows with the distance.
   const Vec3 on_b = on_rounded_b(transform(world_from_b, answer.own_point_on_b), normal, b);
   OrderedJson out;
   out["distance"] = overlapping ? 0.0 : positive(r.distance);
@@ -113,7 +114,7 @@ void PathCount::add(const DistanceResult& result) {
   met += meets && searched ? 1 : 0;
 }
 
-// One pass over the motion gives the answers; further ones are only for the clock.
+// One pass over the motion gives the answers; further passes only measure time.
 std::vector<DistanceAnswer> Answerer::run(const DistanceCase& question) {
   const std::vector<std::pair<Pose, Pose>>& poses = question.poses;
   std::vector<DistanceAnswer> results(poses.size());

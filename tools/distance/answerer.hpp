@@ -36,10 +36,10 @@ class Answerer {
   // times, for the measurement of time.
   Answerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
-  // An answer as --help describes it: one entry a pose where it is a motion.
+  // An answer as --help describes it: one entry for each pose of a motion.
   [[nodiscard]] nlohmann::ordered_json answer(const DistanceCase& question);
 
-  // To stderr; the second line is how often each path was taken.
+  // Prints to stderr; the second line counts the answers of each method.
   void print_summary(std::size_t lines, std::size_t bad_lines) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// As much of a value as a message can carry.
+// A value shortened to what fits into a message.
 std::string shown(const Json& value) {
   const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   return text.size() <= 80 ? text : fmt::format("{}...", text.substr(0, 77));

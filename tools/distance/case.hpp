@@ -1,4 +1,4 @@
-// A line of a file of cases: two bodies and where they are.
+// Reads a line of a file of cases: two bodies and their poses.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-// What is wrong with a line, said so that its writer can mend it.
+// A line that cannot be used; the message lets its author correct it.
 struct BadLine : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -20,13 +20,13 @@ namespace {
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
-// ExactNumber answers are right to 30 digits.
+// Exact answers are right to 30 digits.
 const Rational& digits_left_out() {
   static const Rational share = *rational_from("1e-29");
   return share;
 }
 
-// Of two points in their frames' origins: any error is too large.
+// For two points in the origins of their frames, where any error is too large.
 constexpr double kLeastScale = std::numeric_limits<double>::min();
 
 ExactNumber exact_number(const Json& value, const char* key) {
@@ -46,7 +46,7 @@ RationalPoint exact_point(const OrderedJson& list) {
           Rational(list[2].get<double>())};
 }
 
-// How far a point is outside of the worst of a body's half-spaces, m; 0: inside.
+// The largest violation of a body's half-spaces by a point, m; 0: it is inside.
 double outside(const Json& rows, const RationalPoint& in_body_frame) {
   double worst = 0.0;
   for (const Json& row : rows) {
@@ -61,25 +61,25 @@ double outside(const Json& rows, const RationalPoint& in_body_frame) {
   return worst;
 }
 
-// World coordinates are doubles: a point cannot be told better than this, m.
+// World coordinates are doubles: a point cannot be given more precisely than this, m.
 double rounding_of(const RationalPoint& point) {
   return 0x1p-53 * root_of(squared_distance(point, {0, 0, 0}));
 }
 
-// Bodies without half-spaces, or with a ball added, are not judged.
+// Bodies without half-spaces, or with a radius, are not checked.
 bool has_rows(const Json& body) {
   return body.contains("halfspaces") && body["halfspaces"].is_array() &&
          body.value("radius", 0.0) == 0.0;
 }
 
-// In as few digits as read back as the same double.
+// The shortest text that reads back as the same double.
 std::string shown(double value) {
   std::array<char, 40> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-// What the gap between bounds is over, m: how far both bodies reach, one that has no end as far as
-// the closest points may lie, and how far their origins are apart.
+// The length that the gap between bounds is relative to, m: both bounding radii (for an unbounded
+// body the largest distance at which its closest points may lie) plus the distance of the origins.
 double size_of(const DistanceCase& asked, std::size_t pose, double farthest) {
   const auto& [world_from_a, world_from_b] = asked.poses[pose];
   const double apart = (world_from_b.position - world_from_a.position).norm();
@@ -91,7 +91,7 @@ double size_of(const DistanceCase& asked, std::size_t pose, double farthest) {
   return reach(asked.a, of_a, of_b) + reach(asked.b, of_b, of_a) + apart;
 }
 
-// The entry of a motion, or the value itself.
+// The entry of a motion, or the value itself for a single pose.
 const OrderedJson& entry(const OrderedJson& answer, const char* key, std::size_t k, bool motion) {
   return motion ? answer[key][k] : answer[key];
 }

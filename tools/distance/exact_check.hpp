@@ -1,6 +1,7 @@
-// Answers held against the exact ones that a line of cases may carry, in exact rational arithmetic:
+// Compares answers with the exact ones that a line of cases may carry, in exact rational
+// arithmetic:
 //   distance            text, "0.0625": right to 30 digits; of a motion `distances`, one a pose
-//   penetration         text or null, the length of the shortest translation that parts the bodies;
+//   penetration         text or null, the length of the shortest translation that separates them;
 //                       of a motion `penetrations`
 //   scale               the length to measure errors with, m; else the bodies' reach
 //   family              what kind of case it is, for the table
@@ -18,24 +19,25 @@ namespace clearance {
 
 class ExactCheck {
  public:
-  // `tolerance`: of distance and witness points, over the larger of scale and distance; of depth,
-  // over the scale. Bounds have none. `widest`: how far bounds may be apart, over the bodies' reach
-  // and the distance of their origins, of which a converged answer promises 1e-14 (and kUnderflow).
+  // `tolerance` is relative: for distance and witness points to the larger of scale and distance,
+  // for depth to the scale. Bounds have no tolerance. `widest` is the largest accepted gap between
+  // the bounds, relative to the bounding radii plus the distance of the origins; a converged answer
+  // promises 1e-14 (and kUnderflow).
   ExactCheck(double tolerance, double widest) : tolerance_(tolerance), widest_(widest) {}
 
-  // What is wrong with the answer, a sentence each. Throws BadLine where the exact one cannot be
-  // read.
+  // One sentence for each thing that is wrong with the answer. Throws BadLine when the exact answer
+  // cannot be read.
   [[nodiscard]] std::vector<std::string> faults(const nlohmann::json& line,
                                                 const DistanceCase& question,
                                                 const nlohmann::ordered_json& answer);
 
-  // To stderr: a table with a row a family.
+  // Prints a table to stderr, with one row for each family.
   void print_summary() const;
-  // Something was checked, and nothing was wrong.
+  // True when something was checked and nothing was wrong.
   [[nodiscard]] bool good() const;
 
  private:
-  // The largest of each, over what its tolerance is.
+  // The largest error of each kind, relative to the length that its tolerance is relative to.
   struct Figures {
     std::size_t answers = 0, wrong = 0;
     double error = 0.0, gap = 0.0, witness = 0.0, depth = 0.0;

@@ -1,4 +1,4 @@
-// Exact arithmetic for judging: every double is a fraction.
+// Exact rational arithmetic for checking answers: every double is a fraction.
 #pragma once
 
 #include <gmpxx.h>
@@ -19,13 +19,13 @@ struct ExactNumber {
   std::string text;  // as it was written
 };
 
-// "0.125", "-3e-7"; nothing where the text is no such number.
+// "0.125", "-3e-7"; nothing when the text is not such a number.
 [[nodiscard]] std::optional<Rational> rational_from(const std::string& decimal);
 
-// The double nearest to its root, within a few ulps. `square` >= 0.
+// The square root, within a few ulps. `square` >= 0.
 [[nodiscard]] double root_of(const Rational& square);
 
-// Where a point of the world is in a body's frame; the orientation is normalised exactly.
+// Transforms a point of the world into a body's frame; the orientation is normalised exactly.
 [[nodiscard]] RationalPoint in_body(const Pose& world_from_body, const RationalPoint& in_world);
 
 [[nodiscard]] Rational squared_distance(const RationalPoint& a, const RationalPoint& b);

@@ -1,4 +1,4 @@
-// What clearance-record was asked to do.
+// The arguments of clearance-record.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct RecordArguments {
   DdsArguments dds;
 };
 
-// tools/record/from_csv.cpp, tools/record/subscribe.cpp. The exit code. `scene`: the cell; null:
-// none given.
+// tools/record/from_csv.cpp, tools/record/subscribe.cpp. Both return the exit code. `scene` is the
+// cell, or null when none was given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene,
                                   StopSignal& stop);
 [[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene,

@@ -1,4 +1,4 @@
-// What is missing from streams whose samples are numbered.
+// Finds gaps in streams whose samples are numbered.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@ namespace clearance {
 
 class StreamGaps {
  public:
-  // `kind` and `stream` name it: "batches" and "of source 'arm'". A number that is not larger is a
-  // sender that started again.
+  // `kind` and `stream` name it: "batches" and "of source 'arm'". A number that is not larger means
+  // that the sender was started again.
   void note(const std::string& kind, const std::string& stream, std::uint64_t number);
 
-  // Where streams begin later than with their first sample, and how many samples are missing after
-  // that: a sentence each.
+  // Sentences about streams that begin later than with their first sample, and about the number of
+  // samples that are missing after that.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:

@@ -21,10 +21,10 @@
 namespace clearance {
 namespace {
 
-// Two seconds at 1 kHz, should the disk stall.
+// Two seconds at 1 kHz, in case the disk stalls.
 constexpr std::int32_t kDepth = 2048;
-constexpr std::size_t kAtOnce = 64;         // samples a call
-constexpr std::size_t kMostWaiting = 8192;  // samples between two looks at the other topics
+constexpr std::size_t kAtOnce = 64;         // samples for each call
+constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other topics are checked
 
 // Readers of all five topics; what they take goes into the recording byte for byte.
 class Subscription {
@@ -45,7 +45,7 @@ class Subscription {
     for (const std::uint64_t count : counts_) sum += count;
     return sum;
   }
-  // Samples that came too fast for this program, or got lost on the way.
+  // Samples that arrived too fast for this program or were lost in transit.
   [[nodiscard]] std::uint64_t lost() const {
     std::uint64_t sum = 0;
     for (const dds_entity_t reader : readers_) {
@@ -62,7 +62,7 @@ class Subscription {
     for (const Topic& topic : kTopics) {
       while (take(topic.kind)) {
       }
-      // Cyclone gives what waits source by source, zone by zone: back into the order of sending.
+      // Cyclone returns waiting samples instance by instance; this restores the order of sending.
       std::ranges::stable_sort(taken_, {}, &Taken::source_ns);
       const std::int64_t now_ns = dds_time();
       for (const Taken& taken : taken_) {
@@ -132,7 +132,7 @@ void show(const Subscription& subscription, const RecordingWriter& writer, const
         static_cast<double>(writer.bytes()) * 1e-6, end);
 }
 
-// Until stopped, the time is up or the file cannot be written.
+// Records until it is stopped, the time is up, or the file cannot be written.
 void record_until(std::int64_t end_ns, Subscription& subscription, Participant& participant,
                   RecordingWriter& writer, StopSignal& stop) {
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -174,14 +174,15 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   print(stderr, "{}: ", arguments.out);
   show(subscription, writer, "\n");
   if (subscription.lost() > 0) {
-    print(stderr, "clearance-record: {} samples were lost on the way here\n", subscription.lost());
+    print(stderr, "clearance-record: {} samples were lost before they were recorded\n",
+          subscription.lost());
   }
   for (const std::string& gap : subscription.gaps()) {
     print(stderr, "clearance-record: {}\n", gap);
   }
   if (subscription.total() > 0) return kOk;
   print(stderr,
-        "clearance-record: nothing was heard on {}; does the daemon run there, with these topic "
+        "clearance-record: nothing was received on {}; does the daemon run there, with these topic "
         "names?\n",
         participant.where());
   return kFailed;

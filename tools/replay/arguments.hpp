@@ -1,4 +1,4 @@
-// What clearance-replay was asked to do.
+// The arguments of clearance-replay.
 #pragma once
 
 #include <optional>
@@ -39,7 +39,7 @@ struct ReplayArguments {
   std::vector<std::string> expect_no_zone;
 };
 
-// tools/replay/offline.cpp, tools/replay/publish.cpp. The exit code.
+// tools/replay/offline.cpp, tools/replay/publish.cpp. Both return the exit code.
 [[nodiscard]] int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop);
 [[nodiscard]] int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop);
 

@@ -1,4 +1,4 @@
-// A bar on stderr that fills up; nothing at all when nobody looks.
+// A progress bar on stderr; it prints nothing when stderr is not a terminal.
 #pragma once
 
 #include <unistd.h>

@@ -25,7 +25,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 std::int64_t monotonic_ns() { return SystemClock().monotonic_ns(); }
 
-// The writers of a recording's channels, made when a channel is first met.
+// The writers of a recording's channels, each made when its channel first occurs.
 class Writers {
  public:
   explicit Writers(Participant& participant) : participant_(participant) {}
@@ -35,7 +35,7 @@ class Writers {
     if (added) writer->second = participant_.writer(message.kind, message.channel->topic);
     return writer->second;
   }
-  // How many of the writers have a reader.
+  // The number of writers that have a reader.
   [[nodiscard]] std::size_t heard() const {
     return static_cast<std::size_t>(std::ranges::count_if(writers_, [](const auto& writer) {
       dds_publication_matched_status_t status{};
@@ -88,7 +88,7 @@ class Sender {
     return true;
   }
 
-  // As old as it was when it was recorded.
+  // Keeps the age that the pose had when it was recorded.
   static std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) {
     const std::int64_t shift = dds_time() - message.log_ns;
     for (std::uint32_t i = 0; i < batch.poses._length; ++i)
@@ -105,7 +105,7 @@ class Sender {
   Sample<clearance_msg_Health> health_;
 };
 
-// Sleeps until a time, but hears a signal within 20 ms. True: it is time; false: asked to stop.
+// Sleeps until a time, but reacts to a signal within 20 ms. False: it was stopped.
 bool wait_until(std::int64_t due_ns, StopSignal& stop) {
   constexpr std::int64_t kPatienceNs = 20 * kMillisecond;
   for (;;) {
@@ -166,15 +166,15 @@ McapWindow Publishing::window() const {
   return window;
 }
 
-// Makes the writers of what the recording begins with, and gives readers a moment to find them.
+// Makes the writers of the channels at the beginning, and gives readers a moment to discover them.
 bool Publishing::prepare() {
   RecordingReader reader(arguments_.recording, window());
   RecordedMessage message;
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
   }
-  // Once one topic is heard, the others get a moment more: discovery of all takes 2 to 12 ms, or
-  // longer on a busy machine.
+  // Once one topic has a reader, the others get a moment more: discovery of all takes 2 to 12 ms,
+  // or longer on a busy machine.
   constexpr std::int64_t kSettleNs = 300 * kMillisecond;
   std::int64_t until = monotonic_ns() + std::llround(arguments_.wait_s * 1e9);
   bool heard = false;

@@ -37,7 +37,7 @@ struct Models {
   double full_error = 0.0;  // rounding of its numbers, m
 };
 
-// Objects of the same parts share their hull, and its error.
+// Objects with the same parts share their hull, so its error is computed once.
 class Judge {
  public:
   explicit Judge(const Scene& scene)
@@ -90,7 +90,7 @@ std::string kib(std::size_t bytes) {
   return fmt::format("{:.1f}", static_cast<double>(bytes) / 1024.0);
 }
 
-// Upwards: what is printed is still a bound.
+// Rounded upwards, so that the printed number is still a bound.
 std::string metres(double length) {
   return length < kInfinity ? fmt::format("{:.4f}", 1e-4 * std::ceil(1e4 * length))
                             : std::string("-");

@@ -7,7 +7,7 @@
 namespace clearance::watch {
 namespace {
 
-// A terminal may hold the program up for a second; reports wait that long.
+// A terminal may block the program for a second; the reader keeps the reports of that time.
 constexpr std::int32_t kDistancesDepth = 2048;
 
 template <class T>
@@ -56,7 +56,8 @@ void Feed::note_report() {
   smallest_ = {.known = true, .pair = distances_->minimum, .cycle = cycle_};
 }
 
-// Another run of the daemon, perhaps with another cell: its ids mean other things.
+// Called when the daemon was started again, perhaps with another cell, whose ids mean other
+// objects.
 void Feed::begin_again() {
   ++restarts_;
   cycle_ = 0;

@@ -1,4 +1,5 @@
-// What a client of the daemon knows: the latest of every topic, and what it had to miss.
+// The state of a client of the daemon: the latest sample of every topic, and counts of what it
+// missed.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +23,14 @@ class Feed {
  public:
   Feed(Participant& participant, const Topics& topics);
 
-  // Takes all that has come; `now_ns` is CLOCK_REALTIME.
+  // Takes all samples that have arrived; `now_ns` is CLOCK_REALTIME.
   void take(std::int64_t now_ns);
 
   // Whether a report ever came, and when the last one did.
   [[nodiscard]] bool any() const noexcept { return reports_ > 0; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const clearance_msg_Distances& distances() const noexcept { return *distances_; }
-  // Null until one came for the scene of the latest report.
+  // Null until a catalogue for the scene of the latest report has arrived.
   [[nodiscard]] const clearance_msg_Catalogue* catalogue() const noexcept;
   [[nodiscard]] const clearance_msg_Health* health() const noexcept;
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
@@ -45,7 +46,7 @@ class Feed {
   [[nodiscard]] std::uint32_t publishers()
       const;  // of distances, right now; more than one is a mistake
 
-  // Names from the catalogue; ids while there is none.
+  // Names from the catalogue, or ids as long as there is none.
   [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
 
  private:

@@ -32,7 +32,7 @@ const char* sequence(Style style) {
 
 bool starts_code_point(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
 
-// In one piece where the terminal takes it, so that no half frame is ever shown.
+// Written in one piece if the terminal accepts it, so that half a frame is never shown.
 void put(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
@@ -53,7 +53,7 @@ Line& Line::add(const std::string& text, Style style) {
   if (end == 0) return *this;
   text_ += sequence(style);
   for (const char byte : std::string_view(text).substr(0, end)) {
-    // Names come from a file: none of them may steer the terminal.
+    // Names come from a file: they must not contain control sequences.
     text_ += static_cast<unsigned char>(byte) < 0x20 || byte == 0x7f ? '?' : byte;
   }
   if (style != Style::kPlain) text_ += "\x1b[0m";

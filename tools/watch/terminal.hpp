@@ -1,4 +1,4 @@
-// A terminal as a full screen that is redrawn without flicker, and given back as it was.
+// Uses the terminal as a full screen that is redrawn without flicker, and restores it at the end.
 #pragma once
 
 #include <termios.h>
@@ -16,7 +16,7 @@ class Line {
  public:
   explicit Line(std::size_t width) : width_(width) {}
   Line& add(const std::string& text, Style style = Style::kPlain);
-  // Spaces up to a column, if the line is not there yet.
+  // Adds spaces up to a column, if the line is shorter.
   Line& to(std::size_t column);
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
 
@@ -29,7 +29,7 @@ struct Size {
   std::size_t columns = 80, rows = 24;
 };
 
-// Alternate screen, no cursor, keys not echoed; the destructor undoes it all.
+// Switches to the alternate screen without cursor and echo; the destructor restores everything.
 class Screen {
  public:
   Screen();

@@ -39,7 +39,7 @@ std::string point(const clearance_msg_Vector3& p) {
   return fmt::format("({:7.3f} {:7.3f} {:7.3f})", p.x, p.y, p.z);
 }
 
-// Seven columns; what is more than a quarter of an hour away is no news.
+// Seven columns; contacts more than a quarter of an hour away are not shown.
 std::string contact_time(double seconds) {
   if (std::isnan(seconds)) return "unknown";
   return seconds < 1000.0 ? fmt::format("{:7.2f}", seconds) : "      -";
@@ -207,7 +207,7 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   return line.add(feed.pair_name(pair));
 }
 
-// Closest first: by what is certain, so that an unknown pair is not hidden behind a known one.
+// Sorted by lower bound, so that an unknown pair is not hidden behind a known one.
 std::vector<const clearance_msg_PairDistance*> closest_first(
     const clearance_msg_Distances& report) {
   std::vector<const clearance_msg_PairDistance*> pairs(report.pairs._length);

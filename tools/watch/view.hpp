@@ -1,4 +1,4 @@
-// What clearance-watch shows: the feed as lines of a screen, as one plain line, and as a summary.
+// Formats the feed for clearance-watch: as lines of a screen, as one plain line, and as a summary.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace clearance::watch {
 
-// Reports that come no more for this long: the daemon is silent.
+// The daemon counts as silent when no report has arrived for this long.
 inline constexpr std::int64_t kSilentNs = 1'000'000'000;
 
 struct ViewContext {
@@ -19,14 +19,14 @@ struct ViewContext {
   double reports_a_second = 0.0;
 };
 
-// At most size.rows lines; the closest pairs fill what room is left.
+// At most size.rows lines; the closest pairs fill the room that is left.
 [[nodiscard]] std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context,
                                              Size size);
 
 // One line without escape sequences.
 [[nodiscard]] std::string plain_line(const Feed& feed, const ViewContext& context);
 
-// What was seen over `seconds`; several lines.
+// Several lines about what was received in `seconds`.
 [[nodiscard]] std::string final_summary(const Feed& feed, double seconds);
 
 }  // namespace clearance::watch

@@ -1,5 +1,5 @@
-// The fixed-rate loop through its seams: a list of batches, a clock that the test turns, a list of
-// reports.
+// The fixed-rate loop through its ports: a list of batches, a clock that the test moves, and a list
+// of reports.
 #include "monitor/loop/tick_loop.hpp"
 
 #include <gtest/gtest.h>

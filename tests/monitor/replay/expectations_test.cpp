@@ -1,4 +1,4 @@
-// What a test of its own may ask of a replay: a minimum distance, silent zones.
+// Expectations of a user's test about a replay: a minimum distance, and zones that stay inactive.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMini
               HasSubstr("apart between this tick and the last, at least 0.2 m expected"));
 }
 
-// 0.45 m at the nearest; how far the hand goes would leave everything open.
+// 0.45 m at the nearest; the displacement of the hand alone would decide nothing.
 TEST_F(ReplayExpectations, WhatPassesByBetweenTwoTicksIsLookedAtCloserBeforeItIsJudged) {
   record_darts(scene, run, 0.6);
   const OfflineReplay near = replay({.compare = Comparison::kBits, .expect_min_distance = 0.44});

@@ -1,4 +1,4 @@
-// References are closed forms: a ball of 50 mm above a box of 100 mm half height.
+// References are closed forms: a sphere of 50 mm above a box of 100 mm half height.
 #include "monitor/replay/reference_check.hpp"
 
 #include <gmock/gmock.h>

@@ -138,7 +138,7 @@ TYPED_TEST(EveryTopic, RefusesTrailingBytesOfAnotherLayout) {
 }
 
 TEST(Cdr, ReadsBigEndianWriters) {
-  // ZoneState {zone 2, "stop", active, not proved, pair 5, clearance 0.5 and
+  // ZoneState {zone 2, "stop", active, not certified, pair 5, clearance 0.5 and
   // 0.25, since 7, cycle 9, now 1}
   constexpr unsigned char kBytes[] = {
       0,    0,    0, 0,  // encapsulation: XCDR1, big-endian

@@ -1,6 +1,6 @@
 // A body as meshes are: vertices closer than rounding are one. The core's exact polyhedron keeps
 // them apart (four facets of a facet-ball that meet in a point but for rounding have two vertices
-// 1e-16 apart), and solvers that climb along edges in doubles would lose their way on such edges.
+// 1e-16 apart), and solvers that climb along edges in doubles would fail on such edges.
 #pragma once
 
 #include <vector>

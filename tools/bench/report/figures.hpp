@@ -1,4 +1,4 @@
-// What one run of the benchmark found, by the names of its rows.
+// The figures of one run of the benchmark, by the names of its rows.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -15,7 +15,7 @@ struct Figure {
   double failures = 0.0;
   double iterations = 0.0;
   double facets = 0.0, wrong = 0.0;  // adjacency only
-  // All else that the row counts; 0 where it does not.
+  // All other counters of the row; 0 for those that it does not have.
   std::map<std::string, double> counters;
   [[nodiscard]] double counted(const std::string& name) const {
     const auto found = counters.find(name);
@@ -37,7 +37,7 @@ class Figures {
   std::map<std::string, Figure> rows_;
 };
 
-// Collects what Google Benchmark reports and says on stderr how far it is.
+// Collects the reports of Google Benchmark and shows the progress on stderr.
 class Collector : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }

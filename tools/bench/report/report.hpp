@@ -22,7 +22,7 @@ inline constexpr const char* kReportRows =
 inline constexpr const char* kTickRows = "^(tick|sweep)/";
 [[nodiscard]] bool write_tick_report(const std::filesystem::path& folder, const Figures& figures);
 
-// The parts of them.
+// The parts of the two reports.
 [[nodiscard]] std::string tables(const Figures& figures);
 [[nodiscard]] std::string thesis_tables(const Figures& figures);
 [[nodiscard]] std::string pareto(const Figures& figures);

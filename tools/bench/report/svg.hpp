@@ -1,4 +1,4 @@
-// What the report's pictures are drawn with.
+// Elements of the report's pictures, as SVG text.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a tick costs against the number of pairs, speed and density; both axes logarithmic.
+// Draws the cost of a tick against the number of pairs, speed and density, with logarithmic axes.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -22,14 +22,14 @@ std::string three(const Figure& f) {
                      us(f.counted("max_us")));
 }
 
-// What is the tick's own: of each tick the least time of several runs.
+// The time of the ticks themselves: for each tick the least of several runs.
 std::string own(const Figure& f) {
   if (f.counted("own_runs") == 0.0) return "-";
   return fmt::format("{} / {} ({:.0f})", us(f.counted("own_p99.9_us")), us(f.counted("own_max_us")),
                      f.counted("own_runs"));
 }
 
-// What the machine makes of the same time of plain arithmetic.
+// The noise of the machine in plain arithmetic of the same duration.
 std::string noise(const Figure& f) {
   return fmt::format("{} / {}", us(f.counted("control_p99.9_us")), us(f.counted("control_max_us")));
 }
@@ -73,7 +73,7 @@ std::vector<Row> sorted_rows(const Figures& figures, const std::string& prefix) 
   return rows;
 }
 
-// What every row tells of a tick, behind the columns that say which tick it is.
+// The columns of every row, after those that name the tick.
 constexpr const char* kOfATick[] = {"pairs",
                                     "tick, median / p99.9 / max us",
                                     "its own, p99.9 / max us (runs)",
@@ -98,7 +98,7 @@ void add_row(const Figures& figures, const Row& row, Cells which, Table& table) 
        {fmt::format("{:.0f}", ours.counted("pairs")), three(ours), own(ours), noise(ours),
         against(figures.at(fmt::format("{}/plain", row.name)), ours), against(fcl, ours),
         error(fcl), fmt::format("{:.0f}", ours.counted("queries")),
-        fmt::format("{:.3g}", ours.counted("certified")),
+        fmt::format("{:.3g}", ours.counted("proved")),
         fmt::format("{:.0f}", ours.counted("bytes_per_pair")),
         fmt::format("{:.1f}", ours.counted("start_ms"))}) {
     which.push_back(cell);
