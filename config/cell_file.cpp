@@ -111,6 +111,7 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
     if (!name) continue;
+    // The characters that every DDS implementation accepts.
     const bool plain = std::all_of(name->begin(), name->end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
              c == '_' || c == '/';

@@ -22,6 +22,7 @@ MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagno
     diagnostics_.add(node, fmt::format("found {}; expected {} (a map)", describe(node), what_));
     return;
   }
+  // Where each key was seen first.
   std::map<std::string, const YamlNode*> first;
   for (const YamlEntry& entry : node.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) {

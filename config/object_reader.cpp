@@ -215,6 +215,7 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
   }
+  // Reported at the first object that is too many; the list is read all the same, for its mistakes.
   if (items.size() > kMaxObjects) {
     diagnostics.add(
         items[kMaxObjects],

@@ -40,7 +40,9 @@ class PairReader {
   const ObjectList& objects_;
   GroupIndex& group_index_;
   Diagnostics& diagnostics_;
+  // Sorted by key once the rules have been read.
   std::vector<Candidate> candidates_;
+  // False after a rule that could not be read.
   bool complete_ = true;
 };
 
@@ -151,6 +153,7 @@ void PairReader::read_exception(const YamlNode& node) {
   }
 }
 
+// In the order of the file, so that of two equal exceptions the second one is refused.
 void PairReader::read_exceptions(const YamlNode& node) {
   for (const YamlNode& item :
        read_list(node, "exceptions {between: [A, B], reason: ...}", diagnostics_)) {
@@ -186,6 +189,7 @@ PairList PairReader::finish(const YamlNode& rules) {
 
 }  // namespace
 
+// Exceptions are read after all rules: they refer to what the rules as a whole watch.
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
                     GroupIndex& group_index, Diagnostics& diagnostics) {
   PairReader reader(objects, group_index, diagnostics);

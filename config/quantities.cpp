@@ -180,6 +180,7 @@ std::optional<Eigen::Quaterniond> Quantities::rpy(const YamlNode& node) const {
   const auto values = numbers<3>(node, fmt::format("roll, pitch and yaw in {}", unit),
                                  fmt::format("an angle in {}", unit), {}, diagnostics_);
   if (!values) return std::nullopt;
+  // Yaw after pitch after roll; normalised once, at the end, so that right angles stay exact.
   const Eigen::Quaterniond product = turn((*values)[2], units_.angle, Vec3::UnitZ()) *
                                      turn((*values)[1], units_.angle, Vec3::UnitY()) *
                                      turn((*values)[0], units_.angle, Vec3::UnitX());

@@ -67,6 +67,7 @@ class RobotCellWriter {
   std::map<std::string, Pose> fixed_;  // links that never move, in the world
   YAML::Emitter out_;
   std::vector<std::string> notes_;
+  // Kept instead of thrown, as the emitter is in the middle of a document.
   std::string fault_;  // the first thing that cannot be written
 };
 
@@ -108,6 +109,7 @@ std::optional<std::filesystem::path> RobotCellWriter::package_directory(
 
 // Where the mesh is, relative to the cell.
 std::string RobotCellWriter::mesh_path(const std::string& file) {
+  // The two schemes that URDF files use; other texts are paths relative to the URDF.
   static const std::string kPackage = "package://", kFile = "file://";
   std::filesystem::path path;
   if (file.starts_with(kPackage)) {
@@ -243,6 +245,7 @@ void RobotCellWriter::emit_exceptions() {
   std::set<std::pair<std::string, std::string>> seen;
   std::vector<const SrdfDisabled*> useful;
   for (const SrdfDisabled& entry : disabled_) {
+    // Two fixed objects make no pair, so an exception for them would be refused as useless.
     const bool both_fixed = fixed_.contains(entry.link_a) && fixed_.contains(entry.link_b);
     if (watched(entry.link_a) && watched(entry.link_b) && !both_fixed &&
         entry.link_a != entry.link_b &&
@@ -290,6 +293,7 @@ void RobotCellWriter::emit_head() {
 // The fixed links first: objects and exceptions depend on them.
 std::variant<RobotCell, UrdfFault> RobotCellWriter::write() {
   find_fixed_links();
+  // Frames such as tool0 have no shapes; the person should see that they are not watched.
   std::string without;
   out_ << YAML::BeginMap;
   emit_head();

@@ -174,6 +174,7 @@ std::optional<std::string> read_name(const YamlNode& node, const std::string& wh
   const bool bad_byte = std::any_of(text->begin(), text->end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == ',' || c == '"';
   });
+  // YAML itself strips blanks around plain scalars; only quoted ones can have them.
   const bool blank_ends = !text->empty() && (text->front() == ' ' || text->back() == ' ');
   if (text->empty() || text->size() > kMaxName || bad_byte || blank_ends) {
     diagnostics.add(node,

@@ -201,6 +201,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
                                 rows_node == nullptr ? "neither" : "both"));
     return std::nullopt;
   }
+  // Diagnostics of this body only: others of the file do not make it wrong.
   const std::size_t before = diagnostics.count();
   if (vertices_node != nullptr) {
     std::vector<Vec3> vertices;
@@ -250,6 +251,7 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
                                                 fault->reason));
       return nullptr;
     }
+    // Once for each file: parts that share a mesh add nothing to the revision.
     revision_.add(std::get<std::string>(bytes));
     auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
     if (const auto* fault = std::get_if<MeshFault>(&result)) {
@@ -281,6 +283,7 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   const std::vector<Vec3>* vertices = file ? load(*file_node, *file) : nullptr;
   if (vertices == nullptr || diagnostics.count() != before) return std::nullopt;
 
+  // Checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
   const std::vector<Vec3> placed = scaled(*vertices, scale, unit);
   for (const Vec3& vertex : placed) {
     if (!(vertex.cwiseAbs().maxCoeff() <= kMaxLength)) {

@@ -42,6 +42,7 @@ class SimulationReader {
   const ObjectList& list_;
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
+  // By object id: the line that moves it.
   std::map<std::uint32_t, int> moved_in_line_;
 };
 
@@ -50,6 +51,7 @@ Pose SimulationReader::read_pose(const YamlNode* node) const {
   return node == nullptr ? Pose{} : quantities_.pose(*node).value_or(Pose{});
 }
 
+// 0 Hz stands still; the default.
 double SimulationReader::read_frequency(const YamlNode& node) const {
   return read_number(node, kFrequencies, "a frequency in Hz", diagnostics_).value_or(0.0);
 }
@@ -178,6 +180,7 @@ SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
 
 }  // namespace
 
+// Both lists may be absent: an empty section is allowed, since a cell may get its motion later.
 Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
                            const Quantities& quantities) {
   Diagnostics& diagnostics = quantities.diagnostics();

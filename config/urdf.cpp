@@ -150,6 +150,7 @@ UrdfRobot read_robot(const std::filesystem::path& file) {
   UrdfRobot robot;
   robot.name = xml.attribute(root, "name");
   std::set<std::string> names, children;
+  // A robot of frames only would give a cell that watches nothing.
   bool any_shape = false;
   for (const XMLElement* at = root.FirstChildElement("link"); at;
        at = at->NextSiblingElement("link")) {
@@ -197,6 +198,7 @@ std::vector<SrdfDisabled> read_disabled(const std::filesystem::path& file) {
   std::vector<SrdfDisabled> disabled;
   for (const XMLElement* at = root.FirstChildElement("disable_collisions"); at;
        at = at->NextSiblingElement("disable_collisions")) {
+    // The reason is optional in an SRDF but required in a cell.
     const char* reason = at->Attribute("reason");
     disabled.push_back({xml.attribute(*at, "link1"), xml.attribute(*at, "link2"),
                         reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason});
@@ -216,6 +218,7 @@ std::variant<Result, UrdfFault> read_file(const std::filesystem::path& file, Rea
 
 }  // namespace
 
+// Neither function throws: both end in read_file().
 std::variant<UrdfRobot, UrdfFault> read_urdf(const std::filesystem::path& file) {
   return read_file<UrdfRobot>(file, read_robot);
 }

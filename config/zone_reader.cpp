@@ -13,6 +13,7 @@
 namespace clearance {
 namespace {
 
+// The bound of the sequence in the catalogue.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
 
 // The place of a pair in the scene's list, which is sorted by key.
@@ -78,6 +79,7 @@ class ZoneReader {
   }
 
  private:
+  // Names must differ because logs and --expect-no-zone refer to zones by name.
   void read_zone_name(const YamlNode& node, Zone& zone) {
     zone.name = read_name(node, "a zone's name", quantities_.diagnostics()).value_or("");
     if (zone.name.empty()) return;
@@ -116,6 +118,7 @@ class ZoneReader {
   const PairList& pairs_;
   GroupIndex& group_index_;
   const Quantities& quantities_;
+  // Where each name was used first.
   std::map<std::string, const YamlNode*> names_;
 };
 

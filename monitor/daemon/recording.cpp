@@ -93,6 +93,7 @@ void Recording::log_trouble() {
   }
 }
 
+// On stdout, at the end of a run.
 std::string Recording::summary() const {
   return fmt::format("recorded {} messages, {:.1f} MB, in {}{}\n", recorder_.messages(),
                      1e-6 * static_cast<double>(recorder_.bytes()), file_,

@@ -11,6 +11,7 @@
 namespace clearance {
 namespace {
 
+// For messages about damage.
 std::string seconds(std::uint64_t ns) {
   return fmt::format("{:.3f} s", static_cast<double>(ns) * 1e-9);
 }
@@ -33,6 +34,7 @@ McapReader::McapReader(std::span<const std::byte> bytes, const std::string& name
 void McapReader::begin() {
   if (!read_magic()) return;
   summary_ = read_mcap_summary(file_);
+  // Without a window every chunk is needed anyway, and streaming finds damage that an index hides.
   const bool whole = window_.start_ns == 0 && window_.end_ns == McapWindow{}.end_ns;
   if (whole || !summary_ || summary_->chunks.empty()) return;
   indexed_ = true;
@@ -224,6 +226,7 @@ bool McapReader::take_message(std::span<const std::byte> body, McapMessage& mess
   message.sequence = fields.get<std::uint32_t>();
   message.log_time = fields.get<std::uint64_t>();
   message.publish_time = fields.get<std::uint64_t>();
+  // The payload has no length of its own: it is the rest of the record.
   message.payload = fields.rest();
   if (!fields.ok() || channel == channels_.end()) return false;
   message.channel = &channel->second;

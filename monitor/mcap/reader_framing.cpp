@@ -85,6 +85,7 @@ bool McapReader::read_body(const Record& record) {
 void McapReader::pass_over(const Record& record) {
   if (record.length > file_.size() - offset_) return cut_off(record.offset);
   std::uint64_t left = record.length;
+  // Attachments may be larger than memory, so they pass in pieces.
   std::array<std::byte, 65536> piece;
   while (left > 0) {
     const auto bytes = std::span(piece).first(
@@ -114,6 +115,7 @@ void McapReader::end_data(const Record& record) {
 void McapReader::end_file(const Record& record) {
   if (!data_ended_)
     return damage(record.offset, "the closing record stands before the end of the data");
+  // The checksum of the summary covers the footer up to the checksum itself.
   const std::uint32_t before = crc_;
   if (!read_body(record)) return;
   McapFields fields(body_);

@@ -136,6 +136,7 @@ std::optional<McapSummary> read_mcap_summary(McapFile& file) {
     McapFields fields(records.get_raw(records.get<std::uint64_t>()));
     if (!records.ok() || !read_record(file, kind, fields, schemas, summary)) return std::nullopt;
   }
+  // A summary may list them in any order; reading forwards is faster.
   std::ranges::sort(summary.chunks, {}, &McapChunkIndex::offset);
   return summary;
 }

@@ -62,6 +62,7 @@ void put_chunk_index(McapBytes& out, const McapChunkIndex& index) {
 // Record 0x0b.
 void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_t schemas,
                     std::size_t channels) {
+  // We write none.
   constexpr std::uint32_t kAttachments = 0;
   const std::size_t record = out.begin_record(McapKind::kStatistics);
   out.put(statistics.messages);
@@ -81,6 +82,7 @@ void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_
 // Magic and header go to the file at once: a file that is only this long is a valid beginning.
 McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOptions& options)
     : file_(file), options_(options) {
+  // O_EXCL decides in one step whether the file exists; a check before could be overtaken.
   const int existing = options.overwrite ? O_TRUNC : O_EXCL;
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644);
   if (descriptor_ < 0) {
@@ -140,6 +142,7 @@ std::uint16_t McapWriter::add_channel(const McapSchema& schema, std::string_view
 void McapWriter::write(std::uint16_t channel, std::uint64_t log_time, std::uint64_t publish_time,
                        std::span<const std::byte> payload) {
   if (!ok()) return;
+  // The index gives the offset of the message inside of the uncompressed chunk.
   Channel& state = in_chunk_[channel - 1u];
   state.index.emplace_back(log_time, chunk_.size());
   const std::size_t record = chunk_.begin_record(McapKind::kMessage);
@@ -231,6 +234,7 @@ void McapWriter::write_summary() {
   McapBytes summary;
   McapBytes offsets;
   const std::uint64_t start = offset_;
+  // Records of one kind stand together, as the specification demands of the summary section.
   const auto group = [&](McapKind kind, const auto& put_all) {
     const std::size_t begin = summary.size();
     put_all();
@@ -280,6 +284,7 @@ void McapWriter::write_summary() {
 // The end of the data with its checksum, then the summary, which lets readers find a window of
 // time.
 bool McapWriter::close() {
+  // Closed already, or never opened.
   if (descriptor_ < 0) return ok();
   flush();
   out_.clear();

@@ -97,6 +97,7 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+    // More expensive than the tick's own bound, hence only where that one does not suffice.
     const SweptBounds found = monitor.sweep(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;
     distance_broken_ = true;

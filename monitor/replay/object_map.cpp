@@ -33,6 +33,7 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
     const clearance_msg_CatalogueObject& object = recorded->objects._buffer[i];
     const auto found = std::ranges::find(names, object.name);
     const auto id = static_cast<std::uint32_t>(found - names.begin());
+    // A recording of any origin may state any id.
     if (object.id >= clearance_msg_kMaxObjects) continue;
     if (object.id >= id_.size()) id_.resize(object.id + 1, kLeftOut);
     if (found == names.end()) {

@@ -102,6 +102,7 @@ class Replay {
   bool restarted_ = false;
   std::uint64_t cycle_offset_ = 0;  // recorded less replayed
   std::uint64_t last_recorded_cycle_ = 0;
+  // The share that was shown last.
   double shown_ = -1.0;
 };
 

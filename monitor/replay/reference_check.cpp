@@ -109,6 +109,7 @@ void ReferenceCheck::compare(const Value& value, const PairReport& ours,
                                  name(ours.status), precise(ours.distance), reference,
                                  precise(tolerance_)));
   }
+  // Without the tolerance: bounds are true for every correct reference.
   const bool within = seen_by(value.distance, ours.lower) <= value.distance + value.rounding &&
                       seen_by(value.distance, ours.upper) >= value.distance - value.rounding;
   if (!within && totals_.outside++ == 0) {

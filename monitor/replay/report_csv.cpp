@@ -11,6 +11,7 @@
 namespace clearance {
 namespace {
 
+// Large enough that writing takes no noticeable time for each tick.
 constexpr std::size_t kWriteAt = std::size_t{1} << 18;  // bytes
 
 // As RFC 4180 has it.

@@ -80,6 +80,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   const clearance_msg_Distances& report = *current_.report;
   tick.recorded = &report;
   tick.now_ns = report.now_ns;
+  // A daemon that was started again counts from 1.
   tick.restart = last_cycle_ != 0 && report.cycle <= last_cycle_;
   last_cycle_ = report.cycle;
   if (tick.restart) {
@@ -136,6 +137,7 @@ void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSam
     until.push_back(found ? place + 1 : 0);
     consumed_[use.source.c_str()] = use.sequence_number;
   }
+  // One pass keeps the order of the file among all sources, which the tick depends on.
   std::size_t place = 0;
   std::erase_if(batches_waiting_, [&](const Waiting& waiting) {
     const std::size_t here = place++;

@@ -65,6 +65,7 @@ std::optional<ZoneDifference::Found> ZoneDifference::first(const States& recorde
   for (std::uint32_t zone = 0; zone < changes_.size(); ++zone) {
     const States theirs = changes_of(recorded, zone);
     const States& ours = changes_[zone];
+    // Both lists have the changes in order of time.
     const auto [there, here] = std::ranges::mismatch(theirs, ours, same);
     if (there == theirs.end() && here == ours.end()) continue;
     const bool theirs_first =
