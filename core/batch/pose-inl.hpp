@@ -122,43 +122,6 @@ HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b)
   return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
 }
 
-// At one component, which nearly always decides.
-HWY_INLINE LaneMask may_permute_axes(const Quaternions& q) {
-  const Lanes w = hn::Abs(q.w);
-  return hn::Or(hn::Or(hn::Eq(w, all(0.0)), hn::Eq(w, all(0.5))), hn::Eq(w, all(1.0)));
-}
-
-HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
-  const Lanes x = hn::Abs(q.x), y = hn::Abs(q.y), z = hn::Abs(q.z), w = hn::Abs(q.w);
-  const auto which = [&](double value) HWY_ATTR {
-    const auto number = [&](Lanes c) HWY_ATTR {
-      return hn::IfThenElseZero(hn::Eq(c, all(value)), all(1.0));
-    };
-    return hn::Add(hn::Add(number(x), number(y)), hn::Add(number(z), number(w)));
-  };
-  const LaneMask one = hn::And(hn::Eq(which(1.0), all(1.0)), hn::Eq(which(0.0), all(3.0)));
-  return hn::Or(hn::Eq(which(0.5), all(4.0)), one);
-}
-
-// What is exact of relative_pose(). Equal orientations give the identity, to the sign of its
-// zeros.
-HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
-                                 RelativePoses& pose) {
-  const Lanes zero = all(0.0), one = all(1.0);
-  const LaneMask equal = equal_up_to_sign(a, b), a_permutes = permute_axes(a);
-  const auto settle = [&](Points& row, Lanes x, Lanes y, Lanes z) HWY_ATTR {
-    row = {hn::IfThenElse(equal, x, row.x), hn::IfThenElse(equal, y, row.y),
-           hn::IfThenElse(equal, z, row.z)};
-  };
-  settle(pose.rotation.x, one, zero, zero);
-  settle(pose.rotation.y, zero, one, zero);
-  settle(pose.rotation.z, zero, zero, one);
-  const LaneMask exact = hn::Or(equal, hn::And(a_permutes, permute_axes(b)));
-  pose.rotation_error = hn::IfThenElse(exact, zero, pose.rotation_error);
-  pose.translation_error = hn::IfThenElse(
-      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
-}
-
 // Leaves no number of a pose that is not good, so that its lane fails.
 HWY_INLINE void spoil(LaneMask good, RelativePoses& pose) {
   const Lanes none = hn::NaN(Tag());
@@ -182,8 +145,8 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
   out.translation_error = hn::Mul(all(kTranslationError), apart);
   const LaneMask no_turn =
       hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), hn::Or(no_turn, may_permute_axes(a))))) {
-    settle_exactness(a, b, apart, out);
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), no_turn))) {
+    out.rotation_error = hn::IfThenElse(equal_up_to_sign(a, b), zero, out.rotation_error);
   }
   return out;
 }

@@ -41,11 +41,9 @@ inline constexpr double kProductError = 9 * kUlp;
 // The product with it: 2, the sum: 1.
 inline constexpr double kTurnError = 21.25 * kUlp;
 
-// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
-// the last where the turn only permutes axes.
+// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself.
 inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
-inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
@@ -87,6 +85,9 @@ inline constexpr double kSlender = 0x1p-20;
 // their product all but the last sum, which is exact there or as small as the derivative, by 2: 7
 // of 8.
 inline constexpr double kDerivativeError = 0x1p-50;
+
+// What rounding may hide of a slope: its direction's, its product's and its sum's.
+inline constexpr double kSlopeError = 0x1p-50;
 
 // Facets that are parallel along two edges may be tilted by a little more than either.
 inline constexpr double kParallelTilt = 2.0 * kDerivativeError;

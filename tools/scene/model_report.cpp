@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/enclosing_polyhedron.hpp"
-#include "core/model/footprint.hpp"
+#include "core/query_tables.hpp"
 #include "monitor/geometry/bounding_hull.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 
