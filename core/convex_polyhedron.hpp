@@ -81,7 +81,7 @@ struct ConvexPolyhedron {
   std::vector<EdgeUse> facet_edges;
   std::vector<EdgeUse> vertex_edges;
 
-  // The body is hull(anchors) + cone(rays). `anchors` are the vertices where there are any, else
+  // The body is hull(anchors) + cone(rays): `anchors` are the vertices where there are any, else
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
@@ -103,16 +103,16 @@ struct ConvexPolyhedron {
 
   // A point well inside (in the relative interior of a point or segment).
   Vec3 interior = Vec3::Zero();
-  // The ball of this radius around `interior` lies inside, rounding included, m; 0: not known. Made
-  // by add_query_tables().
+  // The sphere of this radius around `interior` lies inside, rounding included, m; 0: not known.
+  // Made by add_query_tables().
   double inner_radius = 0.0;
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;
-  // What is certain of Precision::slack whatever the pose, as A of a pair and as B, m; of an
-  // unbounded body without its reach. Made by add_query_tables().
-  double slack_as_a = 0.0, slack_as_b = 0.0;
-  // The body is the polyhedron plus a ball of this radius, m (exact); 0 to kLargestCoordinate.
+  // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m;
+  // of an unbounded body without how far out the closest points lie. Made by add_query_tables().
+  double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
+  // The body is the polyhedron plus a sphere of this radius, m (exact); 0 to kLargestCoordinate.
   double radius = 0.0;
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }

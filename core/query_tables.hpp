@@ -45,17 +45,19 @@ class VectorRows {
 
 // What limits a facet's polygon in its plane: inward.x >= offset. That is what lies on one side of
 // an edge; and, at a sharp corner, what lies before the end of the edge that ends there. A point
-// that is off either edge there by no more than rounding may be past the corner by that over the
+// that is off either edge there by no more than rounding may be past the vertex by that over the
 // sine of half its angle.
 struct FacetLimit {
   Vec3 inward;
   double offset;
 };
 
-// The cosine of a corner's angle beyond which it is sharp: the sine of half of it is 1/3.
+// The cosine of the angle of a facet's vertex beyond which it is sharp: the sine of half of it is
+// 1/3.
 inline constexpr double kSharpCorner = 7.0 / 9.0;
 
-// The body's directions are sums of its lines, either way along each, and of its other rays.
+// The directions in which an unbounded body is unbounded: sums of its lines (the lineality space),
+// either way along each, and of its other extreme rays.
 struct RecessionCone {
   // Unit, at right angles; two of them are a whole plane.
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
@@ -64,8 +66,7 @@ struct RecessionCone {
   // How much of any of the rays, at least, lies along one direction at right angles to the lines;
   // rounding included. 0 or less: no such direction is known.
   double least = 0.0;
-  // Unit: a direction in which the body goes on for ever that leads away from every facet; zero:
-  // there is none.
+  // Unit: a direction of the cone that leads away from every facet; zero: there is none.
   Vec3 inwards = Vec3::Zero();
 
   // What of v is at right angles to the lines.
@@ -75,9 +76,9 @@ struct RecessionCone {
   }
 };
 
-// A cube around the origin, each face a grid; a direction's cell names the vertex that is farthest
-// along the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the walk from there is
-// 3 edges long on average, and the table is no larger than the vertices of a body of 26 facets.
+// A cube around the origin, each face a grid; a direction's cell names the support point along
+// the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the climb from there takes
+// 3 edges on average, and the table is no larger than the vertices of a body of 26 facets.
 class StartTable {
  public:
   static constexpr int kGrid = 8;

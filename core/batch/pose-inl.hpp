@@ -76,10 +76,14 @@ HWY_INLINE Quaternions relative(const Quaternions& a, const Quaternions& b) {
           hn::Add(plus(a.x, b.x, a.y, b.y), plus(a.z, b.z, a.w, b.w))};
 }
 
+HWY_INLINE Lanes square_of(const Quaternions& q) {
+  return hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
+                 hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+}
+
 // 2 / |q|^2
 HWY_INLINE Lanes two_over_square(const Quaternions& q) {
-  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
-                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+  const Lanes square = square_of(q);
   const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
   const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
   if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
@@ -88,9 +92,7 @@ HWY_INLINE Lanes two_over_square(const Quaternions& q) {
 
 // But for a little at the limit, which is left to distance().
 HWY_INLINE LaneMask are_unit(const Quaternions& q) {
-  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
-                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
-  return hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(1.99 * kUnitTolerance));
+  return hn::Le(hn::Abs(hn::Sub(square_of(q), all(1.0))), all(1.99 * kUnitTolerance));
 }
 
 HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {

@@ -134,8 +134,8 @@ std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
 
 void add_query_tables(ConvexPolyhedron& body) {
   const double reach = body.bounded() ? body.bounding_radius : 0.0;
-  body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
-  body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
+  body.error_bound_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
+  body.error_bound_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   body.inner_radius = inner_radius(body);
   add_recession_cone(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };

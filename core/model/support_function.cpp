@@ -83,7 +83,7 @@ class NearlySupporting {
 // of unit length, where `across` is orthogonal to its lines. Parts of the rays across the lines
 // have at least RecessionCone::least along one direction, so that a sum of unit length has no more
 // than 1/least of them, each with the derivative of the steepest ray at most.
-double rise_of_rays(const RecessionCone& cone, const Vec3& across) noexcept {
+double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcept {
   if (!(cone.least > 0.0)) return kInfinity;
   double steepest = 0.0;
   for (const Vec3& ray : cone.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
@@ -92,7 +92,7 @@ double rise_of_rays(const RecessionCone& cone, const Vec3& across) noexcept {
 
 // The same from a direction beside `across` along which all rays have negative derivatives beyond
 // rounding: then it is the tilt against that direction. Tried: the direction past the steepest ray.
-double rise_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
+double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
   const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
   if (steepest == cone.rays.end()) return kInfinity;
@@ -107,8 +107,8 @@ double rise_past_steepest(const RecessionCone& cone, const Vec3& across) noexcep
 
 // An upper bound of the directional derivative along m of any unit direction of the cone: along its
 // lines, and beside them as its rays have across the lines.
-double rise(const RecessionCone& cone, const Vec3& m,
-            double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
+double cone_derivative(const RecessionCone& cone, const Vec3& m,
+                       double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
   const Vec3 across = cone.across_lines(m);
   const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
   return of_rays(cone, across) + of_lines;
@@ -116,7 +116,7 @@ double rise(const RecessionCone& cone, const Vec3& m,
 
 // The same from the facets: no direction of the cone has a positive derivative along their normals,
 // nor along m one above the tilt of m against a normal.
-double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+double derivative_by_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   double tilt2 = kInfinity;
   for (const Facet& facet : body.facets) {
     tilt2 = std::min(tilt2, (m - facet.normal).squaredNorm());
@@ -129,8 +129,8 @@ double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   Support best{m.dot(body.anchors[0]), 0};
   for (std::size_t i = 1; i < body.anchors.size(); ++i) {
-    const double height = m.dot(body.anchors[i]);
-    if (height > best.reach) best = {height, static_cast<std::int32_t>(i)};
+    const double value = m.dot(body.anchors[i]);
+    if (value > best.reach) best = {value, static_cast<std::int32_t>(i)};
   }
   return best;
 }
@@ -147,8 +147,8 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   Support best{-kInfinity, 0};
   for (std::size_t k = 0; k < level.size(); ++k) {
     const Vertex& vertex = body.vertices[level[k]];
-    const double height = m.dot(vertex.position);
-    if (height > best.reach) best = {height, level[k]};
+    const double value = m.dot(vertex.position);
+    if (value > best.reach) best = {value, level[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const std::int32_t next = body.neighbours[vertex.first_edge + i];
       const double derivative = m.dot(body.outgoing_of(vertex, i));
@@ -163,9 +163,10 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const RecessionCone& cone = body.recession_cone;
-  double rate = rise(cone, m, rise_of_rays);
+  double rate = cone_derivative(cone, m, derivative_by_rays);
   if (rate > kSlopeError) {
-    rate = std::min({rate, rise(cone, m, rise_past_steepest), rise_above_facets(body, m)});
+    rate = std::min(
+        {rate, cone_derivative(cone, m, derivative_past_steepest), derivative_by_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }

@@ -67,11 +67,11 @@ inline constexpr double kUnderflow = 1e-150;
 
 // Bounds no farther apart than this, before the slack, are as good as it gets, and nothing else is
 // tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
-inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
+inline constexpr double kGapToleranceUlps[] = {6.5, 16.0, 16.0};
 
 // What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies
 // that overlap or touch, and of two unbounded ones, 1.25e-14.
-inline constexpr double kConvergedGap = 90 * kUlp, kMetGap = 112 * kUlp;
+inline constexpr double kConvergedGap = 90 * kUlp, kContactGap = 112 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
