@@ -124,6 +124,20 @@ HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b)
   return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
 }
 
+HWY_INLINE LaneMask multiple_of_half(Lanes v) {
+  const Lanes twice = hn::Add(v, v);
+  return hn::Eq(twice, hn::Round(twice));
+}
+HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
+  return hn::And(hn::And(multiple_of_half(q.x), multiple_of_half(q.y)),
+                 hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
+}
+
+// has_exact_rotation() of core/model/relative_pose-inl.hpp.
+HWY_INLINE LaneMask have_exact_rotation(const Quaternions& a, const Quaternions& b) {
+  return hn::Or(equal_up_to_sign(a, b), hn::And(permute_axes(a), permute_axes(b)));
+}
+
 // Leaves no number of a pose that is not good, so that its lane fails.
 HWY_INLINE void spoil(LaneMask good, RelativePoses& pose) {
   const Lanes none = hn::NaN(Tag());
@@ -145,10 +159,8 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
       hn::And(hn::And(are_unit(a), are_unit(b)), hn::Le(apart, all(0.5 * kLargestCoordinate)));
   if (HWY_UNLIKELY(!hn::AllTrue(Tag(), good))) spoil(good, out);
   out.translation_error = hn::Mul(all(kTranslationError), apart);
-  const LaneMask no_turn =
-      hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), no_turn))) {
-    out.rotation_error = hn::IfThenElse(equal_up_to_sign(a, b), zero, out.rotation_error);
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), multiple_of_half(q.z)))) {
+    out.rotation_error = hn::IfThenElse(have_exact_rotation(a, b), zero, out.rotation_error);
   }
   return out;
 }

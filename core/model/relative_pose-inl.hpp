@@ -6,7 +6,9 @@
 #define CLEARANCE_CORE_RELATIVE_POSE4
 #endif
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "core/numerics/error_constants.hpp"
@@ -84,10 +86,20 @@ HWY_INLINE Vec4 turn_back(Vec4 q, Vec4 v) {
   return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
 }
 
-// What conj(a) b rounds to has a z of 0 then, so that this is seldom asked of moving bodies.
-inline HWY_NOINLINE bool equal_orientations(const Pose& a, const Pose& b) {
+// Do both rotations permute the axes, or are they equal? The relative rotation then has no error.
+// Of a unit quaternion, multiples of 1/2 permute the axes, and their products are exact.
+inline HWY_NOINLINE bool has_exact_rotation(const Pose& a, const Pose& b) {
+  const auto permutes_axes = [](const Eigen::Quaterniond& q) {
+    const Eigen::Array4d twice = 2.0 * q.coeffs().array();
+    return (twice == twice.round()).all();
+  };
   const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
-  return p == q || p == -q;
+  return p == q || p == -q || (permutes_axes(a.orientation) && permutes_axes(b.orientation));
+}
+// A quick look that moving orientations do not pass: z of conj(a) b is 0, 1/2 or 1 then, which have
+// no digits.
+HWY_INLINE bool may_have_exact_rotation(double z) {
+  return HWY_UNLIKELY(std::bit_cast<std::uint64_t>(z) << 12 == 0);
 }
 
 // For quaternions that are not of unit length to rounding, and frames that are far apart.
@@ -112,8 +124,7 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     r.apart = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.apart);
   }
-  // Equal orientations give the identity, and parallel stays parallel.
-  if (HWY_UNLIKELY(lane(q, 2) == 0.0) && equal_orientations(world_from_a, world_from_b)) {
+  if (may_have_exact_rotation(lane(q, 2)) && has_exact_rotation(world_from_a, world_from_b)) {
     r.rotation_error = 0.0;
   }
   return r;
