@@ -142,17 +142,17 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   if (climber.steepest < -kDerivativeError) {
     return {m.dot(body.vertices[climber.at].position), climber.at};
   }
-  NearlySupporting level;
-  level.add(climber.at);
+  NearlySupporting candidates;
+  candidates.add(climber.at);
   Support best{-kInfinity, 0};
-  for (std::size_t k = 0; k < level.size(); ++k) {
-    const Vertex& vertex = body.vertices[level[k]];
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Vertex& vertex = body.vertices[candidates[k]];
     const double value = m.dot(vertex.position);
-    if (value > best.reach) best = {value, level[k]};
+    if (value > best.reach) best = {value, candidates[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const std::int32_t next = body.neighbours[vertex.first_edge + i];
       const double derivative = m.dot(body.outgoing_of(vertex, i));
-      if (derivative > -kDerivativeError && !level.add(next)) return support_by_scan(body, m);
+      if (derivative > -kDerivativeError && !candidates.add(next)) return support_by_scan(body, m);
     }
   }
   return best;
@@ -172,7 +172,7 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
 }
 
 void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& other, const Mat3& turn,
-                      std::span<const std::uint16_t> facets, std::uint16_t* corners) noexcept {
+                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept {
   std::array<Climber, kLookedUpTogether> climbers;
   for (std::size_t k = 0; k < facets.size(); ++k) {
     const Vec3 m = -(turn * body.facets[facets[k]].normal);
@@ -180,7 +180,7 @@ void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& othe
   }
   climb_together(other, climbers.data(), facets.size());
   for (std::size_t k = 0; k < facets.size(); ++k) {
-    corners[facets[k]] = static_cast<std::uint16_t>(climbers[k].at);
+    vertices[facets[k]] = static_cast<std::uint16_t>(climbers[k].at);
   }
 }
 

@@ -33,9 +33,9 @@ struct Support {
 inline constexpr std::size_t kLookedUpTogether = 16;
 
 // For up to kLookedUpTogether facets of `body`, a vertex of `other` that is deepest below each or
-// nearly so: corners[facet]. `turn` leads from body's frame to other's. `other`: bounded, with
+// nearly so: vertices[facet]. `turn` leads from body's frame to other's. `other`: bounded, with
 // edges.
 void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& other, const Mat3& turn,
-                      std::span<const std::uint16_t> facets, std::uint16_t* corners) noexcept;
+                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept;
 
 }  // namespace clearance
