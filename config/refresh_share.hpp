@@ -1,4 +1,4 @@
-// What refreshing every pair in time takes of the budget.
+// The share of the budget that refreshing every pair in time takes.
 #pragma once
 
 #include <cstdint>
@@ -7,32 +7,33 @@
 
 namespace clearance {
 
-// Pairs that take turns, the stalest first.
-struct TakingTurns {
-  std::uint64_t rows = 0;  // queries that evaluating each once takes, at most: its pairs of parts
-  std::uint64_t most = 0;  // and of the one that takes the most
+// What refreshing some pairs round-robin takes, the stalest first.
+struct RefreshCost {
+  std::uint64_t part_pairs = 0;  // of all: queries that evaluating each pair once takes at most
+  std::uint64_t most = 0;        // of the pair that has the most
 
-  void add(std::uint64_t rows_of_one) noexcept;
-  // Queries that a tick must be able to spend on them so that each has its turn within so many.
+  void add(std::uint64_t part_pairs_of_one) noexcept;
+  // Queries a tick that refresh every pair within `ticks`.
   [[nodiscard]] std::uint64_t queries(std::uint64_t ticks) const noexcept;
 };
 
 struct RefreshShare {
-  std::uint64_t ticks = 1;        // within which every pair is to be refreshed
-  bool asked_every_tick = false;  // those that somebody asks for are evaluated in every tick in
-                                  // which the budget lasts, apart from all others: else with them
-  TakingTurns asked;              // these, if so
-  TakingTurns others;             // all other pairs
+  std::uint64_t ticks = 1;  // every pair is refreshed within so many
+  // Published pairs are evaluated in every tick in which the budget lasts, apart from all others.
+  // If false, they are refreshed together with the others.
+  bool published_every_tick = false;
+  RefreshCost published;  // empty unless published_every_tick
+  RefreshCost others;     // all other pairs
 
   [[nodiscard]] std::uint64_t queries() const noexcept {
-    return asked.queries(ticks) + others.queries(ticks);
+    return published.queries(ticks) + others.queries(ticks);
   }
 };
 
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
 
-// Evaluated in every tick as long as the budget allows.
-[[nodiscard]] inline bool is_asked(const ObjectPair& pair, const Scene& scene) noexcept {
+// Such a pair is evaluated in every tick as long as the budget allows.
+[[nodiscard]] inline bool is_published(const ObjectPair& pair, const Scene& scene) noexcept {
   return pair.publish || scene.evaluate_all;
 }
 

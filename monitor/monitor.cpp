@@ -193,7 +193,7 @@ void Monitor::State::write_minimum() noexcept {
   report.lower_all = report.unknown > 0 ? -kInfinity : minimum.lower();
   report.swept_lower_all = report.unknown > 0 ? -kInfinity : minimum.swept_lower();
   report.minimum_known = minimum.known();
-  report.minimum_proved = minimum.proved() && report.stale == 0 && report.unknown == 0;
+  report.minimum_certified = minimum.certified() && report.stale == 0 && report.unknown == 0;
   report.minimum = minimum.known() ? pair_report(minimum.pair()) : unknown_report();
 }
 

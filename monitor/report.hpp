@@ -70,7 +70,7 @@ struct ZoneReport {
   // pair's lower bound is -infinity: nobody can say that it is outside.
   bool active = false;
   // Every pair was proved outside since the last tick, or evaluated, or proved to have been inside.
-  bool proved = false;
+  bool certified = false;
   bool changed = false;  // this tick
   // The pair with the smallest (lower - margins); where all of those are outside and the zone is
   // active for what was between the ticks, the one with the smallest (swept_lower - margins).
@@ -92,7 +92,7 @@ struct Report {
   bool minimum_known = false;  // false: there is no such pair
   // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and
   // no pair is unknown or stale.
-  bool minimum_proved = false;
+  bool minimum_certified = false;
   double lower_all = 0.0;        // every pair's true distance is at least this
   double swept_lower_all = 0.0;  // and this at every instant since the last tick: see swept_lower
   // Object pairs; each is one of the last four.

@@ -35,7 +35,7 @@ void GlobalMinimum::add_rest(double lower, double swept_lower) noexcept {
   rest_lower_ = std::min(rest_lower_, lower);
 }
 
-bool GlobalMinimum::proved() const noexcept {
+bool GlobalMinimum::certified() const noexcept {
   if (!known_ || rest_lower_ < bounds_.upper) return false;
   const double loose = loose_pair_ == pair_ ? next_loose_lower_ : loose_lower_;
   return loose >= bounds_.upper;

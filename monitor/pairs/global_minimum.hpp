@@ -22,7 +22,7 @@ class GlobalMinimum {
 
   // No other pair can be closer: beyond what rounding leaves open between two that were both
   // evaluated.
-  [[nodiscard]] bool proved() const noexcept;
+  [[nodiscard]] bool certified() const noexcept;
 
   // Every pair's distance is at least this, m.
   [[nodiscard]] double lower() const noexcept { return lower_; }

@@ -21,7 +21,7 @@ PublishedPairs::PublishedPairs(const Scene& scene, const std::vector<PosedPart>&
                                const PairTable& table, bool every_tick)
     : every_tick_(every_tick) {
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (!is_asked(scene.pairs[p], scene)) continue;
+    if (!is_published(scene.pairs[p], scene)) continue;
     pairs_.push_back(p);
     part_pairs_ += table.part_pairs_of(p);
   }

@@ -130,7 +130,7 @@ void compare_bits(Comparer& compare, const clearance_msg_Distances& recorded,
   compare.field("oldest_evaluation_cycles", recorded.oldest_evaluation_cycles,
                 replayed.oldest_evaluation_cycles);
   compare.field("minimum_known", recorded.minimum_known, replayed.minimum_known);
-  compare.field("minimum_proved", recorded.minimum_proved, replayed.minimum_proved);
+  compare.field("minimum_certified", recorded.minimum_certified, replayed.minimum_certified);
   compare.bits(std::nullopt, recorded.minimum, replayed.minimum);
   compare.field("lower_all", recorded.lower_all, replayed.lower_all);
   compare.field("swept_lower_all", recorded.swept_lower_all, replayed.swept_lower_all);

@@ -16,8 +16,8 @@ namespace clearance {
 class RefreshBudget {
  public:
   // Keeps nothing back of a budget that is too small for it.
-  RefreshBudget(const TakingTurns& pairs, std::uint64_t ticks, bool affordable) noexcept
-      : part_pairs_(affordable ? pairs.rows : 0), most_(pairs.most), ticks_(ticks) {}
+  RefreshBudget(const RefreshCost& pairs, std::uint64_t ticks, bool affordable) noexcept
+      : part_pairs_(affordable ? pairs.part_pairs : 0), most_(pairs.most), ticks_(ticks) {}
 
   void begin_tick() noexcept { owed_ += part_pairs_ == 0 ? 0 : part_pairs_ + 1; }
   // In this tick, of the queries that pairs take at most.

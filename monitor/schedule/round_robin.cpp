@@ -21,7 +21,7 @@ std::uint32_t refreshed_per_tick(std::uint64_t pairs, std::uint64_t ticks) {
 
 RoundRobin::RoundRobin(const Scene& scene, const RefreshShare& share)
     : ticks_(share.ticks),
-      published_(share.asked, share.ticks, share.queries() <= scene.budget),
+      published_(share.published, share.ticks, share.queries() <= scene.budget),
       others_(share.others, share.ticks, share.queries() <= scene.budget),
       per_tick_(refreshed_per_tick(scene.pairs.size(), share.ticks)),
       queue_(scene.objects.size(), scene.pairs.size()) {}

@@ -21,7 +21,7 @@ std::uint32_t part_pairs_of(std::span<const std::uint32_t> pairs, const PairTabl
 Scheduler::Scheduler(const Scene& scene, const RefreshShare& share,
                      const std::vector<PosedPart>& parts, const PairTable& table,
                      const ZoneLevels& levels, WorkerPool& pool)
-    : published_(scene, parts, table, share.asked_every_tick),
+    : published_(scene, parts, table, share.published_every_tick),
       minimum_(scene.pairs.size()),
       urgency_(scene, parts, levels),
       round_robin_(scene, share),

@@ -80,7 +80,7 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
   out.publish_ns = publish_ns;
   out.scene_revision = report.scene_revision;
   out.minimum_known = report.minimum_known;
-  out.minimum_proved = report.minimum_proved;
+  out.minimum_certified = report.minimum_certified;
   out.lower_all = report.lower_all;
   out.swept_lower_all = report.swept_lower_all;
   to_wire(report.minimum, out.minimum);
@@ -112,7 +112,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
   out.zone = zone;
   copy_text(scene.zones[zone].name, out.name);
   out.active = state.active;
-  out.proved = state.proved;
+  out.certified = state.certified;
   out.pair = state.pair;
   out.clearance = state.clearance;
   out.swept_clearance = state.swept_clearance;

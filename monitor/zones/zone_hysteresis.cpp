@@ -36,7 +36,7 @@ bool ZoneHysteresis::proves(const Clearance& clearance, double margins,
 void ZoneHysteresis::finish(std::uint64_t cycle, ZoneReport& report) const noexcept {
   report.clearance = least_.now;
   report.swept_clearance = least_.since;
-  report.proved = proved_;
+  report.certified = proved_;
   report.active = !outside(least_.since);
   report.pair = report.active && outside(least_.now) ? swept_pair_ : pair_;
   report.changed = report.active != was_active_;

@@ -29,7 +29,7 @@ TEST(Monitor, ReportsDistanceWitnessesAndNormalInTheWorld) {
   EXPECT_EQ(report.oldest_pose_ns, kStart);
   EXPECT_EQ(report.scene_revision, 7u);
   EXPECT_TRUE(report.minimum_known);
-  EXPECT_TRUE(report.minimum_proved);
+  EXPECT_TRUE(report.minimum_certified);
   const PairReport& pair = report.pairs.at(0);
   EXPECT_EQ(pair.status, PairStatus::kConverged);
   EXPECT_NEAR(pair.distance, 0.5, 1e-12);
@@ -88,7 +88,7 @@ TEST(Monitor, OverlapIsReportedAsSuchAndIsTheMinimum) {
   EXPECT_LE(report.minimum.lower, -0.1);
   EXPECT_GE(report.minimum.upper, -0.1);
   EXPECT_NEAR(report.minimum.normal.x(), 1.0, 1e-15);
-  EXPECT_TRUE(report.minimum_proved);
+  EXPECT_TRUE(report.minimum_certified);
 }
 
 TEST(Monitor, AFloorIsOneHalfSpaceThatNothingOutgrows) {

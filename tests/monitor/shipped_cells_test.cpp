@@ -97,7 +97,7 @@ TEST_P(ShippedCells, EveryBoundHoldsAndTheProvedMinimumIsTheMinimum) {
       least.upper = std::min(least.upper, truth.upper);
     }
     ASSERT_LE(report.lower_all, least.upper);
-    if (report.minimum_proved) {
+    if (report.minimum_certified) {
       ASSERT_NEAR(report.minimum.distance, least.upper, 1e-12) << "tick " << t;
     }
   }
@@ -112,8 +112,8 @@ TEST(Monitor, ShippedCellsHaveEveryPublishedPairEvaluatedAndEverythingProvedInEv
       for (const PairReport& pair : report.pairs) {
         EXPECT_EQ(pair.evaluated_cycle, report.cycle) << name << " tick " << t;
       }
-      for (const ZoneReport& zone : report.zones) EXPECT_TRUE(zone.proved) << name;
-      EXPECT_TRUE(report.minimum_proved) << name << " tick " << t;
+      for (const ZoneReport& zone : report.zones) EXPECT_TRUE(zone.certified) << name;
+      EXPECT_TRUE(report.minimum_certified) << name << " tick " << t;
     }
   }
 }

@@ -73,7 +73,7 @@ void expect_offline_run_agrees(const Scene& scene, const std::vector<PoseBatch>&
     const Report& offline = monitor.tick(samples, online.now_ns);
     ASSERT_EQ(online.cycle, offline.cycle) << "a tick is missing";
     EXPECT_EQ(online.minimum_known, offline.minimum_known);
-    EXPECT_EQ(online.minimum_proved, offline.minimum_proved);
+    EXPECT_EQ(online.minimum_certified, offline.minimum_certified);
     EXPECT_EQ(online.newest_pose_ns, offline.newest_pose_ns);
     if (offline.minimum_known) expect_same_pair(offline.minimum, online.minimum, online.cycle);
     ASSERT_EQ(online.pairs._length, offline.pairs.size());

@@ -48,8 +48,8 @@ std::vector<double> proved_minima(const Crowd& crowd, int ticks) {
   for (int t = 0; t < ticks; ++t) {
     run.prepare();
     run.tick();
-    minima.push_back(run.report().minimum_proved ? run.report().minimum.distance
-                                                 : std::numeric_limits<double>::quiet_NaN());
+    minima.push_back(run.report().minimum_certified ? run.report().minimum.distance
+                                                    : std::numeric_limits<double>::quiet_NaN());
   }
   return minima;
 }

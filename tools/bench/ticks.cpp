@@ -33,7 +33,7 @@ class Hash {
  public:
   void add(const Report& report) {
     add(std::bit_cast<std::uint64_t>(report.minimum.distance));
-    add(report.minimum.pair + (report.minimum_proved ? 1ull << 32 : 0ull));
+    add(report.minimum.pair + (report.minimum_certified ? 1ull << 32 : 0ull));
   }
   // 24 bits: exact in the printed double.
   [[nodiscard]] double value() const { return static_cast<double>(hash_ >> 40); }
@@ -61,7 +61,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
     state.SetIterationTime(1e-9 * ns);
     times.push_back(ns);
     queries += run.report().queries;
-    proved += run.report().minimum_proved;
+    proved += run.report().minimum_certified;
     hash.add(run.report());
   }
   // After the ticks: in between it would leave them colder caches.

@@ -94,8 +94,8 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
       .add("          ")
       .add(fmt::format("in [{:.6f}, {:.6f}] m, since the last tick at least {:.6f} m  ", pair.lower,
                        pair.upper, pair.swept_lower))
-      .add(report.minimum_proved ? "certified" : "not certified",
-           report.minimum_proved ? Style::kGood : Style::kWarning);
+      .add(report.minimum_certified ? "certified" : "not certified",
+           report.minimum_certified ? Style::kGood : Style::kWarning);
   lines.emplace_back(width).add(fmt::format("          {}  normal ({:.2f} {:.2f} {:.2f})",
                                             approach(pair), pair.normal.x, pair.normal.y,
                                             pair.normal.z));

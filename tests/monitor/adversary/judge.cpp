@@ -116,7 +116,7 @@ void Judge::judge_minimum(const Report& report) const {
   EXPECT_LE(report.lower_all, least + rounding);
   EXPECT_LE(report.swept_lower_all, *std::min_element(since_.begin(), since_.end()) + rounding_);
   EXPECT_TRUE(report.minimum_known == (scene_.budget > 0) || report.unknown > 0);
-  if (!report.minimum_proved) return;
+  if (!report.minimum_certified) return;
   EXPECT_EQ(report.stale + report.unknown, 0u);
   EXPECT_LE(report.minimum.lower, least + rounding);
   EXPECT_GE(report.minimum.upper, least - rounding);
@@ -141,10 +141,10 @@ void Judge::judge_zone(const Zone& zone, const ZoneReport& report, bool all_fres
   EXPECT_TRUE(report.active || !was_active || since + rounding_ > zone.leave_above)
       << "left too early";
   const bool for_what_was_between = report.clearance > zone.leave_above;
-  if (report.active && report.proved && all_fresh && !for_what_was_between) {
+  if (report.active && report.certified && all_fresh && !for_what_was_between) {
     EXPECT_LE(now, zone.leave_above + 1e-9) << "certified, but not there";
   }
-  uncertain_zones_ += tick_ > kSettled && !report.proved;
+  uncertain_zones_ += tick_ > kSettled && !report.certified;
 }
 
 void Judge::judge_turns(const Report& report) const {
@@ -156,7 +156,7 @@ void Judge::judge_turns(const Report& report) const {
   if (!ample_ || tick_ <= kSettled) return;
   EXPECT_LE(report.oldest_evaluation_cycles, 16u) << "16 pairs a tick have their turn";
   // 30 km away, the core's rounding is wider than what tells two pairs apart.
-  EXPECT_TRUE(report.minimum_proved || (style_ == Style::kAway && oracle_.rounding > 0.0));
+  EXPECT_TRUE(report.minimum_certified || (style_ == Style::kAway && oracle_.rounding > 0.0));
 }
 
 }  // namespace clearance::test

@@ -27,7 +27,8 @@ TEST(BroadPhase, AThousandPairsThatStandStillCostNothing) {
       samples.push_back(test::sample(i, test::at(i, 0.01 * i * i, 0), kStart + t * kTick));
     }
     const Report& report = monitor.tick(samples, kStart + t * kTick);
-    EXPECT_EQ(report.minimum_proved, t > 0) << "a thousand pairs are looked at in the first tick";
+    EXPECT_EQ(report.minimum_certified, t > 0)
+        << "a thousand pairs are looked at in the first tick";
     queries = report.queries;
   }
   EXPECT_LE(queries, 20u) << "of 1770 pairs: those of the round, and the nearest";
@@ -44,9 +45,9 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
     samples.push_back(test::sample(i, test::at(i, 0.01 * i * i, 0), kStart));
   }
   const Report& report = monitor.tick(samples, kStart);
-  EXPECT_FALSE(report.minimum_proved) << "1000 of 1770 pairs a tick";
+  EXPECT_FALSE(report.minimum_certified) << "1000 of 1770 pairs a tick";
   EXPECT_EQ(report.lower_all, -kInfinity);
-  EXPECT_TRUE(monitor.tick({}, kStart).minimum_proved);
+  EXPECT_TRUE(monitor.tick({}, kStart).minimum_certified);
   EXPECT_GT(monitor.tick({}, kStart).lower_all, 0.0);
 }
 

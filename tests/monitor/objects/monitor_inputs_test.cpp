@@ -100,7 +100,7 @@ TEST(MonitorInputs, TheMinimumIsFoundAgainAfterOneWithoutEnd) {
   for (int k = 52; k < 200; ++k) {
     const Report& report = tick(k, 40.0, ceiling(90));
     EXPECT_LE(report.lower_all, 19.8) << k;
-    proved = report.minimum_proved;
+    proved = report.minimum_certified;
     if (proved) {
       EXPECT_NEAR(report.minimum.distance, 19.8, 1e-12) << k;
     }
@@ -124,7 +124,7 @@ TEST(MonitorInputs, NothingIsKnownBeforeTheFirstPose) {
   Monitor monitor(scene);
   const Report& report = monitor.tick({}, kStart);
   EXPECT_FALSE(report.minimum_known);
-  EXPECT_FALSE(report.minimum_proved);
+  EXPECT_FALSE(report.minimum_certified);
   EXPECT_EQ(report.unknown, 1u);
   EXPECT_EQ(report.queries, 0u);
   EXPECT_EQ(report.lower_all, -kInfinity);
@@ -162,7 +162,7 @@ TEST(MonitorInputs, LatePosesDecayTheBoundsByTheStatedSpeedAndSaySo) {
   EXPECT_LE(late.pairs[0].lower, 0.6);
   EXPECT_NEAR(late.pairs[0].upper, 1.0, 1e-12);
   EXPECT_TRUE(late.minimum_known);
-  EXPECT_FALSE(late.minimum_proved);
+  EXPECT_FALSE(late.minimum_certified);
   EXPECT_TRUE(monitor.input_age(0).stale);
 
   const Report& back = tick_with(monitor, 0, test::at(0.1, 0, 0), kStart + 101 * kTick);
@@ -182,7 +182,7 @@ TEST(MonitorInputs, LatePosesWithoutAStatedSpeedAreUnknownUntilTheNextPose) {
   EXPECT_TRUE(std::isnan(late.pairs[0].distance));
   EXPECT_EQ(late.pairs[0].age_a_ns, 21 * kTick);
   const Report& back = tick_with(monitor, 0, test::at(0.1, 0, 0), kStart + 22 * kTick);
-  EXPECT_TRUE(back.minimum_proved);
+  EXPECT_TRUE(back.minimum_certified);
 }
 
 // Oracle: anywhere the object can be by then, given its speed.

@@ -124,9 +124,9 @@ TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
     const std::vector<PoseSample> samples = simulated_samples(scene, 0.01 * t, now);
     const Report& report = monitor.tick(samples, now);
     const Report& truth = judge.tick(samples, now);
-    ASSERT_TRUE(truth.minimum_proved);
+    ASSERT_TRUE(truth.minimum_certified);
     ASSERT_LE(report.lower_all, truth.minimum.upper) << "tick " << t;
-    if (report.minimum_proved) {
+    if (report.minimum_certified) {
       ++proved;
       ASSERT_LE(report.minimum.lower, truth.minimum.upper) << "tick " << t;
       ASSERT_GE(report.minimum.upper, truth.minimum.lower) << "tick " << t;

@@ -35,14 +35,14 @@ inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
   append(bytes, report.queries);
   append(bytes, report.evaluated);
   append(bytes, report.oldest_evaluation_cycles);
-  append(bytes, report.minimum_proved);
+  append(bytes, report.minimum_certified);
   append(bytes, report.lower_all);
   append(bytes, report.swept_lower_all);
   append(bytes, report.minimum);
   for (const PairReport& pair : report.pairs) append(bytes, pair);
   for (const ZoneReport& zone : report.zones) {
     append(bytes, zone.active);
-    append(bytes, zone.proved);
+    append(bytes, zone.certified);
     append(bytes, zone.clearance);
     append(bytes, zone.swept_clearance);
     append(bytes, zone.pair);

@@ -17,7 +17,7 @@ TEST(RefreshBudget, LetsEveryPairBeRefreshedInTimeFromNoMoreThanIsKept) {
   for (int run = 0; run < 200; ++run) {
     const auto ticks = static_cast<std::uint64_t>(random.integer(1, 60));
     std::vector<std::uint64_t> rows(static_cast<std::size_t>(random.integer(1, 80)));
-    TakingTurns pairs;
+    RefreshCost pairs;
     for (std::uint64_t& of_one : rows) {
       of_one = static_cast<std::uint64_t>(random.integer(0, 3) == 0 ? random.integer(1, 40) : 1);
       pairs.add(of_one);
@@ -45,7 +45,7 @@ TEST(RefreshBudget, LetsEveryPairBeRefreshedInTimeFromNoMoreThanIsKept) {
 }
 
 TEST(RefreshBudget, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
-  RefreshBudget pace({.rows = 100, .most = 10}, 10, false);
+  RefreshBudget pace({.part_pairs = 100, .most = 10}, 10, false);
   for (int t = 0; t < 100; ++t) {
     pace.begin_tick();
     ASSERT_EQ(pace.kept(), 0u);
@@ -55,7 +55,7 @@ TEST(RefreshBudget, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
 
 // One of 25 pairs is due every 400 ticks: what is urgent hardly notices.
 TEST(RefreshBudget, KeepsAQueryOnlyWhenOneIsDue) {
-  RefreshBudget pace({.rows = 24, .most = 1}, 10'000, true);
+  RefreshBudget pace({.part_pairs = 24, .most = 1}, 10'000, true);
   std::vector<std::uint32_t> kept;
   for (int t = 0; t < 10'000; ++t) {
     pace.begin_tick();

@@ -157,7 +157,7 @@ TEST(Scheduler, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
   for (int t = 0; t < 50; ++t) {
     const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
     EXPECT_TRUE(report.zones[0].active);
-    EXPECT_TRUE(report.zones[0].proved);
+    EXPECT_TRUE(report.zones[0].certified);
   }
 }
 
@@ -166,7 +166,7 @@ TEST(Scheduler, SaysWhenTheBudgetEndsBeforeAZoneIsProved) {
   scene.zones = {test::zone_over(scene, 1000.0, 1000.0)};
   scene.budget = 4;
   Monitor monitor(scene);
-  EXPECT_FALSE(tick_with_first_at(test::at(0, 0, 0), 0, monitor).zones[0].proved);
+  EXPECT_FALSE(tick_with_first_at(test::at(0, 0, 0), 0, monitor).zones[0].certified);
 }
 
 TEST(Scheduler, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
@@ -208,8 +208,8 @@ TEST(Scheduler, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotC
   for (int t = 0; t < 30; ++t) {
     const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
     EXPECT_EQ(report.queries, 6u);
-    EXPECT_TRUE(report.minimum_proved);
-    EXPECT_TRUE(report.zones[0].proved);
+    EXPECT_TRUE(report.minimum_certified);
+    EXPECT_TRUE(report.zones[0].certified);
   }
 }
 

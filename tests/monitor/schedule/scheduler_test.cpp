@@ -24,7 +24,7 @@ TEST(Scheduler, EvaluatesWhatIsPublishedInEveryTickThatTheBudgetCovers) {
     const Report& report = motion.tick(monitor);
     EXPECT_EQ(report.evaluated, report.pairs_total);
     EXPECT_EQ(report.oldest_evaluation_cycles, 0u);
-    EXPECT_TRUE(report.minimum_proved);
+    EXPECT_TRUE(report.minimum_certified);
   }
 }
 
@@ -55,7 +55,7 @@ TEST(Scheduler, ProvesTheMinimumOnAFractionOfTheBudget) {
   Monitor monitor(scene);
   test::Adversary motion(scene, test::Style::kCrawl, 3.0, 44);
   int proved = 0;
-  for (int t = 0; t < 500; ++t) proved += motion.tick(monitor).minimum_proved;
+  for (int t = 0; t < 500; ++t) proved += motion.tick(monitor).minimum_certified;
   EXPECT_GE(proved, 480);
 }
 
@@ -83,7 +83,7 @@ TEST(Scheduler, SaysWhenTheBudgetEndsBeforeTheMinimumIsProved) {
   scene.budget = 1;
   Monitor monitor(scene);
   test::Adversary motion(scene, test::Style::kTeleport, 3.0, 46);
-  EXPECT_FALSE(motion.tick(monitor).minimum_proved);
+  EXPECT_FALSE(motion.tick(monitor).minimum_certified);
 }
 
 TEST(Scheduler, PartsThatCannotBeTheClosestAreNotEvaluatedAndThePairIsDecidedAllTheSame) {

@@ -215,7 +215,7 @@ TEST_F(FlyBy, AZoneIsEnteredByWhatFliesThroughBetweenTwoTicks) {
     EXPECT_LE(report.swept_lower_all, 0.05);
     if (budget < 100) continue;
     EXPECT_GT(report.zones[0].clearance, 0.5) << "gone again";
-    EXPECT_TRUE(report.zones[0].proved);
+    EXPECT_TRUE(report.zones[0].certified);
     EXPECT_LT(report.pairs[0].swept_lower, 0.05);
     EXPECT_FALSE(tick(monitor, test::at(0.1, 0.15, -0.6)).zones[0].active);
   }
@@ -226,7 +226,7 @@ TEST_F(FlyBy, AZoneIsNotEnteredByWhatFliesPastOutside) {
   tick(monitor, test::at(0.3, 1.0, 0.0));
   const Report& report = tick(monitor, test::at(1.0, 0.3, 0.0));  // 0.1 m from the corner
   EXPECT_FALSE(report.zones[0].active);
-  EXPECT_TRUE(report.zones[0].proved);
+  EXPECT_TRUE(report.zones[0].certified);
   EXPECT_GE(report.zones[0].swept_clearance, 0.05);
   EXPECT_GE(report.pairs[0].swept_lower, 0.05);
 }
@@ -248,7 +248,7 @@ TEST_F(FlyBy, ADiscontinuityOfTenKilometresEntersEveryZoneOfTheObject) {
   tick(monitor, test::at(0, 0, 1.0));
   const Report& report = tick(monitor, test::at(2e4, 0, 0));
   EXPECT_TRUE(report.zones[0].active);
-  EXPECT_FALSE(report.zones[0].proved);
+  EXPECT_FALSE(report.zones[0].certified);
   EXPECT_EQ(report.pairs[0].swept_lower, -kInfinity);
   EXPECT_EQ(report.swept_lower_all, -kInfinity);
   EXPECT_GT(report.lower_all, 1.0);

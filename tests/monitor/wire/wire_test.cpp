@@ -153,7 +153,7 @@ TEST(Cdr, ReadsBigEndianWriters) {
   EXPECT_EQ(2u, zone->zone);
   EXPECT_STREQ("stop", zone->name);
   EXPECT_TRUE(zone->active);
-  EXPECT_FALSE(zone->proved);
+  EXPECT_FALSE(zone->certified);
   EXPECT_EQ(5u, zone->pair);
   EXPECT_EQ(0.5, zone->clearance);
   EXPECT_EQ(0.25, zone->swept_clearance);

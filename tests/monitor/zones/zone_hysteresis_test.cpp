@@ -60,17 +60,17 @@ TEST_F(ZoneHysteresisTest, ClearanceIsTheLowerBoundLessBothMargins) {
 }
 
 TEST_F(ZoneHysteresisTest, IsProvedByEvaluationsAndByBoundsThatLieOutside) {
-  EXPECT_TRUE(tick(0.05, 0.3).proved);
-  EXPECT_TRUE(tick(0.2, 0.3, PairStatus::kCarried).proved);
-  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kCarried).proved);
-  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kStale).proved);
+  EXPECT_TRUE(tick(0.05, 0.3).certified);
+  EXPECT_TRUE(tick(0.2, 0.3, PairStatus::kCarried).certified);
+  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kCarried).certified);
+  EXPECT_FALSE(tick(0.05, 0.3, PairStatus::kStale).certified);
 }
 
 TEST_F(ZoneHysteresisTest, CarriedBoundsWithinTheHysteresisProveOnlyThatTheZoneIsNotEntered) {
-  EXPECT_TRUE(tick(0.12, 0.3, PairStatus::kCarried).proved);
+  EXPECT_TRUE(tick(0.12, 0.3, PairStatus::kCarried).certified);
   EXPECT_FALSE(report_.active);
   tick(0.05, 0.3);
-  EXPECT_FALSE(tick(0.12, 0.3, PairStatus::kCarried).proved);
+  EXPECT_FALSE(tick(0.12, 0.3, PairStatus::kCarried).certified);
   EXPECT_TRUE(report_.active);
 }
 
@@ -82,18 +82,18 @@ TEST_F(ZoneHysteresisTest, IsEnteredByWhatWasTooNearSinceTheLastTickAndNamesIt) 
   EXPECT_EQ(report_.pair, 1u);
   EXPECT_NEAR(report_.clearance, 0.2, 1e-12) << "of the other pair, and of now";
   EXPECT_NEAR(report_.swept_clearance, 0.05, 1e-12);
-  EXPECT_TRUE(report_.proved) << "it was there";
+  EXPECT_TRUE(report_.certified) << "it was there";
   EXPECT_FALSE(tick(nearest, nearest).active);
   EXPECT_EQ(report_.pair, 0u);
   passing.swept_upper = 0.5;
   EXPECT_TRUE(tick(nearest, passing).active);
-  EXPECT_FALSE(report_.proved) << "it may have been there";
+  EXPECT_FALSE(report_.certified) << "it may have been there";
 }
 
 TEST_F(ZoneHysteresisTest, AnUnknownPairIsNotOutside) {
   tick(-kInfinity, 0.3, PairStatus::kUnknown);
   EXPECT_TRUE(report_.active);
-  EXPECT_FALSE(report_.proved);
+  EXPECT_FALSE(report_.certified);
   EXPECT_EQ(report_.pair, 0u);
   EXPECT_EQ(report_.clearance, -kInfinity);
 }
@@ -102,7 +102,7 @@ TEST_F(ZoneHysteresisTest, AZoneOfNoPairsIsNeverActive) {
   const ZoneHysteresis update(zone_, report_);
   update.finish(1, report_);
   EXPECT_FALSE(report_.active);
-  EXPECT_TRUE(report_.proved);
+  EXPECT_TRUE(report_.certified);
 }
 
 }  // namespace
