@@ -9,9 +9,8 @@ namespace clearance {
 
 // What refreshing some pairs round-robin takes, the stalest first.
 struct RefreshCost {
-  std::uint64_t part_pairs =
-      0;                   // all of them: queries that evaluating each pair once takes at most
-  std::uint64_t most = 0;  // of the pair that has the most
+  std::uint64_t part_pairs = 0;  // of all: queries that evaluating each pair once takes at most
+  std::uint64_t most = 0;        // of the pair that has the most
 
   void add(std::uint64_t part_pairs_of_one) noexcept;
   // Queries a tick that refresh every pair within `ticks`.
