@@ -13,19 +13,17 @@
 // exactly.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "core/model/recession_cone.hpp"
-#include "core/model/start_table.hpp"
+#include "core/query_tables.hpp"
 #include "core/vec.hpp"
 
 namespace clearance {
 
-inline constexpr std::int32_t kNone = -1;
+inline constexpr std::int32_t kNone = -1;  // no feature
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // One half-space n.x <= d of the model whose bounding plane touches it in a facet.
@@ -69,47 +67,6 @@ struct Vertex {
   std::int32_t edges;
 };
 
-// Rows of vectors, one row a feature, as vector registers read them: a row of n vectors is its n x,
-// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end.
-class VectorRows {
- public:
-  explicit VectorRows(std::int32_t numbers) noexcept : numbers_(numbers) {}
-
-  // Before the first vector of a row, `first` vectors lie in the rows before it.
-  [[nodiscard]] const double* row(std::int32_t first) const noexcept {
-    return values_.data() + static_cast<std::ptrdiff_t>(first) * numbers_;
-  }
-  // Number k of vector i of a row of n.
-  [[nodiscard]] double number(std::int32_t first, std::int32_t n, std::int32_t i,
-                              std::int32_t k) const noexcept {
-    return row(first)[k * n + i];
-  }
-  void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
-    values_[static_cast<std::size_t>(first * numbers_ + k * n + i)] = to;
-  }
-  [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
-  void resize(std::size_t vectors) {
-    values_.assign(vectors * static_cast<std::size_t>(numbers_) + kOverrun, 0.0);
-  }
-
- private:
-  static constexpr std::size_t kOverrun = 4;  // a point has a row of none
-  std::vector<double> values_;
-  std::int32_t numbers_;
-};
-
-// What limits a facet's polygon in its plane: inward.x >= offset. That is what lies on one side of
-// an edge; and, at a sharp corner, what lies before the end of the edge that ends there. A point
-// that is off either edge there by no more than rounding may be past the corner by that over the
-// sine of half its angle.
-struct FacetLimit {
-  Vec3 inward;
-  double offset;
-};
-
-// The cosine of a corner's angle beyond which it is sharp: the sine of half of it is 1/3.
-inline constexpr double kSharpCorner = 7.0 / 9.0;
-
 // A direction in which the body is unbounded.
 struct Ray {
   Vec3 direction;  // unit, unless exact
@@ -124,16 +81,17 @@ struct ConvexPolyhedron {
   std::vector<EdgeUse> facet_edges;
   std::vector<EdgeUse> vertex_edges;
 
-  // The body is hull(anchors) + cone(rays). `anchors` are the vertices where there are any, else
+  // The body is hull(anchors) + cone(rays): `anchors` are the vertices where there are any, else
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
   // Of an unbounded body, a facet each: its exact outward normal up to a positive factor, zero
   // where no three doubles are.
   std::vector<Vec3> exact_normals;
-  Opening opening;  // of an unbounded body; made by add_walking_tables()
+  RecessionCone recession_cone;  // of an unbounded body; made by add_query_tables()
 
-  // The same once more in the order in which the queries walk it; made by add_walking_tables().
+  // The same once more in the order in which the queries read it; made by
+  // add_query_tables().
   VectorRows outgoing{3};      // a row a vertex: unit, along vertex_edges[i], away from the vertex
   VectorRows facet_limits{4};  // a row a facet: of facet_edges[i]
   VectorRows planes{4};        // one row: normals and offsets of all facets
@@ -145,16 +103,16 @@ struct ConvexPolyhedron {
 
   // A point well inside (in the relative interior of a point or segment).
   Vec3 interior = Vec3::Zero();
-  // The ball of this radius around `interior` lies inside, rounding included, m; 0: not known. Made
-  // by add_walking_tables().
+  // The sphere of this radius around `interior` lies inside, rounding included, m; 0: not known.
+  // Made by add_query_tables().
   double inner_radius = 0.0;
   double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;
-  // What is certain of Precision::slack whatever the pose, as A of a pair and as B, m; of an
-  // unbounded body without its reach. Made by add_walking_tables().
-  double slack_as_a = 0.0, slack_as_b = 0.0;
-  // The body is the polyhedron plus a ball of this radius, m (exact); 0 to kLargestCoordinate.
+  // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m;
+  // of an unbounded body without how far out the closest points lie. Made by add_query_tables().
+  double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
+  // The body is the polyhedron plus a sphere of this radius, m (exact); 0 to kLargestCoordinate.
   double radius = 0.0;
 
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }

@@ -1,7 +1,7 @@
 // How far apart are two convex bodies? Tracked: each call starts where the last one ended.
 //
 // Minimises |b - a| over a in A, b in B with the active-set QP of core/active_set/dqp3.hpp (§3.3,
-// §3.4). Every answer carries its own proof: a separating direction bounds it from below (weak
+// §3.4). Every answer is certified: a separating direction bounds it from below (weak
 // duality, §3.2), witness points on the bodies from above. Everything is in frame A, in metres.
 #pragma once
 
@@ -12,11 +12,11 @@
 namespace clearance {
 
 struct DistanceOptions {
-  // m: where the spheres around both bodies prove as much, they are all that is asked. The status
+  // m: where the spheres around both bodies certify as much, they are all that is asked. The status
   // is kFarAway then, and the distance the lower bound.
   double far_away = kInfinity;
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
-  // Where they are not proved apart, the status is kDepthNotAsked then and the lower bound may be
+  // Where they are not certified apart, the status is kDepthNotAsked then and the lower bound may be
   // -infinity.
   bool depth = true;
 };

@@ -11,9 +11,9 @@ enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
   kFarAway,         // lower >= far_away > 0, by the spheres around them; nobody asked by how much
   kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
-  kOverlapping,     // proved: upper < 0
+  kOverlapping,     // certified: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
-  kDepthNotAsked,   // not proved apart, and DistanceOptions::depth is false
+  kDepthNotAsked,   // not certified apart, and DistanceOptions::depth is false
   kBadPose,         // no pose, see below: nothing is known
 };
 
@@ -21,7 +21,7 @@ enum class DistanceStatus : std::uint8_t {
 
 // Which way an answer came: core/README.md, "What the iteration is".
 enum class DistancePath : std::uint8_t {
-  kWalk,     // step 1 proved it
+  kWalk,     // step 1 certified it
   kLoop,     // the loop, and of what touches or overlaps then the depth
   kRobust,   // the loop and then the robust path
   kOverlap,  // at once from where they overlapped last
@@ -41,8 +41,8 @@ enum class DistancePath : std::uint8_t {
 // up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
 // Two unbounded bodies are answered in doubles: where these cannot tell along which directions
-// neither goes on for ever, lower is -infinity and the status kIterationLimit; or kOverlapping,
-// where upper still bounds the depth (-infinity: certainly no translation parts them), and with no
+// neither is unbounded, lower is -infinity and the status kIterationLimit; or kOverlapping,
+// where upper still bounds the depth (-infinity: no translation parts them), and with no
 // translation known the distance is -infinity, too, and the normal zero.
 //
 // Unknown is a bound that is infinite, a distance that is -infinity, a normal that is zero; no

@@ -3,7 +3,7 @@
 // Few of the planes that bound the hull of the bodies, each pushed out to the farthest that any of
 // them reaches, rounding included: what lies inside all these half-spaces cannot leave a point of
 // the bodies out, whichever planes were chosen. Chosen greedily: again and again the planes that
-// cut off the corners which stick out most (an outer sandwich algorithm; G. Rote, "The convergence
+// cut off the vertices which stick out most (an outer sandwich algorithm; G. Rote, "The convergence
 // rate of the sandwich algorithm", 1992). Load time only: allocates, may take milliseconds.
 #pragma once
 
@@ -23,7 +23,7 @@ struct PlacedShape {
 
 struct EnclosingOptions {
   std::size_t facets = 32;  // at most; at least 6
-  double tolerance = 1e-3;  // of the bodies' size: corners that stick out by less are left alone
+  double tolerance = 1e-3;  // of the bodies' size: vertices that stick out by less are left alone
 };
 
 // Nothing when there are no bodies, or one is unbounded. Deterministic.
@@ -33,12 +33,12 @@ struct EnclosingOptions {
 // How far a model that holds all bodies reaches beyond them, at most: no point of `model` is
 // farther from the nearest of the bodies, m. So no distance from the model is smaller by more than
 // this than the distance from the bodies. Of one body to a rounding: the farthest point is a
-// corner then. Of several within 2 %, unless that takes too long: tetrahedra are split where the
-// corners leave the most open. `model`: bounded and solid; `bodies`: at least one.
+// vertex then. Of several within 2 %, unless that takes too long: tetrahedra are split where the
+// vertices leave the most open. `model`: bounded and solid; `bodies`: at least one.
 [[nodiscard]] double excess(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies);
 
-// The same of a ball, from the body that reaches deepest around its centre; exact for one body.
-[[nodiscard]] double excess_of_ball(const Vec3& centre, double radius,
-                                    std::span<const PlacedShape> bodies);
+// The same of a sphere, from the body that reaches deepest around its centre; exact for one body.
+[[nodiscard]] double excess_of_sphere(const Vec3& centre, double radius,
+                                      std::span<const PlacedShape> bodies);
 
 }  // namespace clearance

@@ -68,8 +68,8 @@ struct RelativePose {
 
 // Error behaviour: none. Of a quaternion that is not of unit length, of frames more than
 // kLargestCoordinate apart, and of what is not finite come NaNs, of which distance() says kBadPose.
-// Equal orientations give exactly the identity, and orientations that permute axes exactly that
-// permutation, each with rotation_error 0: parallel stays parallel.
+// Equal orientations (up to the quaternions' sign) give exactly the identity, and orientations that
+// permute axes exactly that permutation, each with rotation_error 0: parallel stays parallel.
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

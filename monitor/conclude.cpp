@@ -4,6 +4,13 @@
 
 namespace clearance {
 
+void write_pair(std::uint32_t pair, const PairBounds& bounds, const Scheduler& scheduler,
+                const Culling& culling, const Evaluation& evaluation, PairReport& report) noexcept {
+  report_on(pair, bounds, evaluation.objects, evaluation.parts, evaluation.table, report);
+  report.refresh_age_cycles =
+      evaluation.cycle - scheduler.refreshed_cycle(pair, culling, evaluation.table);
+}
+
 PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
                           const ZoneCrossings& crossings, const Evaluation& evaluation) noexcept {
   PairBounds bounds = bounds_of(pair, evaluation.objects, evaluation.parts, evaluation.cycle,
@@ -15,27 +22,27 @@ PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
   return bounds;
 }
 
-// Every pair that was looked at is summed up once.
-void conclude(std::span<const std::uint32_t> published, std::span<const std::uint8_t> is_published,
-              const Displacements& displaced, const Culling& culling, const ZoneLevels& levels,
-              const ZoneCrossings& crossings, const Evaluation& evaluation, Zones& zones,
-              Conclusion& conclusion) noexcept {
-  conclusion.minimum = {};
-  conclusion.evaluated = 0;
+// The bounds of every pair that was looked at are put together once, and all that needs them has
+// them at once: a second pass over the published pairs costs a small tick a twentieth of its time.
+void conclude(const Published& published, const Displacements& displaced, const Culling& culling,
+              const Scheduler& scheduler, const ZoneLevels& levels, const ZoneCrossings& crossings,
+              const Evaluation& evaluation, Zones& zones, Conclusion& conclusion,
+              std::span<PairReport> reports) noexcept {
+  conclusion = {};
   const auto add = [&](std::uint32_t pair, const PairBounds& bounds) {
     conclusion.minimum.add(pair, bounds);
     zones.add(pair, bounds);
     conclusion.evaluated += is_evaluated(bounds.status);
   };
-  for (std::size_t i = 0; i < published.size(); ++i) {
-    PairBounds& bounds = conclusion.published[i];
-    bounds = bounds_in_tick(published[i], SweptPrecision::kByRelativeDisplacement, crossings,
-                            evaluation);
-    const PairEntry& entry = evaluation.table.entries[published[i]];
-    if (entry.carried_cycle == evaluation.cycle) add(published[i], bounds);
+  for (std::size_t i = 0; i < published.pairs.size(); ++i) {
+    const std::uint32_t pair = published.pairs[i];
+    const PairBounds bounds =
+        bounds_in_tick(pair, SweptPrecision::kByRelativeDisplacement, crossings, evaluation);
+    write_pair(pair, bounds, scheduler, culling, evaluation, reports[i]);
+    if (evaluation.table.entries[pair].carried_cycle == evaluation.cycle) add(pair, bounds);
   }
   for (const std::uint32_t pair : culling.seen()) {
-    if (is_published[pair]) continue;
+    if (published.is_published[pair]) continue;
     // Of pairs in no zone nobody asks how near they came, but for the least of all.
     const auto precision = levels.has(pair) ? SweptPrecision::kByRelativeDisplacement
                                             : SweptPrecision::kByDisplacement;

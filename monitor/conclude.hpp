@@ -1,5 +1,5 @@
-// Stage 7 of a tick: zones and minimum, from the pairs that it has looked at and what holds of the
-// rest.
+// Stage 7 of a tick: zones, minimum and the reports of published pairs, from the pairs that it has
+// looked at and what holds of the rest.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,21 @@
 
 #include "monitor/broad_phase/culling.hpp"
 #include "monitor/pairs/global_minimum.hpp"
+#include "monitor/schedule/scheduler.hpp"
 #include "monitor/swept/zone_crossings.hpp"
 #include "monitor/zones/zones.hpp"
 
 namespace clearance {
 
 struct Conclusion {
-  std::vector<PairBounds> published;  // as in the list of published pairs
-  GlobalMinimum minimum;              // over all pairs that are known
-  std::uint32_t evaluated = 0;        // pairs
+  GlobalMinimum minimum;        // over all pairs that are known
+  std::uint32_t evaluated = 0;  // pairs
+};
+
+// The pairs that every report names.
+struct Published {
+  std::vector<std::uint32_t> pairs;        // in ascending order
+  std::vector<std::uint8_t> is_published;  // by pair
 };
 
 // One pair as of this tick, seen or not, with what the sweep has told about it. `precision`: how
@@ -25,11 +31,14 @@ struct Conclusion {
                                         const ZoneCrossings& crossings,
                                         const Evaluation& evaluation) noexcept;
 
-// Also takes the zones to this tick. `published`: those pairs, in ascending order; `is_published`:
-// by pair.
-void conclude(std::span<const std::uint32_t> published, std::span<const std::uint8_t> is_published,
-              const Displacements& displaced, const Culling& culling, const ZoneLevels& levels,
-              const ZoneCrossings& crossings, const Evaluation& evaluation, Zones& zones,
-              Conclusion& conclusion) noexcept;
+// Writes all of a pair's report.
+void write_pair(std::uint32_t pair, const PairBounds& bounds, const Scheduler& scheduler,
+                const Culling& culling, const Evaluation& evaluation, PairReport& report) noexcept;
+
+// Also takes the zones to this tick. `reports`: of the published pairs, in their order.
+void conclude(const Published& published, const Displacements& displaced, const Culling& culling,
+              const Scheduler& scheduler, const ZoneLevels& levels, const ZoneCrossings& crossings,
+              const Evaluation& evaluation, Zones& zones, Conclusion& conclusion,
+              std::span<PairReport> reports) noexcept;
 
 }  // namespace clearance

@@ -6,8 +6,8 @@
 //   schedule    pairs seen, budget             -> Schedule: what is evaluated at once, what is kept
 //   evaluate    Schedule                       -> PairTable: tight bounds; zone crossings found
 //   sweep       zone crossings                 -> ZoneCrossings: bounds since the last tick
-//   conclude    PairTable, ZoneCrossings       -> Zones, Conclusion: minimum, published pairs
-//   report      all of these                   -> Report, which nothing reads
+//   conclude    PairTable, ZoneCrossings       -> Zones, minimum, published pairs of the Report
+//   report      all of these                   -> the rest of the Report, which nothing reads
 #include "monitor/monitor.hpp"
 
 #include <algorithm>
@@ -31,16 +31,11 @@ namespace {
 
 constexpr Budget kNoLimit(std::numeric_limits<std::uint32_t>::max());
 
-std::vector<std::uint8_t> published_flags(const Scene& scene) {
-  std::vector<std::uint8_t> flags;
-  for (const ObjectPair& pair : scene.pairs) flags.push_back(pair.publish);
-  return flags;
-}
-
-std::vector<std::uint32_t> published_pairs(const Scene& scene) {
-  std::vector<std::uint32_t> published;
+Published published_pairs(const Scene& scene) {
+  Published published;
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (scene.pairs[p].publish) published.push_back(p);
+    if (scene.pairs[p].publish) published.pairs.push_back(p);
+    published.is_published.push_back(scene.pairs[p].publish);
   }
   return published;
 }
@@ -52,10 +47,9 @@ struct Monitor::State {
   const Scene& scene;
   const ZoneLevels zone_levels;
   const RefreshShare share;
-  const std::vector<std::uint32_t> moving;       // objects that are not fixed
-  const std::vector<std::uint32_t> first_part;   // by object
-  const std::vector<std::uint32_t> published;    // pairs
-  const std::vector<std::uint8_t> is_published;  // by pair
+  const std::vector<std::uint32_t> moving;      // objects that are not fixed
+  const std::vector<std::uint32_t> first_part;  // by object
+  const Published published;
   WorkerPool pool;
 
   Inputs inputs;            // ingest, and displace
@@ -78,7 +72,6 @@ struct Monitor::State {
   void displace() noexcept;
   void write_report(std::uint32_t queries) noexcept;
   void write_minimum() noexcept;
-  void write_pair(std::uint32_t pair, const PairBounds& bounds, PairReport& written) const noexcept;
   [[nodiscard]] PairBounds bounds(std::uint32_t pair) noexcept;
   [[nodiscard]] PairReport pair_report(std::uint32_t pair) noexcept;
 };
@@ -96,8 +89,8 @@ const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t no
   s.schedule = s.scheduler.schedule(s.culling, tick);
   s.scheduler.evaluate(s.schedule, s.zones, s.culling, s.crossings, tick);
   s.crossings.sweep(s.culling.seen(), s.zones, tick);
-  conclude(s.published, s.is_published, s.displaced, s.culling, s.zone_levels, s.crossings, tick,
-           s.zones, s.conclusion);
+  conclude(s.published, s.displaced, s.culling, s.scheduler, s.zone_levels, s.crossings, tick,
+           s.zones, s.conclusion, s.report.pairs);
   s.write_report(s.scene.budget - tick.budget.left());
   return s.report;
 }
@@ -140,7 +133,6 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       moving(moving_objects(the_scene)),
       first_part(first_parts(the_scene)),
       published(published_pairs(the_scene)),
-      is_published(published_flags(the_scene)),
       pool(options.workers, options.on_worker_start),
       inputs(initial_inputs(the_scene)),
       parts(parts_of(the_scene)),
@@ -153,10 +145,9 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
   displaced.changed.reserve(scene.objects.size());
-  conclusion.published.resize(published.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
-  for (const std::uint32_t pair : published) report.pairs.push_back(pair_report(pair));
+  for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
   report.zones.assign(zones.reports().begin(), zones.reports().end());
 }
 
@@ -171,9 +162,6 @@ void Monitor::State::write_report(std::uint32_t queries) noexcept {
   report.newest_pose_ns = displaced.newest_pose_ns;
   report.oldest_pose_ns = displaced.oldest_pose_ns;
   report.rejected = inputs.rejected;
-  for (std::size_t i = 0; i < published.size(); ++i) {
-    write_pair(published[i], conclusion.published[i], report.pairs[i]);
-  }
   std::ranges::copy(zones.reports(), report.zones.begin());
 
   const auto known = static_cast<std::uint32_t>(culling.known_pairs().known());
@@ -197,14 +185,8 @@ void Monitor::State::write_minimum() noexcept {
   report.minimum = minimum.known() ? pair_report(minimum.pair()) : unknown_report();
 }
 
-void Monitor::State::write_pair(std::uint32_t pair, const PairBounds& bounds,
-                                PairReport& written) const noexcept {
-  report_on(pair, bounds, inputs.objects, parts, table, written);
-  written.refresh_age_cycles = inputs.cycle - scheduler.refreshed_cycle(pair, culling, table);
-}
-
 PairBounds Monitor::State::bounds(std::uint32_t pair) noexcept {
-  const bool closely = is_published[pair] || zone_levels.has(pair);
+  const bool closely = published.is_published[pair] || zone_levels.has(pair);
   const auto precision =
       closely ? SweptPrecision::kByRelativeDisplacement : SweptPrecision::kByDisplacement;
   return bounds_in_tick(pair, precision, crossings, evaluation(Budget(0)));
@@ -212,7 +194,7 @@ PairBounds Monitor::State::bounds(std::uint32_t pair) noexcept {
 
 PairReport Monitor::State::pair_report(std::uint32_t pair) noexcept {
   PairReport written;
-  write_pair(pair, bounds(pair), written);
+  write_pair(pair, bounds(pair), scheduler, culling, evaluation(Budget(0)), written);
   return written;
 }
 

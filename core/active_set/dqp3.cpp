@@ -67,7 +67,7 @@ bool leave_for_inside(ActiveFeature& side, const Vec3& towards_in_common) noexce
   const Vec3 towards = side.direction_to_own(towards_in_common);
   const double thin = kThin * towards.norm();
   const bool closer = (body.interior - side.own()).dot(towards) > thin * body.bounding_radius ||
-                      body.opening.inwards.dot(towards) > thin;
+                      body.recession_cone.inwards.dot(towards) > thin;
   if (closer) side.place_inside(side.own());
   return closer;
 }

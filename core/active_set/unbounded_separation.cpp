@@ -79,14 +79,14 @@ Direction as_it_is(const Separator& s, const ActiveFeature& a, const ActiveFeatu
 // Of bodies with one line each that cross: across both, on the side of s.
 Direction across_lines(const Separator& s, const ActiveFeature& a,
                        const ActiveFeature& b) noexcept {
-  const Opening &of_a = a.body().opening, &of_b = b.body().opening;
+  const RecessionCone &of_a = a.body().recession_cone, &of_b = b.body().recession_cone;
   if (of_a.line_count != 1 || of_b.line_count != 1) return {s.normal, kUnknown};
   const Vec3 across = of_a.lines[0].cross(b.direction_to_common(of_b.lines[0]));
   const double sine = across.norm();
   const double off = (kAcrossError + b.pose()->rotation_error) / sine + kUnitError;
   if (!(off < kMostOff)) return {s.normal, kUnknown};
   const Vec3 n = across / (across.dot(s.normal) < 0.0 ? -sine : sine);
-  const auto fall = [&](const Opening& opening, const Vec3& m, double error) {
+  const auto fall = [&](const RecessionCone& opening, const Vec3& m, double error) {
     return std::ranges::all_of(
         opening.rays, [&](const Vec3& ray) { return m.dot(ray) < -(kDerivativeError + error); });
   };

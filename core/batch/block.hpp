@@ -27,8 +27,8 @@ constexpr bool at_vertex_of_b(FeaturePair pair) { return kind_on_b(pair) == Feat
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
-  kSlackA,  // ConvexPolyhedron::slack_as_a, slack_as_b
-  kSlackB,
+  kErrorBoundA,  // ConvexPolyhedron::error_bound_as_a, error_bound_as_b
+  kErrorBoundB,
   kBeyondPlain,
   kUnboundedA = kBeyondPlain,
   kUnboundedB,

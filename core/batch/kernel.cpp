@@ -31,15 +31,15 @@ HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativeP
                                  Lanes farthest) {
   const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
   const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
-  Lanes reach_a = radius_a, reach_b = radius_b, ulps = all(kTightUlps[0]);
-  Lanes on_features = row(kSlackA) + row(kSlackB);
+  Lanes reach_a = radius_a, reach_b = radius_b, ulps = all(kGapToleranceUlps[0]);
+  Lanes on_features = row(kErrorBoundA) + row(kErrorBoundB);
   if (!plain) {
     const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
     reach_a = hn::Max(radius_a, at_a * ((radius_b + apart) + farthest));
     reach_b = hn::Max(radius_b, at_b * ((radius_a + apart) + farthest));
     on_features = on_features + at_a * (all(kUlp * kUlpsOnA) * reach_a);
     on_features = on_features + at_b * (all(kUlp * kUlpsOnB) * reach_b);
-    ulps = hn::IfThenElse(hn::Gt(at_a + at_b, all(0.0)), all(kTightUlps[1]), ulps);
+    ulps = hn::IfThenElse(hn::Gt(at_a + at_b, all(0.0)), all(kGapToleranceUlps[1]), ulps);
   }
   const Lanes size = (reach_a + reach_b) + apart;
   const Lanes turned = hn::Min(reach_b, (reach_a + apart) + all(kStretched) * farthest);

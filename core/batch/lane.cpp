@@ -32,11 +32,28 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
   return repeats <= static_cast<std::int32_t>(most);
 }
 
-// How often what repeats of the feature does.
-std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
-  if (side.kind == FeatureKind::kVertex) return body.vertices[side.feature].edges;
-  return side.kind == FeatureKind::kFacet ? body.facets[side.feature].limits : 0;
+// How often what repeats of the feature does: the edges of a vertex, the limits of a facet.
+template <FeatureKind kKind>
+std::int32_t repeats_of(const ConvexPolyhedron& body, const Side& side) noexcept {
+  if constexpr (kKind == FeatureKind::kVertex) return body.vertices[side.feature].edges;
+  return body.facets[side.feature].limits;
 }
+std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
+  if (side.kind == FeatureKind::kEdge) return 0;
+  return side.kind == FeatureKind::kVertex ? repeats_of<FeatureKind::kVertex>(body, side)
+                                           : repeats_of<FeatureKind::kFacet>(body, side);
+}
+
+// Their numbers as the body keeps them.
+template <FeatureKind kKind>
+const double* row_of(const ConvexPolyhedron& body, const Side& side) noexcept {
+  if constexpr (kKind == FeatureKind::kVertex) {
+    return body.outgoing.row(body.vertices[side.feature].first_edge);
+  }
+  return body.facet_limits.row(body.facets[side.feature].first_side);
+}
+template <FeatureKind kKind>
+constexpr std::size_t kStride = kKind == FeatureKind::kVertex ? kDirectionRows : kSideRows;
 
 // A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
 // witness point is where it is, as after any query but those that touch: lanes do not write it.
@@ -45,31 +62,17 @@ bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
   return side.kind != FeatureKind::kVertex || side.point == body.vertices[side.feature].position;
 }
 
-// Vertices, edges and facets as LaneWriters and loops see them.
+// The feature's own numbers.
 template <FeatureKind kKind>
-struct LaneFeature;
-
-template <>
-struct LaneFeature<FeatureKind::kVertex> {
-  static constexpr std::size_t kStride = kDirectionRows;
-  const Vertex& vertex;
-  const VectorRows& table;
-
-  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
-      : vertex(body.vertices[side.feature]), table(body.outgoing) {}
-  void put(LaneWriter& to) const noexcept { to.put(vertex.position); }
-  [[nodiscard]] std::int32_t repeats() const noexcept { return vertex.edges; }
-  [[nodiscard]] const double* row() const noexcept { return table.row(vertex.first_edge); }
-};
-
-template <>
-struct LaneFeature<FeatureKind::kEdge> {
-  static constexpr std::size_t kStride = 0;
-  const Edge& edge;
-
-  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
-      : edge(body.edges[side.feature]) {}
-  void put(LaneWriter& to) const noexcept {
+void put(const ConvexPolyhedron& body, const Side& side, LaneWriter& to) noexcept {
+  if constexpr (kKind == FeatureKind::kVertex) {
+    to.put(body.vertices[side.feature].position);
+  } else if constexpr (kKind == FeatureKind::kFacet) {
+    const Facet& facet = body.facets[side.feature];
+    to.put(facet.normal);
+    to.put(facet.offset);
+  } else {
+    const Edge& edge = body.edges[side.feature];
     to.put(edge.point);
     to.put(edge.direction);
     to.put(edge.begin);
@@ -77,23 +80,7 @@ struct LaneFeature<FeatureKind::kEdge> {
     to.put(edge.inward.row(0));
     to.put(edge.inward.row(1));
   }
-};
-
-template <>
-struct LaneFeature<FeatureKind::kFacet> {
-  static constexpr std::size_t kStride = kSideRows;
-  const Facet& facet;
-  const VectorRows& table;
-
-  LaneFeature(const ConvexPolyhedron& body, const Side& side) noexcept
-      : facet(body.facets[side.feature]), table(body.facet_limits) {}
-  void put(LaneWriter& to) const noexcept {
-    to.put(facet.normal);
-    to.put(facet.offset);
-  }
-  [[nodiscard]] std::int32_t repeats() const noexcept { return facet.limits; }
-  [[nodiscard]] const double* row() const noexcept { return table.row(facet.first_side); }
-};
+}
 
 // Of a lane in which less repeats than `most` times: the last once more; of a half-space, which has
 // no sides, zeros, within which everything lies.
@@ -104,66 +91,53 @@ void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t 
   }
 }
 
-// What repeats of one body's feature in a lane, from `row` on.
+// What repeats of one body's feature in a lane, from `row` on; every lane has as many as any needs.
 template <FeatureKind kKind>
-void put_row(BatchBlock& block, std::size_t lane, std::size_t row, const LaneFeature<kKind>& of,
-             std::size_t most) noexcept {
-  constexpr std::size_t kStride = LaneFeature<kKind>::kStride;
-  const auto count = static_cast<std::size_t>(of.repeats());
-  const double* const from = of.row();
-  LaneWriter to(block, lane, row);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < kStride; ++k) to.put(from[k * count + i]);
-  }
-  lengthen(block, lane, row, kStride, count, most);
-}
-
-// Every lane has as many as any needs.
-template <FeatureKind kKind>
-void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const LaneFeature<kKind>& of,
-                 std::uint8_t& most) noexcept {
-  const auto count = static_cast<std::uint8_t>(of.repeats());
+void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexPolyhedron& body,
+                 const Side& side, std::uint8_t& most) noexcept {
+  constexpr std::size_t stride = kStride<kKind>;
+  const auto count = static_cast<std::size_t>(repeats_of<kKind>(body, side));
+  row += kFeatureRows;
   if (count > most) {
     for (std::size_t other = 0; other < block.lanes; ++other) {
-      lengthen(block, other, kFeatureRows + row, LaneFeature<kKind>::kStride, most, count);
+      lengthen(block, other, row, stride, most, count);
     }
-    most = count;
+    most = static_cast<std::uint8_t>(count);
   }
-  put_row(block, lane, kFeatureRows + row, of, most);
+  const double* const from = row_of<kKind>(body, side);
+  LaneWriter to(block, lane, row);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < stride; ++k) to.put(from[k * count + i]);
+  }
+  lengthen(block, lane, row, stride, count, most);
 }
 
-// What repeats of both features, of A's first; the edge's neighbours are among its own numbers.
-template <FeatureKind kOfA, FeatureKind kOfB>
-void put_repeats(BatchBlock& block, std::size_t lane, const LaneFeature<kOfA>& a,
-                 const LaneFeature<kOfB>& b) noexcept {
-  constexpr bool kAlike = kOfA == kOfB;
-  constexpr bool kWithEdge = kOfA == FeatureKind::kEdge || kOfB == FeatureKind::kEdge;
-  constexpr std::size_t kAtVertex = kWithEdge ? kDirectionsAtEdge : kDirectionsAtFacet;
-  constexpr std::size_t kAtFacet = kWithEdge ? kSidesAtEdge : kSides;
-  constexpr bool kVertexOfA = kOfA == FeatureKind::kVertex,
-                 kVertexOfB = kOfB == FeatureKind::kVertex;
-  constexpr std::size_t kRowOfA =
-      kVertexOfA ? (kAlike ? kDirectionsOfA : kAtVertex) : (kAlike ? kSidesOfA : kAtFacet);
-  constexpr std::size_t kRowOfB =
-      kVertexOfB ? (kAlike ? kDirectionsOfB : kAtVertex) : (kAlike ? kSidesOfB : kAtFacet);
-  if constexpr (kOfA != FeatureKind::kEdge) put_repeats(block, lane, kRowOfA, a, block.most_a);
-  if constexpr (kOfB != FeatureKind::kEdge) put_repeats(block, lane, kRowOfB, b, block.most_b);
+// Where it is, by the kinds of the body's feature and of the other's; an edge's neighbours are
+// among its own numbers.
+constexpr std::size_t repeats_row(FeatureKind of, FeatureKind other, bool is_b) noexcept {
+  const bool vertex = of == FeatureKind::kVertex;
+  if (of == other && vertex) return is_b ? kDirectionsOfB : kDirectionsOfA;
+  if (of == other) return is_b ? kSidesOfB : kSidesOfA;
+  if (other == FeatureKind::kEdge) return vertex ? kDirectionsAtEdge : kSidesAtEdge;
+  return vertex ? kDirectionsAtFacet : kSides;
 }
 
+// First the feature of more dimensions, of two of a kind A's; then what repeats.
 template <FeatureKind kOfA, FeatureKind kOfB>
 void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                   const ConvexPolyhedron& b, const TrackingState& state) noexcept {
-  const LaneFeature<kOfA> of_a(a, state.a);
-  const LaneFeature<kOfB> of_b(b, state.b);
   LaneWriter to(block, lane, kFeatureRows);
-  if constexpr (kOfB > kOfA) {  // the owner
-    of_b.put(to);
-    of_a.put(to);
-  } else {
-    of_a.put(to);
-    of_b.put(to);
+  if constexpr (kOfB > kOfA) put<kOfB>(b, state.b, to);
+  put<kOfA>(a, state.a, to);
+  if constexpr (kOfB <= kOfA) put<kOfB>(b, state.b, to);
+  if constexpr (kOfA != FeatureKind::kEdge) {
+    constexpr std::size_t row = repeats_row(kOfA, kOfB, false);
+    put_repeats<kOfA>(block, lane, row, a, state.a, block.most_a);
   }
-  put_repeats(block, lane, of_a, of_b);
+  if constexpr (kOfB != FeatureKind::kEdge) {
+    constexpr std::size_t row = repeats_row(kOfB, kOfA, true);
+    put_repeats<kOfB>(block, lane, row, b, state.b, block.most_b);
+  }
 }
 
 using PutFeatures = void (*)(BatchBlock&, std::size_t, const ConvexPolyhedron&,
@@ -201,9 +175,11 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
   LaneWriter to(block, lane, 0);
   to.put(a.bounding_radius);
   to.put(b.bounding_radius);
-  to.put(a.slack_as_a);
-  to.put(b.slack_as_b);
-  put_last_points(block, lane, state);
+  to.put(a.error_bound_as_a);
+  to.put(b.error_bound_as_b);
+  LaneWriter points(block, lane, kPointA);
+  points.put(state.a.point);
+  points.put(state.b.point);
   if (block.plain) {
     if (plain(a) && plain(b)) return;
     stay_plain_no_longer(block);
@@ -254,12 +230,6 @@ void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   put_common(block, lane, a, b, state);
   kPutFeatures[static_cast<std::size_t>(block.features)](block, lane, a, b, state);
-}
-
-void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& state) noexcept {
-  LaneWriter to(block, lane, kPointA);
-  to.put(state.a.point);
-  to.put(state.b.point);
 }
 
 void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& state) noexcept {

@@ -23,6 +23,5 @@ void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 // The witness points of the last query that vector code has settled.
 [[nodiscard]] Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept;
 void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& state) noexcept;
-void put_last_points(BatchBlock& block, std::size_t lane, const TrackingState& state) noexcept;
 
 }  // namespace clearance

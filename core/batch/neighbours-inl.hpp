@@ -75,37 +75,32 @@ struct Beside {
   static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
 
   [[nodiscard]] HWY_INLINE Extreme least(const Points& g) const {
+    return least_of(kOfB ? at.block.most_b : at.block.most_a, g);
+  }
+  [[nodiscard]] HWY_INLINE Extreme greatest(const Points& g) const {
+    return greatest_of(kOfB ? at.block.most_b : at.block.most_a, g);
+  }
+  [[nodiscard]] HWY_INLINE Extreme least_of_two(const Points& g) const { return least_of(2, g); }
+  [[nodiscard]] HWY_INLINE Extreme greatest_of_two(const Points& g) const {
+    return greatest_of(2, g);
+  }
+
+ private:
+  [[nodiscard]] HWY_INLINE Extreme least_of(std::size_t count, const Points& g) const {
     Extreme lowest{all(kInfinity), all(0.0)};
     Lanes number = all(0.0);
-    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+    for (std::size_t i = 0; i < count; ++i, number = after(number))
       lowest.lower(along(i, g), number);
     lowest.derivative = at.unless_bare(kBare, lowest.derivative, kInfinity);
     return lowest;
   }
-  [[nodiscard]] HWY_INLINE Extreme greatest(const Points& g) const {
+  [[nodiscard]] HWY_INLINE Extreme greatest_of(std::size_t count, const Points& g) const {
     Extreme highest{all(-kInfinity), all(0.0)};
     Lanes number = all(0.0);
-    for (std::size_t i = 0; i < edges(); ++i, number = after(number))
+    for (std::size_t i = 0; i < count; ++i, number = after(number))
       highest.raise(along(i, g), number);
     highest.derivative = at.unless_bare(kBare, highest.derivative, -kInfinity);
     return highest;
-  }
-  [[nodiscard]] HWY_INLINE Extreme least_of_two(const Points& g) const {
-    Extreme lowest{along(0, g), all(0.0)};
-    lowest.lower(along(1, g), all(1.0));
-    lowest.derivative = at.unless_bare(kBare, lowest.derivative, kInfinity);
-    return lowest;
-  }
-  [[nodiscard]] HWY_INLINE Extreme greatest_of_two(const Points& g) const {
-    Extreme highest{along(0, g), all(0.0)};
-    highest.raise(along(1, g), all(1.0));
-    highest.derivative = at.unless_bare(kBare, highest.derivative, -kInfinity);
-    return highest;
-  }
-
- private:
-  [[nodiscard]] HWY_INLINE std::size_t edges() const {
-    return kOfB ? at.block.most_b : at.block.most_a;
   }
   [[nodiscard]] HWY_INLINE Lanes along(std::size_t i, const Points& g) const {
     return dot(at.points(row + kDirectionRows * i), g);

@@ -81,24 +81,21 @@ WalkStart to_next_feature(FeaturePair features, const ConvexPolyhedron& a,
                           TrackingState& state) noexcept {
   const auto next = static_cast<std::int32_t>(of.next[lane]);
   if (next == kNextUnknown) return {};
-  const Features from_a{a, b, state.a, state.b}, from_b{b, a, state.b, state.a};
+  const Features f = kind_on_b(features) > kind_on_a(features) ? Features{b, a, state.b, state.a}
+                                                               : Features{a, b, state.a, state.b};
   switch (features) {
     case FeaturePair::kVertexVertex:
       if (next < kNextOfOther) return along_edge(a, state.a, next, of.derivative[lane]);
       return along_edge(b, state.b, next - kNextOfOther, of.derivative[lane]);
     case FeaturePair::kVertexEdge:
-      return from_edge_and_vertex(from_b, next);
     case FeaturePair::kEdgeVertex:
-      return from_edge_and_vertex(from_a, next);
+      return from_edge_and_vertex(f, next);
     case FeaturePair::kVertexFacet:
-      return from_facet_and_vertex(from_b, next);
     case FeaturePair::kFacetVertex:
-      return from_facet_and_vertex(from_a, next);
+      return from_facet_and_vertex(f, next);
     case FeaturePair::kEdgeEdge:
-      return from_edges(from_a, next);
-    case FeaturePair::kEdgeFacet:
-    case FeaturePair::kFacetEdge:
-    case FeaturePair::kFacetFacet:
+      return from_edges(f, next);
+    default:
       break;
   }
   return {};

@@ -76,10 +76,14 @@ HWY_INLINE Quaternions relative(const Quaternions& a, const Quaternions& b) {
           hn::Add(plus(a.x, b.x, a.y, b.y), plus(a.z, b.z, a.w, b.w))};
 }
 
+HWY_INLINE Lanes square_of(const Quaternions& q) {
+  return hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
+                 hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+}
+
 // 2 / |q|^2
 HWY_INLINE Lanes two_over_square(const Quaternions& q) {
-  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
-                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
+  const Lanes square = square_of(q);
   const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
   const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
   if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
@@ -88,9 +92,7 @@ HWY_INLINE Lanes two_over_square(const Quaternions& q) {
 
 // But for a little at the limit, which is left to distance().
 HWY_INLINE LaneMask are_unit(const Quaternions& q) {
-  const Lanes square = hn::Add(hn::Add(hn::Mul(q.w, q.w), hn::Mul(q.x, q.x)),
-                               hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
-  return hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(1.99 * kUnitTolerance));
+  return hn::Le(hn::Abs(hn::Sub(square_of(q), all(1.0))), all(1.99 * kUnitTolerance));
 }
 
 HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
@@ -122,41 +124,18 @@ HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b)
   return hn::Or(same(b), same({hn::Neg(b.x), hn::Neg(b.y), hn::Neg(b.z), hn::Neg(b.w)}));
 }
 
-// At one component, which nearly always decides.
-HWY_INLINE LaneMask may_permute_axes(const Quaternions& q) {
-  const Lanes w = hn::Abs(q.w);
-  return hn::Or(hn::Or(hn::Eq(w, all(0.0)), hn::Eq(w, all(0.5))), hn::Eq(w, all(1.0)));
+HWY_INLINE LaneMask multiple_of_half(Lanes v) {
+  const Lanes twice = hn::Add(v, v);
+  return hn::Eq(twice, hn::Round(twice));
 }
-
 HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
-  const Lanes x = hn::Abs(q.x), y = hn::Abs(q.y), z = hn::Abs(q.z), w = hn::Abs(q.w);
-  const auto which = [&](double value) HWY_ATTR {
-    const auto number = [&](Lanes c) HWY_ATTR {
-      return hn::IfThenElseZero(hn::Eq(c, all(value)), all(1.0));
-    };
-    return hn::Add(hn::Add(number(x), number(y)), hn::Add(number(z), number(w)));
-  };
-  const LaneMask one = hn::And(hn::Eq(which(1.0), all(1.0)), hn::Eq(which(0.0), all(3.0)));
-  return hn::Or(hn::Eq(which(0.5), all(4.0)), one);
+  return hn::And(hn::And(multiple_of_half(q.x), multiple_of_half(q.y)),
+                 hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
 }
 
-// What is exact of relative_pose(). Equal orientations give the identity, to the sign of its
-// zeros.
-HWY_INLINE void settle_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
-                                 RelativePoses& pose) {
-  const Lanes zero = all(0.0), one = all(1.0);
-  const LaneMask equal = equal_up_to_sign(a, b), a_permutes = permute_axes(a);
-  const auto settle = [&](Points& row, Lanes x, Lanes y, Lanes z) HWY_ATTR {
-    row = {hn::IfThenElse(equal, x, row.x), hn::IfThenElse(equal, y, row.y),
-           hn::IfThenElse(equal, z, row.z)};
-  };
-  settle(pose.rotation.x, one, zero, zero);
-  settle(pose.rotation.y, zero, one, zero);
-  settle(pose.rotation.z, zero, zero, one);
-  const LaneMask exact = hn::Or(equal, hn::And(a_permutes, permute_axes(b)));
-  pose.rotation_error = hn::IfThenElse(exact, zero, pose.rotation_error);
-  pose.translation_error = hn::IfThenElse(
-      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
+// has_exact_rotation() of core/model/relative_pose-inl.hpp.
+HWY_INLINE LaneMask have_exact_rotation(const Quaternions& a, const Quaternions& b) {
+  return hn::Or(equal_up_to_sign(a, b), hn::And(permute_axes(a), permute_axes(b)));
 }
 
 // Leaves no number of a pose that is not good, so that its lane fails.
@@ -180,10 +159,8 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
       hn::And(hn::And(are_unit(a), are_unit(b)), hn::Le(apart, all(0.5 * kLargestCoordinate)));
   if (HWY_UNLIKELY(!hn::AllTrue(Tag(), good))) spoil(good, out);
   out.translation_error = hn::Mul(all(kTranslationError), apart);
-  const LaneMask no_turn =
-      hn::And(hn::And(hn::Eq(q.x, zero), hn::Eq(q.y, zero)), hn::Eq(q.z, zero));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), hn::Or(no_turn, may_permute_axes(a))))) {
-    settle_exactness(a, b, apart, out);
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), multiple_of_half(q.z)))) {
+    out.rotation_error = hn::IfThenElse(have_exact_rotation(a, b), zero, out.rotation_error);
   }
   return out;
 }

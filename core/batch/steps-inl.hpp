@@ -54,26 +54,26 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   Closest c;
   EdgeAndVertex<kIsB, RelativePoses, Points, Lanes> line(pose, at.points(0), at.points(3),
                                                          at.points(kEdgeRows));
-  line.find_way();
+  line.find_separation();
   const Lanes begin = at.lanes(6), end = at.lanes(7);
   const LaneMask within = hn::And(hn::Gt(line.s, begin), hn::Lt(line.s, end));
   const LaneMask slender = hn::Lt(line.length, all(kSlender) * hn::Abs(line.s));
-  Lanes of_way = line.length;
+  Lanes of_separation = line.length;
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), slender))) {
-    of_way = hn::IfThenElse(slender, line.slender_length(), line.length);
+    of_separation = hn::IfThenElse(slender, line.slender_length(), line.length);
   }
   const Lanes error = all(kDerivativeError) * line.length;
   const auto& owner = line.frame;
   const Extreme side =
-      Beside<kIsB>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(line.way));
-  const Extreme away =
-      Beside<!kIsB>{at, kDirectionsAtEdge}.least(owner.opposite().direction_to_own(line.way));
+      Beside<kIsB>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(line.separation));
+  const Extreme away = Beside<!kIsB>{at, kDirectionsAtEdge}.least(
+      owner.opposite().direction_to_own(line.separation));
   const LaneMask recede = hn::Lt(side.derivative, hn::Neg(error));
   c.closest = hn::And(within, hn::And(recede, hn::Gt(away.derivative, error)));
   c.next = hn::IfThenElse(recede, next_if(hn::Gt(hn::Neg(away.derivative), error), away.which),
                           next_if(hn::Gt(side.derivative, error), named(side.which, kNextBeside)));
   c.next = unless_beyond(begin, end, line.s, kNextEnd, c.next);
-  line.place_witnesses(c, of_way);
+  line.place_witnesses(c, of_separation);
   return c;
 }
 

@@ -8,8 +8,8 @@
 
 #include "core/construction/exact_polyhedron.hpp"
 #include "core/construction/rounded_once.hpp"
-#include "core/model/query_tables.hpp"
 #include "core/numerics/error_constants.hpp"
+#include "core/query_tables.hpp"
 
 namespace clearance {
 namespace {
@@ -142,7 +142,7 @@ ShapeResult point(const Vec3& position, double radius) {
   body.interior = position;
   body.bounding_radius = position.norm() * (1.0 + 0x1p-50);
   body.radius = radius;
-  add_walking_tables(body);
+  add_query_tables(body);
   return body;
 }
 
@@ -173,7 +173,7 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   body.bounding_radius = std::max(start.norm(), end.norm()) * (1.0 + 0x1p-50);
   body.position_error = line.length.exact ? 0.0 : kUlp * line.length.value;
   body.radius = radius;
-  add_walking_tables(body);
+  add_query_tables(body);
   return body;
 }
 

@@ -5,9 +5,9 @@
 #include "core/construction/centre.hpp"
 #include "core/construction/exact_polyhedron.hpp"
 #include "core/construction/rounded_once.hpp"
-#include "core/model/query_tables.hpp"
 #include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
+#include "core/query_tables.hpp"
 
 namespace clearance::exact {
 namespace {
@@ -318,7 +318,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
         nearest_quotient(solid.interior[i], solid.interior[3]).value;
   }
   body.interior = well_inside(body, inside);
-  add_walking_tables(body);
+  add_query_tables(body);
   if (thickness(body) < kLeastExtent) return ShapeError{"the body is thinner than 1e-12 m"};
   return body;
 }

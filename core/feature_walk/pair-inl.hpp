@@ -161,28 +161,28 @@ struct EdgeAndVertex {
         from_start(tip - start),
         s(along_edge()) {}
 
-  // From the edge to the vertex: `way`, as long as `across` and at right angles to it. No
+  // From the edge to the vertex: `separation`, as long as `across` and at right angles to it. No
   // difference of long vectors, whose cancellation would leave something along the edge.
-  HWY_INLINE void find_way() {
+  HWY_INLINE void find_separation() {
     across = cross(from_start, e);
-    way = cross(e, across);
+    separation = cross(e, across);
     length = norm(across);
   }
-  // |way|, computed anew where cross products are too coarse: kSlender.
+  // |separation|, computed anew where cross products are too coarse: kSlender.
   [[nodiscard]] HWY_INLINE Number slender_length() const {
-    if constexpr (kIsB) return norm(way) / over_norm(e);
-    return norm(way);
+    if constexpr (kIsB) return norm(separation) / over_norm(e);
+    return norm(separation);
   }
-  // `of_way`: what `way` is divided by.
+  // `of_separation`: what `separation` is divided by.
   template <class Found>
-  HWY_INLINE void place_witnesses(Found& found, Number of_way) const {
+  HWY_INLINE void place_witnesses(Found& found, Number of_separation) const {
     if constexpr (kIsB) {
       const Number unit = over_norm(e);
       found.apart = found.certified = unit * length;
-      found.normal = over(-(unit * way), of_way);
+      found.normal = over(-(unit * separation), of_separation);
     } else {
       found.apart = found.certified = length;
-      found.normal = over(way, of_way);
+      found.normal = over(separation, of_separation);
     }
     frame.place(found, own_start + s * own_e, start + s * e, own_tip, tip);
   }
@@ -190,7 +190,7 @@ struct EdgeAndVertex {
   BodyFrame<kIsB, Relative> frame;
   Vector own_start, own_e, own_tip, tip, start, e, from_start;
   Number s;  // m: where along the edge the vertex is
-  Vector across, way;
+  Vector across, separation;
   Number length;  // m
 
  private:

@@ -4,7 +4,7 @@
 // Features that touch when B has been displaced along n bound the penetration depth from above, as
 // separating ones bound the distance from below: with the sign turned, the transitions of
 // core/feature_walk/steps-inl.hpp say how far that is. No other direction is shorter: that is
-// certified by what the Minkowski difference (core/penetration/depth.hpp) contains for certain.
+// certified by what the Minkowski difference (core/penetration/depth.hpp) contains beyond rounding.
 // That is a disc across n, of radius w about the foot h n of the origin: the room that the touching
 // point has on its facet; and the difference of the bodies' middles, which lies d beyond the origin
 // and l beside it. Along a direction at an angle f to n the disc reaches h cos f + w sin f, at

@@ -81,10 +81,10 @@ HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
                                                         load3_alone(vertex.position));
   if (!(line.s > edge.begin)) return to_vertex(owner.side(), edge.vertex[0]);
   if (!(line.s < edge.end)) return to_vertex(owner.side(), edge.vertex[1]);
-  line.find_way();
+  line.find_separation();
   const double limit = -kDerivativeError * line.length;
-  const Vec4 g = owner.direction_to_own(line.way);
-  const Vec4 back = -owner.opposite().direction_to_own(line.way);
+  const Vec4 g = owner.direction_to_own(line.separation);
+  const Vec4 back = -owner.opposite().direction_to_own(line.separation);
   if (!both_facets_recede(edge, g, limit)) {
     to_approaching_facet(edge, g, limit, owner.side());
     const Vec2 derivatives = facet_derivatives(edge, g);

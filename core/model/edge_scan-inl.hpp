@@ -52,11 +52,11 @@ inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Ve
     if (derivative > best.derivative) best = {derivative, vertex.first_edge + i};
   };
   const Vec4 along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
-  const Vec4 rise = derivatives(body.outgoing.row(vertex.first_edge), n, 0, along);
-  if (n > 0) take(lane(rise, 0), 0);
-  if (n > 1) take(lane(rise, 1), 1);
-  if (n > 2) take(lane(rise, 2), 2);
-  if (n > 3) take(lane(rise, 3), 3);
+  const Vec4 along_g = derivatives(body.outgoing.row(vertex.first_edge), n, 0, along);
+  if (n > 0) take(lane(along_g, 0), 0);
+  if (n > 1) take(lane(along_g, 1), 1);
+  if (n > 2) take(lane(along_g, 2), 2);
+  if (n > 3) take(lane(along_g, 3), 3);
   return best;
 }
 HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g) {

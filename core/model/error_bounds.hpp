@@ -15,7 +15,7 @@
 namespace clearance {
 
 struct Precision {
-  double size;   // m: reach of A + reach of B + |translation|: what ulps are counted in
+  double size;   // m: reach_a + reach_b + |translation|: what ulps are counted in
   double slack;  // m: no bound computed in doubles from this model is off by more, either way
   double
       tight;  // m: an upper bound this close to the lower one (before slack) is as good as it gets
@@ -34,8 +34,8 @@ struct PlacePrecision {
   double apart;                              // |translation|
 };
 
-// `farthest`: an upper bound of the distance or depth (m), which limits where on an unbounded body
-// to look.
+// `farthest`: an upper bound of the distance or penetration depth (m), which limits where on an
+// unbounded body the closest points can lie.
 //
 // A wrong rotation moves a point of B by its error times reach_b. Or else B may be thought of as
 // fixed: the wrong rotation then turns A about B's origin, from where A reaches no farther than
@@ -45,7 +45,7 @@ struct PlacePrecision {
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
   const double apart = b_in_a.apart;
-  double tight = kTightUlps[0], on_features = a.slack_as_a + b.slack_as_b;
+  double tight = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;
   p.reach_a = a.bounding_radius;
   p.reach_b = b.bounding_radius;
   if (!a.bounded()) {
@@ -56,14 +56,14 @@ struct PlacePrecision {
     p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
     on_features += kUlp * kUlpsOnB * p.reach_b;
   }
-  if (!a.bounded() || !b.bounded()) tight = kTightUlps[!a.bounded() + !b.bounded()];
+  if (!a.bounded() || !b.bounded()) tight = kGapToleranceUlps[!a.bounded() + !b.bounded()];
   p.size = p.reach_a + p.reach_b + apart;
   const double turned =
       a.bounded() ? std::min(p.reach_b, p.reach_a + apart + kStretched * farthest) : p.reach_b;
   p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
             b_in_a.rotation_error * turned;
   p.tight = tight * kUlp * p.size;
-  p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kMetGap) * p.size;
+  p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kContactGap) * p.size;
   return p;
 }
 

@@ -1,28 +1,13 @@
-#include "core/model/query_tables.hpp"
+#include "core/query_tables.hpp"
 
 #include <algorithm>
 
+#include "core/convex_polyhedron.hpp"
+#include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
 
 namespace clearance {
 namespace {
-
-// The vertex that is farthest along d, climbing from another.
-std::int32_t farthest(const ConvexPolyhedron& body, const Vec3& d, std::int32_t at) {
-  for (bool higher = true; higher;) {
-    higher = false;
-    const Vertex vertex = body.vertices[at];
-    for (std::int32_t i = 0; i < vertex.edges; ++i) {
-      const EdgeUse& use = body.vertex_edges[vertex.first_edge + i];
-      const std::int32_t to = body.edges[use.edge].vertex[1 - use.side];
-      if (to != kNone && d.dot(body.vertices[to].position) > d.dot(body.vertices[at].position)) {
-        at = to;
-        higher = true;
-      }
-    }
-  }
-  return at;
-}
 
 void add_outgoing(ConvexPolyhedron& body) {
   body.outgoing.resize(body.vertex_edges.size());
@@ -87,26 +72,72 @@ void add_planes(ConvexPolyhedron& body) {
   }
 }
 
+void sort_rays(const ConvexPolyhedron& body, RecessionCone& out) {
+  for (const Ray& ray : body.rays) {
+    if (!ray.is_line) {
+      out.rays.push_back(ray.exact ? Vec3(ray.direction.normalized()) : ray.direction);
+    } else if (out.line_count < out.lines.size()) {
+      const Vec3 rest = out.across_lines(ray.direction.normalized());
+      if (rest.norm() > 0.5) out.lines[out.line_count++] = rest.normalized();
+    }
+  }
+}
+
+// Two directions are tried: against the sum of the facets' normals, as no ray leads out of a facet
+// and only lines run along all of them, and the sum of the rays, along which one of many may have
+// nothing but those of a slender cone have all.
+double least_part(const RecessionCone& of, const Vec3& against_normals) {
+  Vec3 along = Vec3::Zero();
+  for (const Vec3& ray : of.rays) along += ray;
+  double most = -kInfinity;
+  for (const Vec3& sum : {against_normals, along}) {
+    const Vec3 way = of.across_lines(sum).stableNormalized();
+    double least = kInfinity;
+    for (const Vec3& ray : of.rays) least = std::min(least, way.dot(ray));
+    most = std::max(most, least);
+  }
+  return most - kSlopeError;
+}
+
+// Against the sum of all normals, if it leads away from each by more than rounding.
+Vec3 inwards(const ConvexPolyhedron& body, const Vec3& against_normals) {
+  constexpr double kAway = 0x1p-20;
+  const Vec3 way = against_normals.stableNormalized();
+  const bool away = std::all_of(body.facets.begin(), body.facets.end(),
+                                [&](const Facet& facet) { return facet.normal.dot(way) < -kAway; });
+  return away ? way : Vec3(Vec3::Zero());
+}
+
+void add_recession_cone(ConvexPolyhedron& body) {
+  body.recession_cone = {};
+  if (body.bounded()) return;
+  sort_rays(body, body.recession_cone);
+  Vec3 against_normals = Vec3::Zero();
+  for (const Facet& facet : body.facets) against_normals -= facet.normal;
+  body.recession_cone.least = least_part(body.recession_cone, against_normals);
+  body.recession_cone.inwards = inwards(body, against_normals);
+}
+
 // What grew while the body was made keeps no room to grow in.
 void release_spare_room(ConvexPolyhedron& body) {
-  body.facets.shrink_to_fit();
-  body.edges.shrink_to_fit();
-  body.vertices.shrink_to_fit();
-  body.facet_edges.shrink_to_fit();
-  body.vertex_edges.shrink_to_fit();
-  body.anchors.shrink_to_fit();
-  body.neighbours.shrink_to_fit();
-  body.facets_beside.shrink_to_fit();
+  const auto release = [](auto&... tables) { (tables.shrink_to_fit(), ...); };
+  release(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges, body.anchors,
+          body.neighbours, body.facets_beside);
+}
+
+template <class... T>
+std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
+  return (... + (tables.size() * sizeof(T)));
 }
 
 }  // namespace
 
-void add_walking_tables(ConvexPolyhedron& body) {
+void add_query_tables(ConvexPolyhedron& body) {
   const double reach = body.bounded() ? body.bounding_radius : 0.0;
-  body.slack_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
-  body.slack_as_b = kUlp * kUlpsOnB * reach + body.position_error;
+  body.error_bound_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
+  body.error_bound_as_b = kUlp * kUlpsOnB * reach + body.position_error;
   body.inner_radius = inner_radius(body);
-  add_opening(body);
+  add_recession_cone(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
   add_outgoing(body);
@@ -115,11 +146,17 @@ void add_walking_tables(ConvexPolyhedron& body) {
   add_planes(body);
   release_spare_room(body);
   if (body.vertices.empty()) return;
-  std::int32_t at = 0;
   for (int cell = 0; cell < StartTable::kCells; ++cell) {
-    at = farthest(body, StartTable::middle(cell), at);
-    body.start.set(cell, at);
+    body.start.set(cell, support(body, StartTable::middle(cell).normalized()).anchor);
   }
+}
+
+std::size_t footprint(const ConvexPolyhedron& body) noexcept {
+  return sizeof body +
+         bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
+                  body.anchors, body.rays, body.exact_normals, body.recession_cone.rays,
+                  body.neighbours, body.facets_beside) +
+         body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
 }
 
 }  // namespace clearance

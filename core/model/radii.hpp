@@ -1,4 +1,5 @@
-// From the cores to the bodies: each is its core plus a ball of its radius.
+// From the polyhedra to the swept-sphere bodies: each is its polyhedron plus a sphere of its
+// radius.
 #pragma once
 
 #include <cmath>
@@ -12,28 +13,28 @@ namespace clearance {
   return a.radius + b.radius;
 }
 
-// What taking their sum off a bound of the cores' distance, about `distance`, rounds.
+// What taking their sum off a bound of the polyhedra's distance, about `distance`, rounds.
 [[nodiscard]] inline double rounding_of_radii(double sum, double distance) noexcept {
   return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
 }
 
-// Will bounds of the cores' distance, `gap` from each other, be as near as a converged answer's
-// when the radii are taken off? Each is widened by what that may round, and then rounded, by as
-// much at most. `size`: Precision::size.
+// Will bounds of the polyhedra's distance, `gap` from each other, be as near as a converged
+// answer's when the radii are taken off? Each is widened by what that may round, and then rounded,
+// by as much at most. `size`: Precision::size.
 [[nodiscard]] inline bool is_as_promised(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                          double size, double distance, double gap) noexcept {
   const double sum = radii(a, b);
   return gap + 4.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
 }
 
-// B's witness point of a result with radii, from the core's (TrackingState); both and the result's
-// normal in the same frame.
-[[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_core, const Vec3& normal,
+// B's witness point of a result with radii, from the polyhedron's (TrackingState); both and the
+// result's normal in the same frame.
+[[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_polyhedron, const Vec3& normal,
                                        const ConvexPolyhedron& b) noexcept {
-  return on_core - b.radius * normal;
+  return on_polyhedron - b.radius * normal;
 }
 
-// Witness points move from the cores' surfaces to the rounded bodies'.
+// Witness points move from the polyhedra's surfaces to the rounded bodies'.
 inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
                       const ConvexPolyhedron& b) noexcept {
   const double sum = radii(a, b);

@@ -6,10 +6,11 @@
 #define CLEARANCE_CORE_RELATIVE_POSE4
 #endif
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
-#include "core/model/exact_orientation.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/numerics/vec4-inl.hpp"
 #include "core/pose.hpp"
@@ -85,13 +86,20 @@ HWY_INLINE Vec4 turn_back(Vec4 q, Vec4 v) {
   return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
 }
 
-HWY_INLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
-  const ExactOrientations exact = exact_orientations(a.orientation, b.orientation);
-  if (exact.equal) {
-    r.rotation = r.transposed = {spread(1.0), spread(0.0), spread(0.0)};
-  }
-  if (exact.rotation) r.rotation_error = 0.0;
-  if (exact.translation) r.translation_error = kPermutedTranslationError * r.apart;
+// Do both rotations permute the axes, or are they equal? The relative rotation then has no error.
+// Of a unit quaternion, multiples of 1/2 permute the axes, and their products are exact.
+inline HWY_NOINLINE bool has_exact_rotation(const Pose& a, const Pose& b) {
+  const auto permutes_axes = [](const Eigen::Quaterniond& q) {
+    const Eigen::Array4d twice = 2.0 * q.coeffs().array();
+    return (twice == twice.round()).all();
+  };
+  const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
+  return p == q || p == -q || (permutes_axes(a.orientation) && permutes_axes(b.orientation));
+}
+// A quick look that moving orientations do not pass: z of conj(a) b is 0, 1/2 or 1 then, which have
+// no digits.
+HWY_INLINE bool may_have_exact_rotation(double z) {
+  return HWY_UNLIKELY(std::bit_cast<std::uint64_t>(z) << 12 == 0);
 }
 
 // For quaternions that are not of unit length to rounding, and frames that are far apart.
@@ -116,8 +124,8 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     r.apart = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.apart);
   }
-  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
-    set_exactness(world_from_a, world_from_b, r);
+  if (may_have_exact_rotation(lane(q, 2)) && has_exact_rotation(world_from_a, world_from_b)) {
+    r.rotation_error = 0.0;
   }
   return r;
 }

@@ -1,47 +1,67 @@
-// Compiled once a vector width.
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/model/support_function.cpp"
-#include "core/numerics/simd_targets.hpp"
-// That comes first.
-#include "core/model/edge_scan-inl.hpp"
 #include "core/model/support_function.hpp"
-#include "core/numerics/error_constants.hpp"
 
-HWY_BEFORE_NAMESPACE();
-namespace clearance::HWY_NAMESPACE {
-
-// Along the edges that rise for certain, so that it ends. certain: where every edge falls.
-std::int32_t climb(const ConvexPolyhedron& body, const Vec3& m, std::int32_t at, bool& certain) {
-  for (;;) {
-    const SteepestEdge way = steepest(body, body.vertices[at], m);
-    certain = way.derivative < -kDerivativeError;
-    if (!(way.derivative > kDerivativeError)) return at;
-    at = body.neighbours[way.at];
-  }
-}
-
-}  // namespace clearance::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/numerics/error_constants.hpp"
+
 namespace clearance {
-
-HWY_EXPORT(climb);
-
 namespace {
 
 // Below this many vertices a scan is cheaper than a climb.
 constexpr std::size_t kScan = 24;
 
-// The vertices reached from one another by edges that rounding cannot tell from level ones. On the
-// exact polytope every vertex that is not the highest has a rising edge, and rising edges lead to
-// the highest. An edge that leaves this set falls for certain, so no rising path leaves it: the
-// highest vertex is in it.
-class LevelSet {
+// Goes from vertex to vertex in a direction m.
+struct Climber {
+  Vec3 m;
+  std::int32_t at;
+  double steepest = kInfinity;  // directional derivative along m of that edge of `at`
+};
+
+// Along the steepest edge, where its derivative is positive beyond rounding, so that it ends. By
+// derivatives, as ends a rounding apart are equally high. True: it has moved. Neither that nor
+// which edge it is could a branch foresee.
+bool climb(const ConvexPolyhedron& body, Climber& climber) noexcept {
+  const Vertex& vertex = body.vertices[climber.at];
+  const double* row = body.outgoing.row(vertex.first_edge);
+  const std::int32_t n = vertex.edges;
+  const double x = climber.m.x(), y = climber.m.y(), z = climber.m.z();
+  double greatest = -kInfinity;
+  std::int32_t steepest = 0;
+  for (std::int32_t i = 0; i < n; ++i) {
+    const double derivative = (x * row[i] + y * row[n + i]) + z * row[2 * n + i];
+    const std::int32_t steeper = derivative > greatest;
+    steepest ^= (steepest ^ i) & -steeper;
+    greatest = std::max(greatest, derivative);
+  }
+  const std::int32_t ascends = greatest > kDerivativeError;
+  const std::int32_t to = body.neighbours[vertex.first_edge + steepest];
+  climber.at ^= (climber.at ^ to) & -ascends;
+  climber.steepest = greatest;
+  return ascends != 0;
+}
+
+// Some of them at a time: one waits for memory while the others go on.
+void climb_together(const ConvexPolyhedron& body, Climber* climbers, std::size_t count) noexcept {
+  std::array<std::uint8_t, kLookedUpTogether> climbing;
+  for (std::size_t i = 0; i < count; ++i) climbing[i] = static_cast<std::uint8_t>(i);
+  while (count > 0) {
+    std::size_t still = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint8_t which = climbing[i];
+      climbing[still] = which;
+      still += climb(body, climbers[which]);
+    }
+    count = still;
+  }
+}
+
+// The vertices reached from one another by edges that are orthogonal to m within rounding. On the
+// exact polytope every vertex that is not the support point has an ascending edge, and ascending
+// edges lead to the support point. An edge that leaves this set descends beyond rounding, so no
+// ascending path leaves it: the support point is in it.
+class NearlySupporting {
  public:
   bool add(std::int32_t vertex) noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
@@ -59,56 +79,44 @@ class LevelSet {
   std::size_t size_ = 0;
 };
 
-struct Neighbour {
-  std::int32_t vertex;
-  double slope;  // of the edge that leads there, along m
-};
-
-Neighbour neighbour(const ConvexPolyhedron& body, const EdgeUse& use, const Vec3& m) noexcept {
-  const Edge& edge = body.edges[use.edge];
-  const double along = edge.direction.dot(m);
-  return {edge.vertex[1 - use.side], use.side == 0 ? along : -along};
-}
-
-// How fast a sum of rays that are no lines may rise, at most, along a direction across the lines.
-// Their parts across the lines all have a part of at least Opening::least along one direction, so
-// that there are no more of them than the sum is long over that: they count as often as the
-// steepest rises.
-double rise_of_rays(const Opening& opening, const Vec3& across) noexcept {
-  if (!(opening.least > 0.0)) return kInfinity;
+// An upper bound of the directional derivative along `across` of any direction of the cone that is
+// of unit length, where `across` is orthogonal to its lines. Parts of the rays across the lines
+// have at least RecessionCone::least along one direction, so that a sum of unit length has no more
+// than 1/least of them, each with the derivative of the steepest ray at most.
+double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcept {
+  if (!(cone.least > 0.0)) return kInfinity;
   double steepest = 0.0;
-  for (const Vec3& ray : opening.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
-  return steepest / opening.least;
+  for (const Vec3& ray : cone.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  return steepest / cone.least;
 }
 
-// The same by a direction beside it along which all rays fall for certain: they rise no faster than
-// it is tilted against that one. Where only the steepest ray does not fall, it leads past that.
-double rise_past_steepest(const Opening& opening, const Vec3& across) noexcept {
+// The same from a direction beside `across` along which all rays have negative derivatives beyond
+// rounding: then it is the tilt against that direction. Tried: the direction past the steepest ray.
+double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
-  const auto steepest = std::max_element(opening.rays.begin(), opening.rays.end(), steeper);
-  if (steepest == opening.rays.end()) return kInfinity;
-  const Vec3 way = opening.across_lines(*steepest);
+  const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
+  if (steepest == cone.rays.end()) return kInfinity;
+  const Vec3 way = cone.across_lines(*steepest);
   const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
-  const Vec3 past = opening.across_lines(across - step * way);
-  for (const Vec3& ray : opening.rays) {
+  const Vec3 past = cone.across_lines(across - step * way);
+  for (const Vec3& ray : cone.rays) {
     if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
   }
   return (across - past).norm();
 }
 
-// How fast an opening's sums may rise along m, at most: along its lines, and beside them as its
-// rays may along a direction across the lines.
-double rise(const Opening& opening, const Vec3& m,
-            double (*of_rays)(const Opening&, const Vec3&) noexcept) noexcept {
-  const Vec3 across = opening.across_lines(m);
-  const double of_lines = opening.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  return of_rays(opening, across) + of_lines;
+// An upper bound of the directional derivative along m of any unit direction of the cone: along its
+// lines, and beside them as its rays have across the lines.
+double cone_derivative(const RecessionCone& cone, const Vec3& m,
+                       double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
+  const Vec3 across = cone.across_lines(m);
+  const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+  return of_rays(cone, across) + of_lines;
 }
 
-// How fast a body may rise along m, at most, by its facets: nothing rises along their normals, and
-// along m no faster than m is tilted against one. It says more of bodies that are all but a
-// half-space.
-double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+// The same from the facets: no direction of the cone has a positive derivative along their normals,
+// nor along m one above the tilt of m against a normal.
+double derivative_by_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   double tilt2 = kInfinity;
   for (const Facet& facet : body.facets) {
     tilt2 = std::min(tilt2, (m - facet.normal).squaredNorm());
@@ -121,27 +129,30 @@ double rise_above_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   Support best{m.dot(body.anchors[0]), 0};
   for (std::size_t i = 1; i < body.anchors.size(); ++i) {
-    const double height = m.dot(body.anchors[i]);
-    if (height > best.reach) best = {height, static_cast<std::int32_t>(i)};
+    const double value = m.dot(body.anchors[i]);
+    if (value > best.reach) best = {value, static_cast<std::int32_t>(i)};
   }
   return best;
 }
 
 Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   if (!body.bounded() || body.anchors.size() <= kScan) return support_by_scan(body, m);
-  bool certain;
-  const std::int32_t top = HWY_DYNAMIC_DISPATCH(climb)(body, m, body.start.at(m), certain);
-  if (certain) return {m.dot(body.vertices[top].position), top};
-  LevelSet level;
-  level.add(top);
+  Climber climber{m, body.start.at(m)};
+  while (climb(body, climber)) continue;
+  if (climber.steepest < -kDerivativeError) {
+    return {m.dot(body.vertices[climber.at].position), climber.at};
+  }
+  NearlySupporting candidates;
+  candidates.add(climber.at);
   Support best{-kInfinity, 0};
-  for (std::size_t k = 0; k < level.size(); ++k) {
-    const Vertex& vertex = body.vertices[level[k]];
-    const double height = m.dot(vertex.position);
-    if (height > best.reach) best = {height, level[k]};
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const Vertex& vertex = body.vertices[candidates[k]];
+    const double value = m.dot(vertex.position);
+    if (value > best.reach) best = {value, candidates[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
-      const Neighbour n = neighbour(body, body.vertex_edges[vertex.first_edge + i], m);
-      if (n.slope > -kDerivativeError && !level.add(n.vertex)) return support_by_scan(body, m);
+      const std::int32_t next = body.neighbours[vertex.first_edge + i];
+      const double derivative = m.dot(body.outgoing_of(vertex, i));
+      if (derivative > -kDerivativeError && !candidates.add(next)) return support_by_scan(body, m);
     }
   }
   return best;
@@ -151,13 +162,26 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 // longer than the sum.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  const Opening& opening = body.opening;
-  double rate = rise(opening, m, rise_of_rays);
+  const RecessionCone& cone = body.recession_cone;
+  double rate = cone_derivative(cone, m, derivative_by_rays);
   if (rate > kSlopeError) {
-    rate = std::min({rate, rise(opening, m, rise_past_steepest), rise_above_facets(body, m)});
+    rate = std::min(
+        {rate, cone_derivative(cone, m, derivative_past_steepest), derivative_by_facets(body, m)});
   }
   return rate * (within + body.bounding_radius);
 }
 
+void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& other, const Mat3& turn,
+                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept {
+  std::array<Climber, kLookedUpTogether> climbers;
+  for (std::size_t k = 0; k < facets.size(); ++k) {
+    const Vec3 m = -(turn * body.facets[facets[k]].normal);
+    climbers[k] = {m, other.start.at(m)};
+  }
+  climb_together(other, climbers.data(), facets.size());
+  for (std::size_t k = 0; k < facets.size(); ++k) {
+    vertices[facets[k]] = static_cast<std::uint16_t>(climbers[k].at);
+  }
+}
+
 }  // namespace clearance
-#endif

@@ -2,7 +2,9 @@
 // m.x).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/convex_polyhedron.hpp"
 
@@ -16,7 +18,7 @@ struct Support {
 
 // Exact up to the rounding of the products: bodies of many vertices are climbed along their edges
 // from where the start table says, and no vertex is left out that could be higher (see
-// support.cpp); others are scanned. m: unit up to rounding, the body's frame.
+// support_function.cpp); others are scanned. m: unit up to rounding, the body's frame.
 [[nodiscard]] Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept;
 
 // Over all anchors, without the edge graph.
@@ -27,5 +29,13 @@ struct Support {
 // bounded body.
 [[nodiscard]] double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m,
                                       double within) noexcept;
+
+inline constexpr std::size_t kLookedUpTogether = 16;
+
+// For up to kLookedUpTogether facets of `body`, a vertex of `other` that is deepest below each or
+// nearly so: vertices[facet]. `turn` leads from body's frame to other's. `other`: bounded, with
+// edges.
+void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& other, const Mat3& turn,
+                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept;
 
 }  // namespace clearance

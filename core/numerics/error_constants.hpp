@@ -41,11 +41,9 @@ inline constexpr double kProductError = 9 * kUlp;
 // The product with it: 2, the sum: 1.
 inline constexpr double kTurnError = 21.25 * kUlp;
 
-// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
-// the last where the turn only permutes axes.
+// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself.
 inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
-inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
@@ -69,11 +67,11 @@ inline constexpr double kUnderflow = 1e-150;
 
 // Bounds no farther apart than this, before the slack, are as good as it gets, and nothing else is
 // tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
-inline constexpr double kTightUlps[] = {6.5, 16.0, 16.0};
+inline constexpr double kGapToleranceUlps[] = {6.5, 16.0, 16.0};
 
 // What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies
 // that overlap or touch, and of two unbounded ones, 1.25e-14.
-inline constexpr double kConvergedGap = 90 * kUlp, kMetGap = 112 * kUlp;
+inline constexpr double kConvergedGap = 90 * kUlp, kContactGap = 112 * kUlp;
 
 // Of a sum of radii, and of what is left when it is taken off a bound.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
@@ -87,6 +85,9 @@ inline constexpr double kSlender = 0x1p-20;
 // their product all but the last sum, which is exact there or as small as the derivative, by 2: 7
 // of 8.
 inline constexpr double kDerivativeError = 0x1p-50;
+
+// What rounding may hide of a slope: its direction's, its product's and its sum's.
+inline constexpr double kSlopeError = 0x1p-50;
 
 // Facets that are parallel along two edges may be tilted by a little more than either.
 inline constexpr double kParallelTilt = 2.0 * kDerivativeError;

@@ -1,7 +1,7 @@
 // The arcs of a body against another of many corners: see core/penetration/normal_search.hpp.
 #include <algorithm>
 
-#include "core/model/farthest_vertices.hpp"
+#include "core/model/support_function.hpp"
 #include "core/penetration/normal_search.hpp"
 
 namespace clearance {

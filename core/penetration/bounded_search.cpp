@@ -1,7 +1,7 @@
 // The depth search for two bounded bodies, whose points are held against many facets at a time.
 #include <algorithm>
 
-#include "core/model/farthest_vertices.hpp"
+#include "core/model/support_function.hpp"
 #include "core/penetration/gauss_arc.hpp"
 #include "core/penetration/normal_search.hpp"
 

@@ -15,7 +15,7 @@ constexpr std::size_t kSamples = 1024;
 // Does the body go on for ever along n? For certain; or as far as rounding can tell.
 bool rises(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
   const auto rise = [&](const Vec3& way) { return n.dot(way) > margin * way.norm(); };
-  return rise(body.opening.inwards) ||
+  return rise(body.recession_cone.inwards) ||
          std::any_of(body.rays.begin(), body.rays.end(),
                      [&](const Ray& ray) { return rise(ray.direction); });
 }

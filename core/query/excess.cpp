@@ -1,8 +1,8 @@
 // How far a model reaches beyond the bodies that it holds.
 //
 // The distance from one convex body is a convex function, so over a tetrahedron it is largest at a
-// corner. From the nearest of several it is not; but no point of the tetrahedron is farther from
-// the nearest than the farthest corner is from any one of them. Splitting makes that tight.
+// vertex. From the nearest of several it is not; but no point of the tetrahedron is farther from
+// the nearest than the farthest vertex is from any one of them. Splitting makes that bound close.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,13 +36,13 @@ double least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-struct MeasuredCorner {
+struct MeasuredVertex {
   Vec3 position;
   std::vector<double> from;  // each body, m
 };
 
 struct Tetrahedron {
-  std::array<int, 4> corner;
+  std::array<int, 4> vertex;
   double open;  // no point of it is farther from the nearest body, m
 };
 
@@ -68,16 +68,16 @@ class Search {
 
  private:
   int add(const Vec3& position) {
-    corners_.push_back({position, distances(position, bodies_)});
-    reached_ = std::max(reached_, least(corners_.back().from));
-    return static_cast<int>(corners_.size()) - 1;
+    vertices_.push_back({position, distances(position, bodies_)});
+    reached_ = std::max(reached_, least(vertices_.back().from));
+    return static_cast<int>(vertices_.size()) - 1;
   }
 
-  [[nodiscard]] const MeasuredCorner& at(int corner) const {
-    return corners_[static_cast<std::size_t>(corner)];
+  [[nodiscard]] const MeasuredVertex& at(int vertex) const {
+    return vertices_[static_cast<std::size_t>(vertex)];
   }
 
-  // Triangles of the facet's polygon from its first corner, with the centre.
+  // Triangles of the facet's polygon from its first vertex, with the centre.
   void fan(const ConvexPolyhedron& model, const Facet& facet, int centre) {
     std::vector<int> ring;
     for (std::int32_t i = facet.first_side; i < facet.first_side + facet.sides; ++i) {
@@ -89,14 +89,14 @@ class Search {
     }
   }
 
-  void push(const std::array<int, 4>& corner) {
+  void push(const std::array<int, 4>& vertex) {
     double open = kInfinity;
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
       double farthest = -kInfinity;
-      for (const int c : corner) farthest = std::max(farthest, at(c).from[body]);
+      for (const int c : vertex) farthest = std::max(farthest, at(c).from[body]);
       open = std::min(open, farthest);
     }
-    open_.push({corner, open});
+    open_.push({vertex, open});
   }
 
   // In the middle of its longest edge.
@@ -105,21 +105,21 @@ class Search {
     double length = -1.0;
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = i + 1; j < 4; ++j) {
-        const double l = (at(whole.corner[i]).position - at(whole.corner[j]).position).norm();
+        const double l = (at(whole.vertex[i]).position - at(whole.vertex[j]).position).norm();
         if (l > length) longest = {i, j}, length = l;
       }
     }
     const int middle =
-        add(0.5 * (at(whole.corner[longest[0]]).position + at(whole.corner[longest[1]]).position));
+        add(0.5 * (at(whole.vertex[longest[0]]).position + at(whole.vertex[longest[1]]).position));
     for (const std::size_t end : longest) {
-      std::array<int, 4> half = whole.corner;
+      std::array<int, 4> half = whole.vertex;
       half[end] = middle;
       push(half);
     }
   }
 
   std::span<const PlacedShape> bodies_;
-  std::vector<MeasuredCorner> corners_;
+  std::vector<MeasuredVertex> vertices_;
   std::priority_queue<Tetrahedron> open_;
   double reached_ = -kInfinity;  // some point of the model is about this far from the nearest, m
 };
@@ -139,8 +139,8 @@ double excess(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies
   return (Search(model, bodies).run() + rounding(model, bodies)) * kRoundedUp;
 }
 
-// The signed distance from a body grows by no more than the way.
-double excess_of_ball(const Vec3& centre, double radius, std::span<const PlacedShape> bodies) {
+// The signed distance from a body grows by no more than the length of a displacement.
+double excess_of_sphere(const Vec3& centre, double radius, std::span<const PlacedShape> bodies) {
   return std::max(0.0, least(distances(centre, bodies)) + radius) * kRoundedUp;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/enclosing_polyhedron.hpp"
-#include "core/model/footprint.hpp"
+#include "core/query_tables.hpp"
 #include "monitor/geometry/bounding_hull.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 
@@ -52,7 +52,7 @@ class Judge {
     const Sphere& sphere = spheres_[i].in_object;
     if (sphere.radius < kInfinity) {
       all.sphere_radius = sphere.radius;
-      all.sphere_error = excess_of_ball(sphere.centre, sphere.radius, shapes);
+      all.sphere_error = excess_of_sphere(sphere.centre, sphere.radius, shapes);
     }
     if (hulls_[i]) all.hull = {size_of(*hulls_[i]), hull_error(i, shapes)};
     for (const Part& part : object.parts) {

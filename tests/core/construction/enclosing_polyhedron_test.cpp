@@ -181,8 +181,8 @@ TEST(Excess, OfABallIsExactForOneBody) {
   Group group;
   group.add(hard::box({1.0, 0.5, 0.25}), {});
   const double radius = Vec3(1.0, 0.5, 0.25).norm();
-  EXPECT_NEAR(excess_of_ball(Vec3::Zero(), radius, group.placed), radius - 0.25, 1e-12);
-  EXPECT_NEAR(excess_of_ball(Vec3(0, 0, 1.25), 2.5, group.placed), 3.5, 1e-12);
+  EXPECT_NEAR(excess_of_sphere(Vec3::Zero(), radius, group.placed), radius - 0.25, 1e-12);
+  EXPECT_NEAR(excess_of_sphere(Vec3(0, 0, 1.25), 2.5, group.placed), 3.5, 1e-12);
 }
 
 }  // namespace

@@ -105,21 +105,21 @@ TEST(UnboundedShapes, HowTheyOpenIsKnownOnceTheyAreMade) {
     const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
     EXPECT_EQ(
         std::count_if(body.rays.begin(), body.rays.end(), [](const Ray& r) { return !r.is_line; }),
-        static_cast<std::ptrdiff_t>(body.opening.rays.size()));
-    return body.opening;
+        static_cast<std::ptrdiff_t>(body.recession_cone.rays.size()));
+    return body.recession_cone;
   };
-  const Opening slab = opening({{{1, 2, 2}, 9}, {{-1, -2, -2}, 9}});
+  const RecessionCone slab = opening({{{1, 2, 2}, 9}, {{-1, -2, -2}, 9}});
   EXPECT_EQ(slab.line_count, 2U);
   EXPECT_NEAR(slab.lines[0].dot(slab.lines[1]), 0.0, 1e-15);
   EXPECT_EQ(slab.inwards, Vec3(0, 0, 0));
 
-  const Opening wedge = opening({{{1, 1, 0}, 2}, {{-1, 1, 0}, 0}});
+  const RecessionCone wedge = opening({{{1, 1, 0}, 2}, {{-1, 1, 0}, 0}});
   EXPECT_EQ(wedge.line_count, 1U);
   EXPECT_EQ(wedge.lines[0].cwiseAbs(), Vec3(0, 0, 1));
   EXPECT_NEAR(wedge.least, std::sqrt(0.5), 1e-14);
   EXPECT_EQ(wedge.inwards, Vec3(0, -1, 0));
 
-  const Opening octant = opening({{{1, 0, 0}, 1}, {{0, 1, 0}, 2}, {{0, 0, 1}, 3}});
+  const RecessionCone octant = opening({{{1, 0, 0}, 1}, {{0, 1, 0}, 2}, {{0, 0, 1}, 3}});
   EXPECT_EQ(octant.line_count, 0U);
   EXPECT_NEAR(octant.least, std::sqrt(1.0 / 3.0), 1e-14);
   EXPECT_LT(octant.least, std::sqrt(1.0 / 3.0));

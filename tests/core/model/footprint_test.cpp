@@ -1,5 +1,5 @@
 // What a body is said to take, against what a copy of it asks the allocator for.
-#include "core/model/footprint.hpp"
+#include "core/query_tables.hpp"
 
 #include <gtest/gtest.h>
 

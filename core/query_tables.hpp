@@ -1,0 +1,127 @@
+// What a ConvexPolyhedron keeps beside its features, so that queries find it in the order in which
+// they read it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+struct ConvexPolyhedron;
+
+// Rows of vectors, one row a feature, as vector registers read them: a row of n vectors is its n x,
+// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end.
+class VectorRows {
+ public:
+  explicit VectorRows(std::int32_t numbers) noexcept : numbers_(numbers) {}
+
+  // Before the first vector of a row, `first` vectors lie in the rows before it.
+  [[nodiscard]] const double* row(std::int32_t first) const noexcept {
+    return values_.data() + static_cast<std::ptrdiff_t>(first) * numbers_;
+  }
+  // Number k of vector i of a row of n.
+  [[nodiscard]] double number(std::int32_t first, std::int32_t n, std::int32_t i,
+                              std::int32_t k) const noexcept {
+    return row(first)[k * n + i];
+  }
+  void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
+    values_[static_cast<std::size_t>(first * numbers_ + k * n + i)] = to;
+  }
+  [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
+  void resize(std::size_t vectors) {
+    values_.assign(vectors * static_cast<std::size_t>(numbers_) + kOverrun, 0.0);
+  }
+
+ private:
+  static constexpr std::size_t kOverrun = 4;  // a point has a row of none
+  std::vector<double> values_;
+  std::int32_t numbers_;
+};
+
+// What limits a facet's polygon in its plane: inward.x >= offset. That is what lies on one side of
+// an edge; and, at a sharp corner, what lies before the end of the edge that ends there. A point
+// that is off either edge there by no more than rounding may be past the vertex by that over the
+// sine of half its angle.
+struct FacetLimit {
+  Vec3 inward;
+  double offset;
+};
+
+// The cosine of the angle of a facet's vertex beyond which it is sharp: the sine of half of it is
+// 1/3.
+inline constexpr double kSharpCorner = 7.0 / 9.0;
+
+// The directions in which an unbounded body is unbounded: sums of its lines (the lineality space),
+// either way along each, and of its other extreme rays.
+struct RecessionCone {
+  // Unit, at right angles; two of them are a whole plane.
+  std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
+  std::size_t line_count = 0;
+  std::vector<Vec3> rays;  // unit
+  // How much of any of the rays, at least, lies along one direction at right angles to the lines;
+  // rounding included. 0 or less: no such direction is known.
+  double least = 0.0;
+  // Unit: a direction of the cone that leads away from every facet; zero: there is none.
+  Vec3 inwards = Vec3::Zero();
+
+  // What of v is at right angles to the lines.
+  [[nodiscard]] Vec3 across_lines(Vec3 v) const noexcept {
+    for (std::size_t i = 0; i < line_count; ++i) v -= v.dot(lines[i]) * lines[i];
+    return v;
+  }
+};
+
+// A cube around the origin, each face a grid; a direction's cell names the support point along
+// the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the climb from there takes
+// 3 edges on average, and the table is no larger than the vertices of a body of 26 facets.
+class StartTable {
+ public:
+  static constexpr int kGrid = 8;
+  static constexpr int kCells = 6 * kGrid * kGrid;
+
+  [[nodiscard]] std::int32_t at(const Vec3& direction) const noexcept {
+    return cells_[static_cast<std::size_t>(cell(direction))];
+  }
+  void set(int cell, std::int32_t vertex) noexcept {
+    cells_[static_cast<std::size_t>(cell)] = vertex;
+  }
+
+  // Any direction, zero and NaN included, has a cell.
+  [[nodiscard]] static int cell(const Vec3& d) noexcept {
+    const double x = std::abs(d.x()), y = std::abs(d.y()), z = std::abs(d.z());
+    const int axis = x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+    const double major = d[axis], u = d[(axis + 1) % 3], v = d[(axis + 2) % 3];
+    const double scale = 0.5 * kGrid / std::abs(major);
+    return ((axis * 2 + (major < 0.0)) * kGrid + step(u * scale)) * kGrid + step(v * scale);
+  }
+  [[nodiscard]] static Vec3 middle(int cell) noexcept {
+    const auto coordinate = [](int step) { return (step + 0.5) * 2.0 / kGrid - 1.0; };
+    const int face = cell / (kGrid * kGrid), axis = face / 2;
+    Vec3 d;
+    d[axis] = face % 2 == 0 ? 1.0 : -1.0;
+    d[(axis + 1) % 3] = coordinate(cell / kGrid % kGrid);
+    d[(axis + 2) % 3] = coordinate(cell % kGrid);
+    return d;
+  }
+
+ private:
+  static int step(double from_middle) noexcept {
+    const double s = from_middle + 0.5 * kGrid;
+    return s > 0.0 ? (s < kGrid ? static_cast<int>(s) : kGrid - 1) : 0;
+  }
+  std::array<std::int32_t, kCells> cells_{};
+};
+
+// Fills all that ConvexPolyhedron says is made by it from the rest, and keeps no memory to spare.
+// The factories' last step.
+void add_query_tables(ConvexPolyhedron& body);
+
+// Bytes that a body takes, all of its tables included; what the allocator adds is not.
+[[nodiscard]] std::size_t footprint(const ConvexPolyhedron& body) noexcept;
+
+}  // namespace clearance
