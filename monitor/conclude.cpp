@@ -43,7 +43,7 @@ void conclude(const Published& published, const Displacements& displaced, const 
   }
   for (const std::uint32_t pair : culling.seen()) {
     if (published.is_published[pair]) continue;
-    // Of pairs in no zone nobody asks how near they came, but for the least of all.
+    // How near a pair in no zone came matters to the least of all only: a coarse bound will do.
     const auto precision = levels.has(pair) ? SweptPrecision::kByRelativeDisplacement
                                             : SweptPrecision::kByDisplacement;
     add(pair, bounds_in_tick(pair, precision, crossings, evaluation));

@@ -182,7 +182,12 @@ void Monitor::State::write_minimum() noexcept {
   report.swept_lower_all = report.unknown > 0 ? -kInfinity : minimum.swept_lower();
   report.minimum_known = minimum.known();
   report.minimum_certified = minimum.certified() && report.stale == 0 && report.unknown == 0;
-  report.minimum = minimum.known() ? pair_report(minimum.pair()) : unknown_report();
+  if (minimum.known()) {
+    write_pair(minimum.pair(), minimum.bounds(), scheduler, culling, evaluation(Budget(0)),
+               report.minimum);
+  } else {
+    report.minimum = unknown_report();
+  }
 }
 
 PairBounds Monitor::State::bounds(std::uint32_t pair) noexcept {

@@ -142,7 +142,7 @@ void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
     return wheels_.take_due(object, most_activated_, activated_);
   });
-  // A hook that is due has been so for no longer than its pair has been overdue.
+  // A timer that is due has been so for no longer than its pair has been overdue.
   const double overtaken = rounded_up(2.0 * largest_advance_);
   const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
   if (!all) overdue_lower_ = rounded_down(lower - overtaken);
@@ -202,7 +202,7 @@ bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
   return wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1);
 }
 
-// D >= H and D - U >= Z, and of pairs whose hooks are due D >= W.
+// D >= H and D - U >= Z, and of pairs whose timers are due D >= W.
 bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
   if (!is_culled(pair)) return true;
   const TrackedObject& a = *bodies_[object_a_[pair]].state;

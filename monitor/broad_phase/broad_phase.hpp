@@ -1,9 +1,9 @@
 // Which pairs need no look this tick, provably? README.md here says why it is done like this.
 //
 // A pair is culled while its lower bound L, less what its two objects have really moved since,
-// cannot be below the horizon H (no smaller than the minimum over all pairs, if that is proved),
+// cannot be below the horizon H (no smaller than the minimum over all pairs, if that is certified),
 // and, counting what late ones may have moved unseen (U), neither is nor since the last tick has
-// been below what a zone watches it for (Z). It has a hook on the motion wheels of both objects;
+// been below what a zone watches it for (Z). It has a timer on the motion wheels of both objects;
 // the allowance s above those levels is divided between the two. All other pairs are active: looked
 // at in every tick.
 #pragma once
@@ -117,7 +117,7 @@ class BroadPhase {
   std::vector<std::uint32_t> arrived_;   // objects, in order; those before met_ had their turn
   std::size_t met_ = 0, met_pairs_ = 0;
   double largest_advance_ = 0.0;  // of any wheel this tick, m
-  bool overdue_ = false;          // hooks that are due are still on the wheels
+  bool overdue_ = false;          // timers that are due are still on the wheels
   double overdue_lower_ = 0.0;    // W: their pairs' distance is at least this, m
   std::uint32_t next_checked_ = 0;
 };

@@ -34,14 +34,14 @@ Culling::Culling(const Scene& scene, const std::vector<PosedPart>& parts, const 
       hulls_(scene, parts),
       is_seen_(table.pairs(), 0) {
   for (auto* list : {&active_, &seen_}) list->reserve(table.pairs());
-  settled_.reserve(table.pairs());
+  decided_.reserve(table.pairs());
 }
 
 void Culling::cull(std::span<const std::uint32_t> changed, double last_minimum,
                    Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : seen_) is_seen_[pair] = 0;
   seen_.clear();
-  settled_.clear();
+  decided_.clear();
   known_.update(evaluation.objects, changed);
   follow(last_minimum);
   broad_phase_.begin(evaluation.objects, changed, evaluation.table);
@@ -49,7 +49,7 @@ void Culling::cull(std::span<const std::uint32_t> changed, double last_minimum,
     if (is_known(pair, evaluation)) look_at(pair, evaluation);
   }
   find_horizon();
-  settle_activated(evaluation);
+  decide_activated(evaluation);
 }
 
 // The horizon stays a little above the minimum of the last tick. What no translation parts
@@ -81,9 +81,9 @@ bool Culling::covers(double minimum) const noexcept {
 }
 
 void Culling::raise_horizon(double minimum, double step, Evaluation& evaluation) noexcept {
-  settled_.clear();
+  decided_.clear();
   broad_phase_.move_horizon(std::min(minimum + kHeadroom, broad_phase_.horizon() + step));
-  settle_activated(evaluation);
+  decide_activated(evaluation);
 }
 
 // Whether a lower bound of a known pair is `enough`: by its models from coarse to fine, short of
@@ -108,12 +108,12 @@ bool Culling::refresh_by_models(std::uint32_t pair, std::uint32_t kept,
   return by_models(pair, kept, evaluation, is_far);
 }
 
-void Culling::settle_activated(Evaluation& evaluation) noexcept {
+void Culling::decide_activated(Evaluation& evaluation) noexcept {
   for (const std::uint32_t pair : broad_phase_.activated()) {
     const bool known = is_known(pair, evaluation);
     const auto culls = [&](double lower) { return broad_phase_.cull(pair, lower); };
     const bool proved_far = known && by_models(pair, 0, evaluation, culls);
-    settled_.push_back({pair, proved_far});
+    decided_.push_back({pair, proved_far});
     if (proved_far) continue;
     if (known) {
       look_at(pair, evaluation);

@@ -1,7 +1,7 @@
 // Stage 3 of a tick: which pairs must be looked at, and what holds of all others?
 //
 // Keeps the broad phase's decisions and its horizon, looks at the pairs that are active (their
-// bounds are carried to this tick), and asks those that have just become active by the models of
+// bounds are carried to this tick), and bounds those that have just become active by the models of
 // their objects, from coarse to fine: one that these prove far is culled again.
 #pragma once
 
@@ -58,11 +58,11 @@ class Culling {
   [[nodiscard]] std::span<const std::uint32_t> active() const noexcept { return active_; }
 
   // An activated pair that has been decided about, by the last cull() or raise_horizon().
-  struct Settled {
+  struct Decided {
     std::uint32_t pair;
     bool proved_far;  // by models of its objects, afresh
   };
-  [[nodiscard]] std::span<const Settled> settled() const noexcept { return settled_; }
+  [[nodiscard]] std::span<const Decided> decided() const noexcept { return decided_; }
 
   [[nodiscard]] const BroadPhase& broad_phase() const noexcept { return broad_phase_; }
   [[nodiscard]] const KnownPairs& known_pairs() const noexcept { return known_; }
@@ -73,7 +73,7 @@ class Culling {
                                const Enough& enough) noexcept;
   void follow(double minimum) noexcept;
   void find_horizon() noexcept;
-  void settle_activated(Evaluation& evaluation) noexcept;
+  void decide_activated(Evaluation& evaluation) noexcept;
 
   const std::uint32_t least_left_;  // of the budget, by queries of models
   KnownPairs known_;
@@ -82,7 +82,7 @@ class Culling {
   std::vector<std::uint8_t> is_seen_;  // by pair
   // Each with room for all pairs.
   std::vector<std::uint32_t> active_, seen_;
-  std::vector<Settled> settled_;
+  std::vector<Decided> decided_;
 };
 
 }  // namespace clearance

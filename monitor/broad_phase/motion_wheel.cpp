@@ -20,9 +20,9 @@ std::int64_t units(double length) noexcept {
 }  // namespace
 
 MotionWheels::MotionWheels(std::size_t objects, std::size_t pairs)
-    : wheels_(objects), first_(objects * kLevels * kRing, kNobody), hooks_(2 * pairs) {}
+    : wheels_(objects), first_(objects * kLevels * kRing, kNobody), timers_(2 * pairs) {}
 
-bool MotionWheels::set(std::uint32_t hook, std::uint32_t object, double displacement) noexcept {
+bool MotionWheels::set(std::uint32_t timer, std::uint32_t object, double displacement) noexcept {
   const double accumulated = wheels_[object].accumulated;
   const std::int64_t now = units(accumulated);
   const std::int64_t due = units(rounded_down(accumulated + std::min(displacement, kFarthest)));
@@ -35,22 +35,22 @@ bool MotionWheels::set(std::uint32_t hook, std::uint32_t object, double displace
   const std::uint32_t bucket =
       (object * kLevels + static_cast<std::uint32_t>(level)) * kRing + place;
 
-  hooks_[hook] = {.next = first_[bucket], .before = kHead | bucket};
-  if (first_[bucket] != kNobody) hooks_[first_[bucket]].before = hook;
-  first_[bucket] = hook;
+  timers_[timer] = {.next = first_[bucket], .before = kHead | bucket};
+  if (first_[bucket] != kNobody) timers_[first_[bucket]].before = timer;
+  first_[bucket] = timer;
   return true;
 }
 
-void MotionWheels::cancel(std::uint32_t hook) noexcept {
-  const Hook at = hooks_[hook];
-  if (at.before == kLoose) return;
+void MotionWheels::cancel(std::uint32_t timer) noexcept {
+  const Timer at = timers_[timer];
+  if (at.before == kNotSet) return;
   if (at.before & kHead) {
     first_[at.before & ~kHead] = at.next;
   } else {
-    hooks_[at.before].next = at.next;
+    timers_[at.before].next = at.next;
   }
-  if (at.next != kNobody) hooks_[at.next].before = at.before;
-  hooks_[hook] = {};
+  if (at.next != kNobody) timers_[at.next].before = at.before;
+  timers_[timer] = {};
 }
 
 void MotionWheels::advance(std::uint32_t object, double by) noexcept {
@@ -80,10 +80,10 @@ bool MotionWheels::empty_bucket(std::uint32_t bucket, std::size_t most,
                                 std::vector<std::uint32_t>& pairs) noexcept {
   while (first_[bucket] != kNobody) {
     if (pairs.size() >= most) return false;
-    const std::uint32_t hook = first_[bucket];
-    cancel(hook);
-    cancel(hook ^ 1u);
-    pairs.push_back(hook / 2);
+    const std::uint32_t timer = first_[bucket];
+    cancel(timer);
+    cancel(timer ^ 1u);
+    pairs.push_back(timer / 2);
   }
   return true;
 }

@@ -1,13 +1,13 @@
-// Timing wheels that run on displacement instead of time: one wheel an object, one hook a pair and
+// Timing wheels that run on displacement instead of time: one wheel an object, one timer a pair and
 // side.
 //
-// A hook on an object's wheel is due before the object has moved farther than the hook was set for;
-// it may be due up to a quarter of that earlier. An object that stands still costs nothing,
-// one that moves costs as much as it has hooks due.
+// A timer on an object's wheel is due before the object has moved farther than the timer was set
+// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing,
+// one that moves costs as much as it has timers due.
 //
 // A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of
-// displacement wide. A hook goes where its bucket is at least three and at most seven ahead, and is
-// never moved from there: what is due early is looked at, and set again, at no more cost than
+// displacement wide. A timer goes where its bucket is at least three and at most seven ahead, and
+// is never moved from there: what is due early is looked at, and set again, at no more cost than
 // moving it.
 #pragma once
 
@@ -24,21 +24,21 @@ class MotionWheels {
 
   MotionWheels(std::size_t objects, std::size_t pairs);
 
-  // Hook `hook` (2 * pair + side, not set) is due by the time `object` has advanced by
+  // Timer `timer` (2 * pair + side, not set) is due by the time `object` has advanced by
   // `displacement` more. False, and nothing is set, when that is less than can be told apart.
-  bool set(std::uint32_t hook, std::uint32_t object, double displacement) noexcept;
+  bool set(std::uint32_t timer, std::uint32_t object, double displacement) noexcept;
 
-  // Takes a hook off, set or not.
-  void cancel(std::uint32_t hook) noexcept;
+  // Cancels a timer, set or not.
+  void cancel(std::uint32_t timer) noexcept;
 
-  [[nodiscard]] bool is_set(std::uint32_t hook) const noexcept {
-    return hooks_[hook].before != kLoose;
+  [[nodiscard]] bool is_set(std::uint32_t timer) const noexcept {
+    return timers_[timer].before != kNotSet;
   }
 
   // `object` has moved by no more than `by`, m: >= 0, finite.
   void advance(std::uint32_t object, double by) noexcept;
 
-  // Appends to `pairs` those with a due hook on this wheel and takes both their hooks off. Stops
+  // Appends to `pairs` those with a due timer on this wheel and cancels both their timers. Stops
   // when `pairs` has `most` elements; false: there may be more.
   bool take_due(std::uint32_t object, std::size_t most, std::vector<std::uint32_t>& pairs) noexcept;
 
@@ -46,12 +46,12 @@ class MotionWheels {
   static constexpr std::uint32_t kRing = 8;
   static constexpr std::uint32_t kLevels = 20;  // the widest bucket: 128 m
   static constexpr std::uint32_t kNobody = ~0u;
-  static constexpr std::uint32_t kLoose = ~0u;
-  static constexpr std::uint32_t kHead = 1u << 31;  // `before` is a bucket, not a hook
+  static constexpr std::uint32_t kNotSet = ~0u;
+  static constexpr std::uint32_t kHead = 1u << 31;  // `before` is a bucket, not a timer
 
-  struct Hook {
+  struct Timer {
     std::uint32_t next = kNobody;
-    std::uint32_t before = kLoose;
+    std::uint32_t before = kNotSet;
   };
   struct Wheel {
     double accumulated = 0.0;  // displacement, m, rounded up
@@ -62,8 +62,8 @@ class MotionWheels {
                     std::vector<std::uint32_t>& pairs) noexcept;
 
   std::vector<Wheel> wheels_;
-  std::vector<std::uint32_t> first_;  // hook by bucket: object, level, place in the ring
-  std::vector<Hook> hooks_;
+  std::vector<std::uint32_t> first_;  // timer by bucket: object, level, place in the ring
+  std::vector<Timer> timers_;
 };
 
 }  // namespace clearance

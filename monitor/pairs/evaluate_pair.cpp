@@ -18,12 +18,13 @@ DistanceResult ask(std::uint32_t part_pair, const Evaluation& evaluation) noexce
                   table.tracking[part_pair]);
 }
 
-// What both objects have done since the last tick.
-struct Gone {
+// How far both objects have come since the last tick, added up.
+struct PairMotion {
   double displacement, bend;  // m; the latter a sum not rounded up
 };
 
-inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evaluation) noexcept {
+inline PairMotion motion_since_last_tick(const PairEntry& entry,
+                                         const Evaluation& evaluation) noexcept {
   const TrackedObject& a = evaluation.objects[entry.object_a];
   const TrackedObject& b = evaluation.objects[entry.object_b];
   return {rounded_up(a.displacement + b.displacement), a.bend + b.bend};
@@ -34,8 +35,8 @@ inline Gone gone_since_last_tick(const PairEntry& entry, const Evaluation& evalu
 // point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
 // off by what rounding makes of how far the two are apart. `known`: bounds of the part pair before.
 inline double take_in(const DistanceResult& found, const Vec3& point_on_b,
-                      const DistanceBounds& known, std::uint32_t part_pair, const Gone& gone,
-                      const Evaluation& evaluation) noexcept {
+                      const DistanceBounds& known, std::uint32_t part_pair,
+                      const PairMotion& motion, const Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
   const PosedPart& a = evaluation.parts[table.part_a[part_pair]];
   const PosedPart& b = evaluation.parts[table.part_b[part_pair]];
@@ -62,15 +63,15 @@ inline double take_in(const DistanceResult& found, const Vec3& point_on_b,
   table.part_pair_evaluated_cycle[part_pair] = evaluation.cycle;
   if (!was_last_tick) return -kInfinity;
   return lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
-                             gone.displacement, gone.bend);
+                             motion.displacement, motion.bend);
 }
 
-double query(std::uint32_t part_pair, const Gone& gone, Evaluation& evaluation) noexcept {
+double query(std::uint32_t part_pair, const PairMotion& motion, Evaluation& evaluation) noexcept {
   const DistanceResult found = ask(part_pair, evaluation);
   const PairTable& table = evaluation.table;
   const DistanceBounds known{table.lower[part_pair], table.upper[part_pair]};
   evaluation.budget.spend();
-  return take_in(found, table.tracking[part_pair].b.point, known, part_pair, gone, evaluation);
+  return take_in(found, table.tracking[part_pair].b.point, known, part_pair, motion, evaluation);
 }
 
 void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
@@ -88,7 +89,7 @@ std::uint32_t likely_part_pair(std::uint32_t pair, const PairTable& table) noexc
 struct PartPairs {
   double displacement;  // since they were last brought up to date, m
   bool is_new;          // that was in this tick: of the last one nothing is known
-  Gone gone;
+  PairMotion motion;
   // Of those that did not stay out, m: the others are at least `smallest_upper` apart.
   double smallest_upper = kInfinity, least_lower = kInfinity;
   double between = kInfinity;  // at least so far apart since the last tick, m
@@ -104,16 +105,16 @@ inline bool stays_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable&
   table.upper[part_pair] = rounded_up(table.upper[part_pair] + part_pairs.displacement);
   if (part_pairs.is_new)
     part_pairs.between =
-        std::min(part_pairs.between, rounded_down(lower - part_pairs.gone.displacement));
+        std::min(part_pairs.between, rounded_down(lower - part_pairs.motion.displacement));
   return true;
 }
 
 // Any other part pair: brought up to date no more precisely than it takes to tell that it is not
 // the closest, else evaluated, as far as the budget goes.
-void settle_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
+void update_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
                       Evaluation& evaluation) noexcept {
   PairTable& table = evaluation.table;
-  const double displacement = part_pairs.gone.displacement;
+  const double displacement = part_pairs.motion.displacement;
   const double before =
       part_pairs.is_new
           ? -kInfinity
@@ -125,7 +126,7 @@ void settle_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
   double between = -kInfinity;
   const bool matters = now.lower < part_pairs.smallest_upper;
   if (matters && evaluation.budget.left() > 0) {
-    between = query(part_pair, part_pairs.gone, evaluation);
+    between = query(part_pair, part_pairs.motion, evaluation);
   } else if (matters) {
     part_pairs.all_that_matter = false;
   }
@@ -142,13 +143,13 @@ void evaluate_part_pairs(std::uint32_t pair, Evaluation& evaluation) noexcept {
   PartPairs part_pairs{
       .displacement = carried ? 0.0 : displacement_since(pair, evaluation.objects, table),
       .is_new = carried || raised_this_tick(pair, evaluation.objects, table),
-      .gone = gone_since_last_tick(entry, evaluation)};
+      .motion = motion_since_last_tick(entry, evaluation)};
   const std::uint32_t likely = likely_part_pair(pair, table);
-  settle_part_pair(likely, part_pairs, evaluation);
+  update_part_pair(likely, part_pairs, evaluation);
   for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
        ++part_pair) {
     if (part_pair != likely && !stays_out(part_pair, part_pairs, table))
-      settle_part_pair(part_pair, part_pairs, evaluation);
+      update_part_pair(part_pair, part_pairs, evaluation);
   }
   note_carried(pair, evaluation.objects, evaluation.cycle, table);
   entry.least_lower = part_pairs.least_lower;
@@ -179,7 +180,7 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
     known = {table.lower[part_pair], table.upper[part_pair]};
   }
   table.lower_between[pair] = take_in(found, point_on_b, known, part_pair,
-                                      gone_since_last_tick(entry, evaluation), evaluation);
+                                      motion_since_last_tick(entry, evaluation), evaluation);
   entry.least_lower = table.lower[part_pair];
   entry.evaluated_cycle = evaluation.cycle;
 }

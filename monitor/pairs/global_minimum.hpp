@@ -1,5 +1,5 @@
-// The minimum over all pairs, and whether it is proved, from the pairs worth a look and what is
-// known of the rest.
+// The minimum over all pairs, and whether it is certified, from the pairs worth a look and what
+// is known of the rest.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ class GlobalMinimum {
   // The added pair with the smallest upper bound, of those that have ever been evaluated.
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }
+  [[nodiscard]] const PairBounds& bounds() const noexcept { return bounds_; }  // of pair()
 
   // No other pair can be closer: beyond what rounding leaves open between two that were both
   // evaluated.

@@ -31,12 +31,12 @@ struct Evaluator {
     return is_evaluated(pair, tick);
   }
   // Takes note of what the last step of the culling has decided.
-  void take_settled() const noexcept {
-    for (const Culling::Settled& settled : culling.settled()) {
-      if (settled.proved_far) {
-        queue.refreshed(settled.pair, tick.cycle);
+  void take_decided() const noexcept {
+    for (const Culling::Decided& decided : culling.decided()) {
+      if (decided.proved_far) {
+        queue.refreshed(decided.pair, tick.cycle);
       } else {
-        queue.enter(settled.pair);
+        queue.enter(decided.pair);
       }
     }
   }

@@ -17,7 +17,7 @@ void MinimumSearch::evaluate(const Evaluator& evaluator) noexcept {
     if (evaluator.culling.covers(smallest_upper_)) return;
     if (evaluator.tick.budget.left() == 0 || evaluator.culling.broad_phase().any_waits()) return;
     evaluator.culling.raise_horizon(smallest_upper_, step, evaluator.tick);
-    evaluator.take_settled();
+    evaluator.take_decided();
     evaluate_closest(evaluator);
   }
 }

@@ -1,9 +1,10 @@
-// How many queries of a tick are kept back so that pairs that take turns have theirs in time.
+// How many queries of a tick are kept for the round-robin refresh, so that every pair is refreshed
+// in time.
 //
 // Each tick owes (part pairs + 1) / ticks of a query; what a whole number of them has come to is
-// due. Who may spend due + most - 1 queries, `most` being what one pair can take, spends what is
-// due or is through with all. So over any `ticks` ticks at least `part_pairs` are spent, and
-// everybody has had a turn. Counted in whole numbers: nothing drifts.
+// due. A refresh that may spend due + most - 1 queries, `most` being what one pair can take, spends
+// what is due or refreshes all. So over any `ticks` ticks at least `part_pairs` are spent, and
+// every pair is refreshed. The count is in whole numbers, so that nothing drifts.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +28,14 @@ class RefreshBudget {
   [[nodiscard]] std::uint32_t kept() const noexcept {
     return due() == 0 ? 0 : static_cast<std::uint32_t>(std::min(part_pairs_, due() + most_ - 1));
   }
-  // Every pair will find enough kept for it when its turn is due.
+  // Every pair will find enough kept for it when its refresh is due.
   [[nodiscard]] bool is_sure() const noexcept { return part_pairs_ > 0; }
-  // Ends the tick: pairs that take so many at most have had their turn, or all have.
+  // Ends the tick: pairs that take `spent` queries at most have been refreshed, or all have.
   void end_tick(std::uint32_t spent) noexcept {
-    if (spent > due()) return through_with_all();
+    if (spent > due()) return all_refreshed();
     owed_ %= ticks_;
   }
-  void through_with_all() noexcept { owed_ = 0; }
+  void all_refreshed() noexcept { owed_ = 0; }
 
  private:
   const std::uint64_t part_pairs_, most_, ticks_;

@@ -42,7 +42,7 @@ void RoundRobin::refresh(const PublishedPairs& published, bool all_published,
   Budget& budget = evaluator.tick.budget;
   const bool covered = all_published || published.pairs().size() <= budget.left();
   if (all_published) {
-    published_.through_with_all();
+    published_.all_refreshed();
   } else if (covered) {
     const std::uint32_t kept = budget.reserve(others_.kept());
     evaluate_published(published, evaluator);
@@ -73,7 +73,7 @@ void RoundRobin::evaluate_published(const PublishedPairs& published,
     }
     ++next_published_;
   }
-  published_.through_with_all();
+  published_.all_refreshed();
 }
 
 void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
@@ -84,7 +84,7 @@ void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
     const std::uint32_t pair = queue_.stalest();
     const bool left = pair != RefreshQueue::kNobody;
     const std::uint64_t last = left ? queue_.refreshed_cycle(pair) : tick.cycle;
-    if (last == tick.cycle) return others_.through_with_all();
+    if (last == tick.cycle) return others_.all_refreshed();
     if (!is_known(pair, tick)) {
       set_aside(pair, tick);
       ++unknown;

@@ -50,7 +50,7 @@ void Scheduler::evaluate(const Schedule& schedule, const Zones& zones, Culling& 
   const Evaluator evaluator{evaluation, culling, round_robin_.queue(), pool_};
   Budget& budget = evaluation.budget;
   round_robin_.bring_back(culling, evaluation);
-  evaluator.take_settled();
+  evaluator.take_decided();
 
   const std::uint32_t kept = budget.reserve(schedule.kept);
   if (published_.every_tick()) look_at_published(schedule, evaluator);

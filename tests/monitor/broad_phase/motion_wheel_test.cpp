@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-TEST(MotionWheels, NoHookIsLateAndNoneMoreThanAQuarterEarly) {
+TEST(MotionWheels, NoTimerIsLateAndNoneMoreThanAQuarterEarly) {
   constexpr std::uint32_t kPairs = 500;
   Random random(81);
   MotionWheels wheels(2, kPairs);

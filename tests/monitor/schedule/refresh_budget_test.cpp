@@ -37,7 +37,7 @@ TEST(RefreshBudget, LetsEveryPairBeRefreshedInTimeFromNoMoreThanIsKept) {
         next = (next + 1) % rows.size();
         ++turns;
       }
-      turns == rows.size() ? pace.through_with_all()
+      turns == rows.size() ? pace.all_refreshed()
                            : pace.end_tick(static_cast<std::uint32_t>(spent));
       for (const std::uint64_t turn : last) ASSERT_LE(t - turn, ticks) << "run " << run;
     }
