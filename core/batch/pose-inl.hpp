@@ -133,9 +133,14 @@ HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
                  hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
 }
 
-// has_exact_rotation() of core/model/relative_pose-inl.hpp.
-HWY_INLINE LaneMask have_exact_rotation(const Quaternions& a, const Quaternions& b) {
-  return hn::Or(equal_up_to_sign(a, b), hn::And(permute_axes(a), permute_axes(b)));
+// set_exactness() of core/model/relative_pose-inl.hpp.
+HWY_INLINE void set_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
+                              RelativePoses& pose) {
+  const LaneMask a_permutes = permute_axes(a);
+  const LaneMask exact = hn::Or(equal_up_to_sign(a, b), hn::And(a_permutes, permute_axes(b)));
+  pose.rotation_error = hn::IfThenElse(exact, all(0.0), pose.rotation_error);
+  pose.translation_error = hn::IfThenElse(
+      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
 }
 
 // Leaves no number of a pose that is not good, so that its lane fails.
@@ -159,9 +164,8 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
       hn::And(hn::And(are_unit(a), are_unit(b)), hn::Le(apart, all(0.5 * kLargestCoordinate)));
   if (HWY_UNLIKELY(!hn::AllTrue(Tag(), good))) spoil(good, out);
   out.translation_error = hn::Mul(all(kTranslationError), apart);
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), multiple_of_half(q.z)))) {
-    out.rotation_error = hn::IfThenElse(have_exact_rotation(a, b), zero, out.rotation_error);
-  }
+  const LaneMask may_be_exact = hn::Or(multiple_of_half(a.w), multiple_of_half(q.z));
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), may_be_exact))) set_exactness(a, b, apart, out);
   return out;
 }
 

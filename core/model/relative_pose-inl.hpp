@@ -86,20 +86,22 @@ HWY_INLINE Vec4 turn_back(Vec4 q, Vec4 v) {
   return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
 }
 
-// Do both rotations permute the axes, or are they equal? The relative rotation then has no error.
-// Of a unit quaternion, multiples of 1/2 permute the axes, and their products are exact.
-inline HWY_NOINLINE bool has_exact_rotation(const Pose& a, const Pose& b) {
-  const auto permutes_axes = [](const Eigen::Quaterniond& q) {
-    const Eigen::Array4d twice = 2.0 * q.coeffs().array();
-    return (twice == twice.round()).all();
-  };
-  const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
-  return p == q || p == -q || (permutes_axes(a.orientation) && permutes_axes(b.orientation));
+// Of a unit quaternion, multiples of 1/2 permute the axes, and products of two such are exact.
+inline bool permutes_axes(const Eigen::Quaterniond& q) {
+  const Eigen::Array4d twice = 2.0 * q.coeffs().array();
+  return (twice == twice.round()).all();
 }
-// A quick look that moving orientations do not pass: z of conj(a) b is 0, 1/2 or 1 then, which have
-// no digits.
-HWY_INLINE bool may_have_exact_rotation(double z) {
-  return HWY_UNLIKELY(std::bit_cast<std::uint64_t>(z) << 12 == 0);
+inline HWY_NOINLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
+  const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
+  const bool a_permutes = permutes_axes(a.orientation);
+  if (p == q || p == -q || (a_permutes && permutes_axes(b.orientation))) r.rotation_error = 0.0;
+  if (a_permutes) r.translation_error = kPermutedTranslationError * r.apart;
+}
+// A quick look that moving orientations do not pass: w of a or z of conj(a) b is 0, 1/2 or 1 where
+// anything is exact, which have no digits.
+HWY_INLINE bool may_be_exact(double w_of_a, double z_of_both) {
+  const auto has_digits = [](double x) { return std::bit_cast<std::uint64_t>(x) << 12 != 0; };
+  return !has_digits(w_of_a) || !has_digits(z_of_both);
 }
 
 // For quaternions that are not of unit length to rounding, and frames that are far apart.
@@ -124,8 +126,8 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     r.apart = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.apart);
   }
-  if (may_have_exact_rotation(lane(q, 2)) && has_exact_rotation(world_from_a, world_from_b)) {
-    r.rotation_error = 0.0;
+  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
+    set_exactness(world_from_a, world_from_b, r);
   }
   return r;
 }

@@ -41,9 +41,11 @@ inline constexpr double kProductError = 9 * kUlp;
 // The product with it: 2, the sum: 1.
 inline constexpr double kTurnError = 21.25 * kUlp;
 
-// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself.
+// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
+// the last where the turn only permutes axes.
 inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
+inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
 // How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
 inline constexpr double kStretched = kMatrixError / kRotationError;
