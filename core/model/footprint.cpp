@@ -14,8 +14,7 @@ std::size_t footprint(const ConvexPolyhedron& body) noexcept {
   const Opening& opening = body.opening;
   return sizeof body +
          bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
-                  body.anchors, body.rays, body.exact_normals, opening.rays, body.neighbours,
-                  body.facets_beside) +
+                  body.anchors, body.rays, opening.rays, body.neighbours, body.facets_beside) +
          body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
 }
 

@@ -5,9 +5,7 @@
 // 1e140.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 
 namespace clearance {
 
@@ -48,32 +46,6 @@ constexpr DoubleDouble product(double a, double b) noexcept {
 }  // namespace exact
 
 constexpr DoubleDouble operator-(const DoubleDouble& a) noexcept { return {-a.high, -a.low}; }
-
-namespace exact {
-
-// The same sum, most of it in the last part: errors of sums are summed up again, until mostly
-// nothing is left.
-template <std::size_t kCount>
-constexpr void distil(std::array<double, kCount>& parts) noexcept {
-  for (std::size_t pass = 0; pass < kCount; ++pass) {
-    for (std::size_t i = 1; i < kCount; ++i) {
-      const DoubleDouble s = sum(parts[i - 1], parts[i]);
-      parts[i] = s.high;
-      parts[i - 1] = s.low;
-    }
-  }
-}
-
-// Do these add up to zero or less, for certain?
-template <std::size_t kCount>
-constexpr bool sum_is_not_positive(std::array<double, kCount> parts) noexcept {
-  distil(parts);
-  double rest = 0.0;
-  for (std::size_t i = 0; i + 1 < kCount; ++i) rest += parts[i] < 0.0 ? -parts[i] : parts[i];
-  return parts[kCount - 1] <= -2.0 * rest;
-}
-
-}  // namespace exact
 
 constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) noexcept {
   const DoubleDouble s = exact::sum(a.high, b.high), t = exact::sum(a.low, b.low);
