@@ -85,9 +85,6 @@ struct ConvexPolyhedron {
   // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
-  // Of an unbounded body, a facet each: its exact outward normal up to a positive factor, zero
-  // where no three doubles are.
-  std::vector<Vec3> exact_normals;
   RecessionCone recession_cone;  // of an unbounded body; made by add_query_tables()
 
   // The same once more in the order in which the queries read it; made by

@@ -16,8 +16,8 @@ struct DistanceOptions {
   // is kFarAway then, and the distance the lower bound.
   double far_away = kInfinity;
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
-  // Where they are not certified apart, the status is kDepthNotAsked then and the lower bound may be
-  // -infinity.
+  // Where they are not certified apart, the status is kDepthNotAsked then and the lower bound may
+  // be -infinity.
   bool depth = true;
 };
 

@@ -22,8 +22,8 @@ namespace clearance {
 [[nodiscard]] std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
                                          const Vec3& p, double slack = 0.0) noexcept;
 
-// Facets may be level to rounding, and which of their planes a point lies on is rounding's choice:
-// from one of them to that whose polygon p is in.
+// Facets may be parallel to within rounding, and which of their planes a point lies on is
+// rounding's choice: from one of them to that whose polygon p is in.
 [[nodiscard]] std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
                                        const Vec3& p) noexcept;
 

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "core/active_set/separating_direction.hpp"
-#include "core/active_set/unbounded_separation.hpp"
 #include "core/model/support_function.hpp"
+#include "core/numerics/error_constants.hpp"
 
 namespace clearance {
 namespace {
 
-using towards_case::across;
-using towards_case::along;
+using direction_case::across;
+using direction_case::along;
 
 void add_direction(Separators& list, const Vec3& v) noexcept {
   const double length = v.norm();
@@ -21,21 +21,33 @@ void add_direction(Separators& list, const Vec3& v) noexcept {
 void add_facets(Separators& list, const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (a.feature() == FeatureKind::kFacet) list.add({a.facet().normal, a.index(), kNone});
   if (b.feature() == FeatureKind::kFacet) {
-    list.add({-towards_case::normal_of(b), kNone, b.index()});
+    list.add({-direction_case::normal_of(b), kNone, b.index()});
   }
 }
 
 void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFeature& b,
                         const Vec3& between) noexcept {
-  const Vec3 n = towards_case::across_both(along(a), along(b));
+  const Vec3 n = direction_case::across_both(along(a), along(b));
   add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
-double reach(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
-             double within) noexcept {
+double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
+                     double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
   const Vec3 m = s.direction_to_own(normal);
   return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
+}
+
+// Has every ray of the body a negative directional derivative along `normal`, beyond rounding? Of
+// the body whose facet has this normal, none has a positive one.
+bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
+                double direction_error) noexcept {
+  if (facet != kNone) return true;
+  const RecessionCone& cone = s.body().recession_cone;
+  const Vec3 m = s.direction_to_own(normal);
+  return cone.line_count == 0 && std::ranges::all_of(cone.rays, [&](const Vec3& ray) {
+           return m.dot(ray) < -(kDerivativeError + direction_error);
+         });
 }
 
 }  // namespace
@@ -58,9 +70,14 @@ Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
 
 double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                   const Precision& p) noexcept {
-  if (!a.body().bounded() && !b.body().bounded()) return separation_of_unbounded(s, a, b);
-  const double of_a = reach(a, s.normal, s.facet_of_a, p.reach_a);
-  const double of_b = reach(b, -s.normal, s.facet_of_b, p.reach_b);
+  if (!a.body().bounded() && !b.body().bounded()) {
+    const double error = b.pose()->rotation_error;
+    const bool ends = ends_along(a, s.normal, s.facet_of_a, error) &&
+                      ends_along(b, -s.normal, s.facet_of_b, error);
+    if (!ends) return -kInfinity;
+  }
+  const double of_a = support_value(a, s.normal, s.facet_of_a, p.reach_a);
+  const double of_b = support_value(b, -s.normal, s.facet_of_b, p.reach_b);
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }

@@ -5,7 +5,9 @@
 // (§3.4.2.1).
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "core/active_set/active_feature.hpp"
 
@@ -125,40 +127,25 @@ inline void inside_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& 
 
 }  // namespace delta_case
 
-// p has at most as many dimensions as q: the half of Table 3.1 that is not its mirror image.
-inline void closest_points(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
-                           Vec3& to_q) noexcept {
-  using namespace delta_case;
-  switch (static_cast<int>(p.feature()) * 4 + static_cast<int>(q.feature())) {
-    case 0:
-      return vertex_vertex(p, q, to_p, to_q);
-    case 1:
-      return vertex_edge(p, q, to_p, to_q);
-    case 2:
-      return vertex_facet(p, q, to_p, to_q);
-    case 3:
-      return vertex_inside(p, q, to_p, to_q);
-    case 5:
-      return edge_edge(p, q, to_p, to_q);
-    case 6:
-      return edge_facet(p, q, to_p, to_q);
-    case 7:
-      return edge_inside(p, q, to_p, to_q);
-    case 10:
-      return facet_facet(p, q, to_p, to_q);
-    case 11:
-      return facet_inside(p, q, to_p, to_q);
-    default:
-      return inside_inside(p, q, to_p, to_q);
-  }
-}
+using DeltaCase = void(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
+                       Vec3& to_q) noexcept;
+
+// [p][q], in the order of FeatureKind: the half of Table 3.1 that is not its mirror image.
+inline constexpr std::array<std::array<DeltaCase*, 4>, 4> kDeltaTable = {
+    {{delta_case::vertex_vertex, delta_case::vertex_edge, delta_case::vertex_facet,
+      delta_case::vertex_inside},
+     {nullptr, delta_case::edge_edge, delta_case::edge_facet, delta_case::edge_inside},
+     {nullptr, nullptr, delta_case::facet_facet, delta_case::facet_inside},
+     {nullptr, nullptr, nullptr, delta_case::inside_inside}}};
 
 [[nodiscard]] inline Delta delta(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Delta result;
-  if (a.feature() <= b.feature()) {
-    closest_points(a, b, result.a, result.b);
+  const auto of_a = static_cast<std::size_t>(a.feature());
+  const auto of_b = static_cast<std::size_t>(b.feature());
+  if (of_a <= of_b) {
+    kDeltaTable[of_a][of_b](a, b, result.a, result.b);
   } else {
-    closest_points(b, a, result.b, result.a);
+    kDeltaTable[of_b][of_a](b, a, result.b, result.a);
   }
   return result;
 }

@@ -15,7 +15,7 @@ constexpr std::uint16_t kIterations = 1000;
 // Steps that bring no gain in doubles and yet are steps in exact arithmetic: along edges shorter
 // than the rounding of their ends, as where four planes all but meet. More of them mean that
 // rounding goes in circles.
-constexpr int kLevelSteps = 12;
+constexpr int kStepsWithoutGain = 12;
 
 // One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1); where
 // that would take them apart, both go the same fraction of the way, which cannot. True if nothing
@@ -47,27 +47,28 @@ void release(ActiveFeature& side, const Lambda& l) noexcept {
 
 // Two edges that all but point away from each other generate the facet between them by digits that
 // rounding takes: then neither leads closer, and yet the facet does.
-bool leave_for_facet(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
+bool leave_for_facet(ActiveFeature& side, const Vec3& direction_in_common) noexcept {
   if (side.feature() != FeatureKind::kVertex) return false;
-  const Vec3 towards = side.direction_to_own(towards_in_common);
-  const Lambda facet = lambda_case::of_facets_at_vertex(side, towards);
-  if (!(facet.rate > kDerivativeError * towards.norm())) return false;
+  const Vec3 direction = side.direction_to_own(direction_in_common);
+  const Lambda facet = lambda_case::of_facets_at_vertex(side, direction);
+  if (!(facet.derivative > kDerivativeError * direction.norm())) return false;
   release(side, facet);
   return true;
 }
 
-// On the far side of a body, where facets are level to rounding, no edge and no facet leads closer,
-// and yet its inside does: a body's farthest points along `towards` are those that it does not. The
-// inside itself may be that thin (of the body's size), and beyond that rounding decides.
+// On the far side of a body, where facets are parallel to within rounding, no edge and no facet
+// leads closer, and yet its inside does: a body's farthest points along the direction are those
+// that it does not. The inside itself may be that thin (of the body's size), and beyond that
+// rounding decides.
 constexpr double kThin = 0x1p-44;
 
-bool leave_for_inside(ActiveFeature& side, const Vec3& towards_in_common) noexcept {
+bool leave_for_inside(ActiveFeature& side, const Vec3& direction_in_common) noexcept {
   if (side.feature() == FeatureKind::kInside) return false;
   const ConvexPolyhedron& body = side.body();
-  const Vec3 towards = side.direction_to_own(towards_in_common);
-  const double thin = kThin * towards.norm();
-  const bool closer = (body.interior - side.own()).dot(towards) > thin * body.bounding_radius ||
-                      body.recession_cone.inwards.dot(towards) > thin;
+  const Vec3 direction = side.direction_to_own(direction_in_common);
+  const double thin = kThin * direction.norm();
+  const bool closer = (body.interior - side.own()).dot(direction) > thin * body.bounding_radius ||
+                      body.recession_cone.inwards.dot(direction) > thin;
   if (closer) side.place_inside(side.own());
   return closer;
 }
@@ -79,28 +80,28 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
     return outcome;
   };
   double closest2 = kInfinity;
-  int level = 0;
+  int without_gain = 0;
   while (outcome.iterations < kIterations) {
     ++outcome.iterations;
     if (!step(a, b, delta(a, b))) continue;
-    const Towards direction = towards(a, b);
+    const SeparatingDirection direction = separating_direction(a, b);
     outcome.towards = direction.vector;
     const double distance2 = (b.common() - a.common()).squaredNorm();
     if (distance2 <= contact * contact) return ended(Dqp3End::kContact);
     if (distance2 < closest2) {
       closest2 = distance2;
-    } else if (++level > kLevelSteps) {
+    } else if (++without_gain > kStepsWithoutGain) {
       return ended(Dqp3End::kStalled);
     }
     const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
-    const double best = std::max(of_a.rate, of_b.rate);
+    const double best = std::max(of_a.derivative, of_b.derivative);
     if (best * best < kDerivativeError * kDerivativeError * distance2) {
       if (leave_for_facet(a, outcome.towards) || leave_for_facet(b, -outcome.towards)) continue;
       if (leave_for_inside(a, outcome.towards) || leave_for_inside(b, -outcome.towards)) continue;
       return ended(Dqp3End::kOptimal);
     }
     if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
-    if (of_a.rate >= of_b.rate) {
+    if (of_a.derivative >= of_b.derivative) {
       release(a, of_a);
     } else {
       release(b, of_b);
@@ -112,12 +113,12 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
 // Between a point inside and the planes of facets that meet at a sharp edge or corner there may be
 // no more than rounding, and the point past the edge by much more: of the body's reach and of how
 // far out the point is.
-constexpr double kCertainlyInside = 16 * kUlp;
+constexpr double kInsideBeyondRounding = 16 * kUlp;
 
-// From the inside, unless certainly there, to the facet that is nearest.
+// From the inside, unless there beyond rounding, to the facet that is nearest.
 void leave_inside(ActiveFeature& side) noexcept {
   const ConvexPolyhedron& body = side.body();
-  double least = kCertainlyInside * (body.bounding_radius + side.own().norm());
+  double least = kInsideBeyondRounding * (body.bounding_radius + side.own().norm());
   std::int32_t nearest = kNone;
   for (std::size_t i = 0; i < body.facets.size(); ++i) {
     const double gap = body.facets[i].offset - body.facets[i].normal.dot(side.own());

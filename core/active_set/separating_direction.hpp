@@ -6,13 +6,13 @@
 
 namespace clearance {
 
-struct Towards {
+struct SeparatingDirection {
   Vec3 vector;  // from A towards B, as long as the features are apart, common frame
   bool exact =
       false;  // unit vector good to rounding: at right angles to every active edge, along the facet
 };
 
-namespace towards_case {
+namespace direction_case {
 
 // Edges whose cross product is shorter than this leave too little of its direction.
 inline constexpr double kShortest = 1e-5;
@@ -36,8 +36,8 @@ inline Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
   return (across - across.dot(e) * e).normalized();
 }
 
-inline Towards edge_edge(const ActiveFeature& a, const ActiveFeature& b,
-                         const Vec3& between) noexcept {
+inline SeparatingDirection edge_edge(const ActiveFeature& a, const ActiveFeature& b,
+                                     const Vec3& between) noexcept {
   const Vec3 e = along(a), f = along(b);
   const Vec3 n = e.cross(f);
   const double sine2 = n.squaredNorm();
@@ -45,14 +45,16 @@ inline Towards edge_edge(const ActiveFeature& a, const ActiveFeature& b,
   return {across(across(across(between, f), e), f), false};
 }
 
-inline Towards from_facet(const Vec3& normal, const Vec3& between, bool other_is_vertex) noexcept {
+inline SeparatingDirection from_facet(const Vec3& normal, const Vec3& between,
+                                      bool other_is_vertex) noexcept {
   return {normal.dot(between) * normal, other_is_vertex};
 }
 
-}  // namespace towards_case
+}  // namespace direction_case
 
-[[nodiscard]] inline Towards towards(const ActiveFeature& a, const ActiveFeature& b) noexcept {
-  using namespace towards_case;
+[[nodiscard]] inline SeparatingDirection separating_direction(const ActiveFeature& a,
+                                                              const ActiveFeature& b) noexcept {
+  using namespace direction_case;
   const Vec3 between = b.common() - a.common();
   const bool a_vertex = a.feature() == FeatureKind::kVertex,
              b_vertex = b.feature() == FeatureKind::kVertex;

@@ -53,31 +53,31 @@ class HullBuilder {
  private:
   // The first four points of the order that span space.
   bool make_simplex(const std::vector<int>& order) {
-    std::array<int, 4> corner{order.empty() ? 0 : order[0], kNobody, kNobody, kNobody};
+    std::array<int, 4> vertex{order.empty() ? 0 : order[0], kNobody, kNobody, kNobody};
     int found = order.empty() ? 0 : 1;
     Integer4 plane;
     for (const int point : order) {
-      if (found == 1 && distinct(corner[0], point)) {
-        corner[1] = point;
+      if (found == 1 && distinct(vertex[0], point)) {
+        vertex[1] = point;
         found = 2;
       } else if (found == 2) {
         plane =
-            plane_through(points_.exact(corner[0]), points_.exact(corner[1]), points_.exact(point));
+            plane_through(points_.exact(vertex[0]), points_.exact(vertex[1]), points_.exact(point));
         if (is_zero(plane)) continue;
-        corner[2] = point;
+        vertex[2] = point;
         found = 3;
       } else if (found == 3) {
         const int side = sgn(dot(plane, points_.exact(point)));
         if (side == 0) continue;
-        corner[3] = point;
-        if (side > 0) std::swap(corner[1], corner[2]);
+        vertex[3] = point;
+        if (side > 0) std::swap(vertex[1], vertex[2]);
         found = 4;
         break;
       }
     }
     if (found < 4) return false;
-    // The fourth corner lies below the first three.
-    const auto& [a, b, c, d] = corner;
+    // The fourth vertex lies below the first three.
+    const auto& [a, b, c, d] = vertex;
     add_triangle({a, b, c}, {3, 1, 2});
     add_triangle({b, d, c}, {3, 2, 0});
     add_triangle({c, d, a}, {1, 3, 0});
@@ -96,8 +96,8 @@ class HullBuilder {
     return false;
   }
 
-  int add_triangle(const std::array<int, 3>& corner, const std::array<int, 3>& neighbor) {
-    Triangle triangle{{corner, neighbor}, FilteredPlane(points_, corner)};
+  int add_triangle(const std::array<int, 3>& vertex, const std::array<int, 3>& neighbor) {
+    Triangle triangle{{vertex, neighbor}, FilteredPlane(points_, vertex)};
     if (free_.empty()) {
       triangles_.push_back(std::move(triangle));
       return static_cast<int>(triangles_.size()) - 1;
@@ -163,7 +163,7 @@ class HullBuilder {
       for (std::size_t i = 0; i < 3; ++i) {
         const int across = link.neighbor[i];
         if (!is_seen(across, point)) {
-          horizon_.push_back({link.corner[i], link.corner[(i + 1) % 3], across});
+          horizon_.push_back({link.vertex[i], link.vertex[(i + 1) % 3], across});
         } else if (triangles_[at(across)].alive) {
           triangles_[at(across)].alive = false;
           going_.push_back(across);
@@ -181,7 +181,7 @@ class HullBuilder {
       triangle_from_[at(edge.from)] = fresh;
       HullTriangle& beyond = triangles_[at(edge.beyond)].link;
       for (std::size_t i = 0; i < 3; ++i) {
-        if (beyond.corner[i] == edge.to && beyond.corner[(i + 1) % 3] == edge.from) {
+        if (beyond.vertex[i] == edge.to && beyond.vertex[(i + 1) % 3] == edge.from) {
           beyond.neighbor[i] = fresh;
         }
       }
@@ -214,7 +214,7 @@ class HullBuilder {
   std::vector<int> next_conflict_;  // a point: the next one in its triangle's list
   std::vector<int> sees_;  // a point: the triangle whose list it is in; kNobody: in the hull
   std::vector<int>
-      triangle_from_;      // a horizon corner: the new triangle whose horizon edge starts there
+      triangle_from_;      // a horizon vertex: the new triangle whose horizon edge starts there
   std::vector<int> free_;  // slots of triangles that are gone
   std::vector<int> going_, coming_;
   std::vector<HorizonEdge> horizon_;

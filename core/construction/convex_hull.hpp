@@ -18,19 +18,19 @@
 namespace clearance::exact {
 
 struct HullTriangle {
-  std::array<int, 3> corner;    // counter-clockwise as seen from outside
-  std::array<int, 3> neighbor;  // the triangle across corner[i] -> corner[(i + 1) % 3]
+  std::array<int, 3> vertex;    // counter-clockwise as seen from outside
+  std::array<int, 3> neighbor;  // the triangle across vertex[i] -> vertex[(i + 1) % 3]
 };
 
 // The boundary of the hull, triangulated. Empty when all points lie in one plane. The same input
 // gives the same triangles.
 [[nodiscard]] std::vector<HullTriangle> convex_hull(const PointSet& points);
 
-// A face of the hull and its true corners, counter-clockwise as seen from outside.
+// A face of the hull and its true vertices, counter-clockwise as seen from outside.
 struct HullFace {
-  Integer4 plane;             // plane_through() of corners: h.p <= 0 for every point p of the hull
-  std::vector<int> corner;    // at least three; each belongs to three faces or more
-  std::vector<int> neighbor;  // the face across corner[i] -> corner[i + 1]
+  Integer4 plane;             // plane_through() of vertices: h.p <= 0 for every point p of the hull
+  std::vector<int> vertex;    // at least three; each belongs to three faces or more
+  std::vector<int> neighbor;  // the face across vertex[i] -> vertex[i + 1]
 };
 
 [[nodiscard]] std::vector<HullFace> hull_faces(const PointSet& points,

@@ -7,20 +7,20 @@ namespace {
 
 constexpr int kUnknown = -1;
 
-// A directed edge: corner[side] -> corner[side + 1] of a triangle.
+// A directed edge: vertex[side] -> vertex[side + 1] of a triangle.
 struct HalfEdge {
   int triangle;
   std::size_t side;
 };
 
-// The corner of `triangle` that its neighbour `base` does not share.
+// The vertex of `triangle` that its neighbour `base` does not share.
 int apex(const HullTriangle& triangle, const HullTriangle& base) {
-  for (const int corner : triangle.corner) {
-    if (std::find(base.corner.begin(), base.corner.end(), corner) == base.corner.end()) {
-      return corner;
+  for (const int vertex : triangle.vertex) {
+    if (std::find(base.vertex.begin(), base.vertex.end(), vertex) == base.vertex.end()) {
+      return vertex;
     }
   }
-  return triangle.corner[0];
+  return triangle.vertex[0];
 }
 
 // The face of every triangle: coplanar neighbours share one.
@@ -31,7 +31,7 @@ std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriang
   count = 0;
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
     if (face[seed] != kUnknown) continue;
-    FilteredPlane plane(points, triangles[seed].corner);
+    FilteredPlane plane(points, triangles[seed].vertex);
     face[seed] = count;
     open.push_back(static_cast<int>(seed));
     while (!open.empty()) {
@@ -58,10 +58,10 @@ HalfEdge next_on_boundary(std::span<const HullTriangle> triangles, const std::ve
     const HullTriangle& triangle = triangles[at(next.triangle)];
     const int across = triangle.neighbor[next.side];
     if (face[at(across)] != face[at(next.triangle)]) return next;
-    const int pivot = triangle.corner[next.side];
+    const int pivot = triangle.vertex[next.side];
     const HullTriangle& other = triangles[at(across)];
     std::size_t side = 0;
-    while (other.corner[side] != pivot) ++side;
+    while (other.vertex[side] != pivot) ++side;
     next = {across, side};
   }
 }
@@ -77,11 +77,11 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
   };
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     HullFace& result = faces[at(face[t])];
-    if (!result.corner.empty()) continue;
+    if (!result.vertex.empty()) continue;
     for (std::size_t side = 0; side < 3; ++side) {
       HalfEdge start{static_cast<int>(t), side};
       if (beyond(start) == face[t]) continue;
-      // Walk to where the neighbour changes, so that the loop starts at a true corner.
+      // Walk to where the neighbour changes, so that the loop starts at a true vertex.
       HalfEdge edge = next_on_boundary(triangles, face, start);
       while (beyond(edge) == beyond(start)) edge = next_on_boundary(triangles, face, edge);
       start = edge;
@@ -89,13 +89,13 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
       do {
         if (beyond(edge) != last_beyond) {
           last_beyond = beyond(edge);
-          result.corner.push_back(triangles[at(edge.triangle)].corner[edge.side]);
+          result.vertex.push_back(triangles[at(edge.triangle)].vertex[edge.side]);
           result.neighbor.push_back(last_beyond);
         }
         edge = next_on_boundary(triangles, face, edge);
       } while (edge.triangle != start.triangle || edge.side != start.side);
-      result.plane = plane_through(points.exact(result.corner[0]), points.exact(result.corner[1]),
-                                   points.exact(result.corner[2]));
+      result.plane = plane_through(points.exact(result.vertex[0]), points.exact(result.vertex[1]),
+                                   points.exact(result.vertex[2]));
       reduce(result.plane);
       break;
     }

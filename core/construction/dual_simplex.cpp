@@ -160,7 +160,7 @@ int DepthProgramme::violated(bool first) const {
   }
   // Rounding of x, products and sums: at most 8 * 2^-53 of the sum of absolute values; 16 to be
   // safe.
-  constexpr double kErrorUnit = 0x1p-49;
+  constexpr double kPricingError = 0x1p-49;
   int worst = kNoConstraint;
   double largest = 0.0;
   std::vector<int> unsure;
@@ -172,7 +172,7 @@ int DepthProgramme::violated(bool first) const {
       value += a[i] * x[i];
       spread += std::abs(a[i] * x[i]);
     }
-    const double error = kErrorUnit * spread + std::numeric_limits<double>::min();
+    const double error = kPricingError * spread + std::numeric_limits<double>::min();
     if (value < -error) continue;
     if (!(value > error)) {
       unsure.push_back(static_cast<int>(c));

@@ -1,7 +1,7 @@
 // How deep inside a set of half-spaces can a point be? A linear programme, solved exactly.
 //
 // max t subject to n.x + m t <= d for every row, with m > 0 the power of two next below |n|'s
-// largest component: four variables. Dual simplex from a corner of a box: pivots in integers;
+// largest component: four variables. Dual simplex from a vertex of a box: pivots in integers;
 // pricing in doubles, with an exact check wherever rounding could matter. At the end every row
 // holds exactly.
 #pragma once

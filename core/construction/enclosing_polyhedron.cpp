@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMostRounds = 12;
 
-// The bodies' hull: a body is the hull of balls of these radii around its anchors.
+// The bodies' hull: a body is the hull of spheres of these radii around its anchors.
 class Outline {
  public:
   explicit Outline(std::span<const PlacedShape> bodies) {
@@ -21,11 +21,11 @@ class Outline {
   }
 
   // An offset d with n.x <= d for every point x of the bodies; n as the doubles are, about unit.
-  [[nodiscard]] double reach(const Vec3& n) const {
+  [[nodiscard]] double support_value(const Vec3& n) const {
     const double length = n.norm() * kRoundedUp;
     double farthest = -kInfinity;
-    for (const Ball& ball : balls_) {
-      farthest = std::max(farthest, n.dot(ball.centre) + length * ball.radius);
+    for (const Sphere& sphere : spheres_) {
+      farthest = std::max(farthest, n.dot(sphere.centre) + length * sphere.radius);
     }
     return farthest + 0x1p-49 * size_;  // three roundings of a product, two of the sum
   }
@@ -37,18 +37,18 @@ class Outline {
   // facets of the bodies' hull.
   [[nodiscard]] std::vector<Vec3> samples() const {
     std::vector<Vec3> points;
-    for (const Ball& ball : balls_) {
-      if (ball.round > 0.0) {
-        around(ball, points);
+    for (const Sphere& sphere : spheres_) {
+      if (sphere.round > 0.0) {
+        around(sphere, points);
       } else {
-        points.push_back(ball.centre);
+        points.push_back(sphere.centre);
       }
     }
     return points;
   }
 
  private:
-  struct Ball {
+  struct Sphere {
     Vec3 centre;
     double round;   // the body's radius, m
     double radius;  // and what placing may have moved it, m
@@ -61,31 +61,33 @@ class Outline {
     for (const Vec3& anchor : shape.anchors) {
       const Vec3 centre = transform(body.frame_from_shape, anchor);
       const double radius = (shape.radius + error) * kRoundedUp;
-      balls_.push_back({centre, shape.radius, radius});
+      spheres_.push_back({centre, shape.radius, radius});
       size_ = std::max(size_, (centre.norm() + radius) * kRoundedUp);
     }
   }
 
-  static void around(const Ball& ball, std::vector<Vec3>& points) {
+  static void around(const Sphere& sphere, std::vector<Vec3>& points) {
     for (int x = -1; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) {
         for (int z = -1; z <= 1; ++z) {
           const Vec3 direction(x, y, z);
           if (direction.isZero(0.0)) continue;
-          points.push_back(ball.centre + ball.round * direction.normalized());
+          points.push_back(sphere.centre + sphere.round * direction.normalized());
         }
       }
     }
   }
 
-  std::vector<Ball> balls_;
+  std::vector<Sphere> spheres_;
   double size_ = 0.0;
 };
 
 // The planes to choose from.
 std::vector<HalfSpace> candidates(std::span<const PlacedShape> bodies, const Outline& outline) {
   std::vector<HalfSpace> planes;
-  const auto add = [&](const Vec3& normal) { planes.push_back({normal, outline.reach(normal)}); };
+  const auto add = [&](const Vec3& normal) {
+    planes.push_back({normal, outline.support_value(normal)});
+  };
   if (bodies.size() == 1 && !bodies[0].shape->facets.empty()) {
     for (const Facet& facet : bodies[0].shape->facets) {
       add(transform({.orientation = bodies[0].frame_from_shape.orientation}, facet.normal));
@@ -103,42 +105,42 @@ double beyond(const HalfSpace& plane, const Vec3& point) {
   return plane.normal.dot(point) - plane.offset;
 }
 
-struct Corner {
+struct CutVertex {
   double sticks_out = 0.0;  // by the plane that cuts it off deepest, m
   const HalfSpace* plane = nullptr;
 };
 
-Corner judged(const Vec3& corner, const std::vector<HalfSpace>& planes) {
-  Corner result;
+CutVertex judged(const Vec3& vertex, const std::vector<HalfSpace>& planes) {
+  CutVertex result;
   for (const HalfSpace& plane : planes) {
-    const double depth = beyond(plane, corner);
+    const double depth = beyond(plane, vertex);
     if (depth > result.sticks_out) result = {depth, &plane};
   }
   return result;
 }
 
-// The planes to cut with next, at most `room`: no corner twice when one cut takes most of it off.
+// The planes to cut with next, at most `room`: no vertex twice when one cut takes most of it off.
 std::vector<HalfSpace> next_cuts(const ConvexPolyhedron& body, const std::vector<HalfSpace>& planes,
                                  double tolerance, std::size_t room) {
-  std::vector<std::pair<Corner, Vec3>> corners;
+  std::vector<std::pair<CutVertex, Vec3>> vertices;
   for (const Vertex& vertex : body.vertices) {
-    const Corner corner = judged(vertex.position, planes);
-    if (corner.sticks_out > tolerance) corners.emplace_back(corner, vertex.position);
+    const CutVertex cut_off = judged(vertex.position, planes);
+    if (cut_off.sticks_out > tolerance) vertices.emplace_back(cut_off, vertex.position);
   }
-  std::stable_sort(corners.begin(), corners.end(), [](const auto& left, const auto& right) {
+  std::stable_sort(vertices.begin(), vertices.end(), [](const auto& left, const auto& right) {
     return left.first.sticks_out > right.first.sticks_out;
   });
   // Half of what there is room for, so that later cuts are chosen by what these leave.
   const std::size_t most = std::min(room, std::max<std::size_t>(2, room / 2));
   std::vector<HalfSpace> cuts;
-  for (const auto& [corner, position] : corners) {
+  for (const auto& [cut_off, position] : vertices) {
     if (cuts.size() == most) break;
     const Vec3& point = position;
-    const double enough = 0.5 * corner.sticks_out;
+    const double enough = 0.5 * cut_off.sticks_out;
     const bool done = std::any_of(cuts.begin(), cuts.end(), [&](const HalfSpace& cut) {
       return beyond(cut, point) >= enough;
     });
-    if (!done) cuts.push_back(*corner.plane);
+    if (!done) cuts.push_back(*cut_off.plane);
   }
   return cuts;
 }
@@ -155,9 +157,10 @@ std::optional<ConvexPolyhedron> enclosing_polyhedron(std::span<const PlacedShape
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       const Vec3 normal = sign * Vec3::Unit(axis);
-      const double reach = outline.reach(normal);
-      const bool thin = reach + outline.reach(-normal) < 2.0 * kLeastExtent;  // a bare point's
-      rows.push_back({normal, thin ? reach + kLeastExtent : reach});
+      const double value = outline.support_value(normal);
+      const bool thin =
+          value + outline.support_value(-normal) < 2.0 * kLeastExtent;  // a bare point's
+      rows.push_back({normal, thin ? value + kLeastExtent : value});
     }
   }
   const std::vector<HalfSpace> planes = candidates(bodies, outline);

@@ -115,8 +115,8 @@ class DualReader {
   void number_facets() {
     facet_.assign(planes_.size(), kNone);
     for (const HullFace& face : faces_) {
-      for (const int corner : face.corner) {
-        if (is_row(corner)) facet_[at(corner)] = 0;
+      for (const int vertex : face.vertex) {
+        if (is_row(vertex)) facet_[at(vertex)] = 0;
       }
     }
     for (std::size_t row = 0; row < planes_.size(); ++row) {
@@ -140,14 +140,14 @@ class DualReader {
 
   // Calls visit(left row, right row, dual face it comes from, dual face it goes to) once for each
   // dual edge between two rows. A dual face lies to the left of its boundary, so crossing the dual
-  // edge corner -> next corner from the right to the left is walking with `corner` on the left.
+  // edge vertex -> next vertex from the right to the left is walking with `vertex` on the left.
   template <typename Visit>
   void for_each_edge(const Visit& visit) {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       const HullFace& face = faces_[f];
-      for (std::size_t i = 0; i < face.corner.size(); ++i) {
-        const int left = face.corner[i];
-        const int right = face.corner[(i + 1) % face.corner.size()];
+      for (std::size_t i = 0; i < face.vertex.size(); ++i) {
+        const int left = face.vertex[i];
+        const int right = face.vertex[(i + 1) % face.vertex.size()];
         if (left > right || !is_row(left) || !is_row(right)) continue;
         visit(left, right, face.neighbor[i], static_cast<int>(f));
       }

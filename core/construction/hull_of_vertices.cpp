@@ -54,20 +54,20 @@ Integer4 facet_plane(const Integer4& h, const Integer4& origin) {
   return plane;
 }
 
-// The mean of three corners of a face and one corner beyond its plane.
+// The mean of three vertices of a face and one vertex beyond its plane.
 Integer4 inner_point(std::span<const Vec3> points, const PointSet& relative,
                      const std::vector<HullFace>& faces) {
-  std::vector<int> corners(faces[0].corner.begin(), faces[0].corner.begin() + 3);
-  for (std::size_t f = 1; corners.size() < 4; ++f) {
-    for (const int corner : faces[f].corner) {
-      if (sgn(dot(faces[0].plane, relative.exact(corner))) == 0) continue;
-      corners.push_back(corner);
+  std::vector<int> vertices(faces[0].vertex.begin(), faces[0].vertex.begin() + 3);
+  for (std::size_t f = 1; vertices.size() < 4; ++f) {
+    for (const int vertex : faces[f].vertex) {
+      if (sgn(dot(faces[0].plane, relative.exact(vertex))) == 0) continue;
+      vertices.push_back(vertex);
       break;
     }
   }
   Integer4 sum{0, 0, 0, 1};
-  for (const int corner : corners) {
-    const Integer4 point = homogeneous(points[at(corner)]);
+  for (const int vertex : vertices) {
+    const Integer4 point = homogeneous(points[at(vertex)]);
     for (std::size_t i = 0; i < 3; ++i) sum[i] = sum[i] * point[3] + point[i] * sum[3];
     sum[3] *= point[3];
   }
@@ -76,12 +76,12 @@ Integer4 inner_point(std::span<const Vec3> points, const PointSet& relative,
   return sum;
 }
 
-// Numbers the corners in the order of the input; the rest is kNone.
+// Numbers the vertices in the order of the input; the rest is kNone.
 std::vector<int> number_vertices(std::span<const Vec3> points, const std::vector<HullFace>& faces,
                                  std::vector<Integer4>& nodes) {
   std::vector<int> node(points.size(), kNone);
   for (const HullFace& face : faces) {
-    for (const int corner : face.corner) node[at(corner)] = 0;
+    for (const int vertex : face.vertex) node[at(vertex)] = 0;
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (node[p] == kNone) continue;
@@ -107,9 +107,9 @@ std::variant<Solid, ShapeError> hull_of(std::span<const Vec3> points) {
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const HullFace& face = faces[f];
     solid.planes.push_back(facet_plane(face.plane, origin));
-    for (std::size_t i = 0; i < face.corner.size(); ++i) {
-      const int from = face.corner[i];
-      const int to = face.corner[(i + 1) % face.corner.size()];
+    for (std::size_t i = 0; i < face.vertex.size(); ++i) {
+      const int from = face.vertex[i];
+      const int to = face.vertex[(i + 1) % face.vertex.size()];
       if (from > to) continue;
       solid.edges.push_back({node[at(from)], node[at(to)], static_cast<int>(f), face.neighbor[i]});
     }

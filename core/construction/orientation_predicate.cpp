@@ -10,7 +10,7 @@ namespace {
 // A determinant of four rounded rows is off by at most 17 * 2^-53 of its permanent to first order
 // (8 from the inputs, 3 from products, 6 from sums); 32 leaves room for the permanent's own
 // rounding.
-constexpr double kErrorUnit = 0x1p-48;
+constexpr double kDeterminantError = 0x1p-48;
 // Products of four components stay far from underflow when none is smaller than this beside the
 // largest.
 constexpr long kSmallestExponent = -200;
@@ -44,11 +44,11 @@ PointSet::PointSet(std::span<const Integer4> points) : exact_(points) {
   for (const Integer4& point : points) rounded_.push_back(rounded_copy(point));
 }
 
-FilteredPlane::FilteredPlane(const PointSet& points, const std::array<int, 3>& corners)
-    : corners_(corners) {
-  const std::array<double, 4>& a = points.rounded(corners[0]);
-  const std::array<double, 4>& b = points.rounded(corners[1]);
-  const std::array<double, 4>& c = points.rounded(corners[2]);
+FilteredPlane::FilteredPlane(const PointSet& points, const std::array<int, 3>& vertices)
+    : vertices_(vertices) {
+  const std::array<double, 4>& a = points.rounded(vertices[0]);
+  const std::array<double, 4>& b = points.rounded(vertices[1]);
+  const std::array<double, 4>& c = points.rounded(vertices[2]);
   plane_[3] = 0.0;
   spread_[3] = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -61,9 +61,9 @@ FilteredPlane::FilteredPlane(const PointSet& points, const std::array<int, 3>& c
     const double ca_spread = std::abs(c[j] * a[k]) + std::abs(c[k] * a[j]);
     const double ab_spread = std::abs(a[j] * b[k]) + std::abs(a[k] * b[j]);
     plane_[i] = a[3] * bc + b[3] * ca + c[3] * ab;
-    spread_[i] = kErrorUnit * (a[3] * bc_spread + b[3] * ca_spread + c[3] * ab_spread);
+    spread_[i] = kDeterminantError * (a[3] * bc_spread + b[3] * ca_spread + c[3] * ab_spread);
     plane_[3] -= a[i] * bc;
-    spread_[3] += kErrorUnit * (std::abs(a[i]) * bc_spread);
+    spread_[3] += kDeterminantError * (std::abs(a[i]) * bc_spread);
   }
 }
 
@@ -76,7 +76,7 @@ int FilteredPlane::side(const PointSet& points, int point) {
   if (value < -error) return -1;
   if (!exact_) {
     exact_ = std::make_unique<Integer4>(plane_through(
-        points.exact(corners_[0]), points.exact(corners_[1]), points.exact(corners_[2])));
+        points.exact(vertices_[0]), points.exact(vertices_[1]), points.exact(vertices_[2])));
   }
   return sgn(dot(*exact_, points.exact(point)));
 }

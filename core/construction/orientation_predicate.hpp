@@ -35,13 +35,13 @@ class PointSet {
 // The oriented plane through three points of a set.
 class FilteredPlane {
  public:
-  FilteredPlane(const PointSet& points, const std::array<int, 3>& corners);
+  FilteredPlane(const PointSet& points, const std::array<int, 3>& vertices);
 
-  // 1 on the side from which the corners are seen counter-clockwise, 0 on the plane, -1 below.
+  // 1 on the side from which the vertices are seen counter-clockwise, 0 on the plane, -1 below.
   [[nodiscard]] int side(const PointSet& points, int point);
 
  private:
-  std::array<int, 3> corners_;
+  std::array<int, 3> vertices_;
   std::array<double, 4> plane_;  // plane_through() in doubles
   std::array<double, 4>
       spread_;  // the same sums with every term's absolute value, times the unit of error

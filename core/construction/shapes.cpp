@@ -97,13 +97,13 @@ ShapeResult box(const Vec3& half_extents) {
     return ShapeError{std::string("half extent ") + "xyz"[axis] +
                       " is not a finite number above 0"};
   }
-  std::vector<Vec3> corners;
+  std::vector<Vec3> vertices;
   for (const double z : {-half_extents.z(), half_extents.z()}) {
     for (const double y : {-half_extents.y(), half_extents.y()}) {
-      for (const double x : {-half_extents.x(), half_extents.x()}) corners.emplace_back(x, y, z);
+      for (const double x : {-half_extents.x(), half_extents.x()}) vertices.emplace_back(x, y, z);
     }
   }
-  return polyhedron_from_vertices(corners);
+  return polyhedron_from_vertices(vertices);
 }
 
 ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_high) {
@@ -114,17 +114,17 @@ ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_
     return ShapeError{"a prism's base needs at least three points, found " +
                       std::to_string(base.size())};
   }
-  std::vector<Vec3> corners;
-  corners.reserve(2 * base.size());
+  std::vector<Vec3> vertices;
+  vertices.reserve(2 * base.size());
   for (const double z : {z_low, z_high}) {
     for (std::size_t i = 0; i < base.size(); ++i) {
-      corners.emplace_back(base[i].x(), base[i].y(), z);
-      if (const std::string fault = point_fault(corners.back()); !fault.empty()) {
+      vertices.emplace_back(base[i].x(), base[i].y(), z);
+      if (const std::string fault = point_fault(vertices.back()); !fault.empty()) {
         return ShapeError{"base point " + std::to_string(i + 1) + fault};
       }
     }
   }
-  ShapeResult made = polyhedron_from_vertices(corners);
+  ShapeResult made = polyhedron_from_vertices(vertices);
   if (std::holds_alternative<ShapeError>(made)) {
     return ShapeError{"the prism's base has no area, or the prism is thinner than 1e-12 m"};
   }

@@ -72,7 +72,7 @@ class Assembler {
     if (!lines) add_vertices();
     if (solid_.nodes.empty()) anchor_bare_planes();
     place_facet_points();
-    if (!solid_.rays.empty()) go_on_for_ever();
+    if (!solid_.rays.empty()) add_rays();
     body_.position_error = rounder_.error();
     return std::move(body_);
   }
@@ -170,8 +170,8 @@ class Assembler {
     };
     for (std::int32_t i = 0; i < facet.sides; ++i) {
       const EdgeUse use = use_of(i), next = use_of(i + 1);
-      const std::int32_t corner = body_.edges[at(use.edge)].vertex[1 - use.side];
-      if (corner == kNone || corner != body_.edges[at(next.edge)].vertex[next.side]) continue;
+      const std::int32_t vertex = body_.edges[at(use.edge)].vertex[1 - use.side];
+      if (vertex == kNone || vertex != body_.edges[at(next.edge)].vertex[next.side]) continue;
       if (!(-along(use).dot(along(next)) > kSharpCorner)) continue;
       body_.facet_edges.push_back(use);
       ++facet.limits;
@@ -226,14 +226,10 @@ class Assembler {
   }
 
   // What an unbounded body keeps exactly.
-  void go_on_for_ever() {
+  void add_rays() {
     for (const Integer3& ray : solid_.rays) {
       const RoundedDirection direction = nearest_direction(ray);
       body_.rays.push_back({direction.vector, direction.exact, is_line(ray)});
-    }
-    for (const Integer4& plane : solid_.planes) {
-      const RoundedDirection normal = nearest_direction(head(plane));
-      body_.exact_normals.push_back(normal.exact ? normal.vector : Vec3(Vec3::Zero()));
     }
   }
 

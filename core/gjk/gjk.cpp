@@ -13,34 +13,34 @@ namespace {
 
 constexpr int kRounds = 64;
 
-// A point of the difference body B - A, and where it comes from.
-struct DifferenceCorner {
+// A point of the Minkowski difference B - A, and where it comes from.
+struct DifferenceVertex {
   Vec3 a;      // in frame A
   Vec3 own_b;  // in frame B
   WideVec b;   // the same in frame A
   WideVec difference;
 };
 
-class WideDifference {
+class WideMinkowskiDifference {
  public:
-  WideDifference(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
-                 const Precision& p) noexcept
+  WideMinkowskiDifference(const ActiveFeature& a, const ActiveFeature& b,
+                          const RelativePose& a_from_b, const Precision& p) noexcept
       : a_(a), b_(b), pose_(a_from_b), p_(p) {}
 
-  // The corner farthest along -n, n in the common frame.
-  [[nodiscard]] DifferenceCorner corner(const Vec3& n) const noexcept {
-    return make(farthest(a_.body(), n, p_.reach_a),
-                farthest(b_.body(), -b_.direction_to_own(n), p_.reach_b));
+  // The support point along -n, n in the common frame.
+  [[nodiscard]] DifferenceVertex support_point(const Vec3& n) const noexcept {
+    return make(cut_off_support(a_.body(), n, p_.reach_a),
+                cut_off_support(b_.body(), -b_.direction_to_own(n), p_.reach_b));
   }
-  [[nodiscard]] DifferenceCorner make(const Vec3& a, const Vec3& b_own) const noexcept {
-    DifferenceCorner c{a, b_own, to_common(b_own), {}};
+  [[nodiscard]] DifferenceVertex make(const Vec3& a, const Vec3& b_own) const noexcept {
+    DifferenceVertex c{a, b_own, to_common(b_own), {}};
     c.difference = c.b - wide(c.a);
     return c;
   }
 
  private:
   // Unbounded bodies are cut off far beyond the closest points.
-  static Vec3 farthest(const ConvexPolyhedron& body, const Vec3& m, double reach) noexcept {
+  static Vec3 cut_off_support(const ConvexPolyhedron& body, const Vec3& m, double reach) noexcept {
     Vec3 point = body.anchors[support(body, m).anchor];
     const Ray* steepest = nullptr;
     double slope = 0.0;
@@ -70,45 +70,45 @@ class WideDifference {
 class Simplex {
  public:
   // False when it is there already: no progress is possible.
-  bool add(const DifferenceCorner& c) noexcept {
+  bool add(const DifferenceVertex& c) noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
-      if (corners_[i].a == c.a && narrow(corners_[i].b) == narrow(c.b)) return false;
+      if (vertices_[i].a == c.a && narrow(vertices_[i].b) == narrow(c.b)) return false;
     }
-    corners_[size_++] = c;
+    vertices_[size_++] = c;
     return true;
   }
   // Keeps only what the closest point needs, and returns it.
   ClosestPoint reduce() noexcept {
     std::array<WideVec, 4> points;
-    for (std::size_t i = 0; i < size_; ++i) points[i] = corners_[i].difference;
+    for (std::size_t i = 0; i < size_; ++i) points[i] = vertices_[i].difference;
     ClosestPoint closest = closest_to_origin(points, size_);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < size_; ++i) {
       if (closest.weights[i].high <= 0.0) continue;
-      corners_[kept] = corners_[i];
+      vertices_[kept] = vertices_[i];
       weights_[kept++] = static_cast<double>(closest.weights[i]);
     }
     size_ = kept;
     return closest;
   }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] Vec3 point_on_a() const noexcept { return weighted(&DifferenceCorner::a); }
+  [[nodiscard]] Vec3 point_on_a() const noexcept { return weighted(&DifferenceVertex::a); }
   // In frame B.
-  [[nodiscard]] Vec3 own_point_on_b() const noexcept { return weighted(&DifferenceCorner::own_b); }
+  [[nodiscard]] Vec3 own_point_on_b() const noexcept { return weighted(&DifferenceVertex::own_b); }
   [[nodiscard]] Vec3 point_on_b() const noexcept {
     Vec3 p = Vec3::Zero();
-    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(corners_[i].b);
+    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(vertices_[i].b);
     return p;
   }
 
  private:
-  [[nodiscard]] Vec3 weighted(Vec3 DifferenceCorner::*part) const noexcept {
+  [[nodiscard]] Vec3 weighted(Vec3 DifferenceVertex::*part) const noexcept {
     Vec3 p = Vec3::Zero();
-    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * (corners_[i].*part);
+    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * (vertices_[i].*part);
     return p;
   }
 
-  std::array<DifferenceCorner, 4> corners_;
+  std::array<DifferenceVertex, 4> vertices_;
   std::array<double, 4> weights_{};
   std::size_t size_ = 0;
 };
@@ -131,7 +131,7 @@ void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r, const 
 
 void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& r) noexcept {
-  const WideDifference body(a, b, a_from_b, p);
+  const WideMinkowskiDifference body(a, b, a_from_b, p);
   Simplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.
   const bool near = a.own().norm() <= 4.0 * p.reach_a && b.own().norm() <= 4.0 * p.reach_b;
@@ -143,15 +143,15 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
     improve_upper(a, b, r, simplex, length, p);
     if (simplex.size() == 4 || !(length > 0.0)) break;  // the origin is inside
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
-    const DifferenceCorner next = body.corner(n);
-    const double level = separation({n}, a, b, p);
-    if (level - p.slack > r.lower - p.tight) r.normal = unit_along(n);  // squares may underflow
-    r.lower = std::max(r.lower, level - p.slack);
-    if (length - level <= p.tight || !simplex.add(next)) break;
+    const DifferenceVertex next = body.support_point(n);
+    const double separated = separation({n}, a, b, p);
+    if (separated - p.slack > r.lower - p.tight) r.normal = unit_along(n);  // squares may underflow
+    r.lower = std::max(r.lower, separated - p.slack);
+    if (length - separated <= p.tight || !simplex.add(next)) break;
   }
-  const bool tight = p.converged(r.upper - r.lower);
+  const bool converged = p.converged(r.upper - r.lower);
   if (r.lower > 0.0) {
-    r.status = tight ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
+    r.status = converged ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
   } else {
     r.status = r.upper <= 2.0 * (p.slack + p.tight) ? DistanceStatus::kTouching
                                                     : DistanceStatus::kIterationLimit;

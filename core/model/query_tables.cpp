@@ -154,8 +154,8 @@ void add_query_tables(ConvexPolyhedron& body) {
 std::size_t footprint(const ConvexPolyhedron& body) noexcept {
   return sizeof body +
          bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
-                  body.anchors, body.rays, body.exact_normals, body.recession_cone.rays,
-                  body.neighbours, body.facets_beside) +
+                  body.anchors, body.rays, body.recession_cone.rays, body.neighbours,
+                  body.facets_beside) +
          body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/numerics/error_constants.hpp"
 
@@ -78,17 +79,49 @@ class NearlySupporting {
   std::size_t size_ = 0;
 };
 
-// An upper bound of the directional derivative along m of any unit direction of the cone: along its
-// lines, and across them as its rays have. Their parts across the lines have at least
-// RecessionCone::least along one direction, so that a sum of unit length has no more than 1/least
-// of them, each with the derivative of the steepest ray at most.
-double greatest_derivative(const RecessionCone& cone, const Vec3& m) noexcept {
+// An upper bound of the directional derivative along `across` of any direction of the cone that is
+// of unit length, where `across` is orthogonal to its lines. Parts of the rays across the lines
+// have at least RecessionCone::least along one direction, so that a sum of unit length has no more
+// than 1/least of them, each with the derivative of the steepest ray at most.
+double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcept {
   if (!(cone.least > 0.0)) return kInfinity;
-  const Vec3 across = cone.across_lines(m);
   double steepest = 0.0;
   for (const Vec3& ray : cone.rays) steepest = std::max(steepest, across.dot(ray) + kSlopeError);
+  return steepest / cone.least;
+}
+
+// The same from a direction beside `across` along which all rays have negative derivatives beyond
+// rounding: then it is the tilt against that direction. Tried: the direction past the steepest ray.
+double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
+  const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
+  const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
+  if (steepest == cone.rays.end()) return kInfinity;
+  const Vec3 way = cone.across_lines(*steepest);
+  const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
+  const Vec3 past = cone.across_lines(across - step * way);
+  for (const Vec3& ray : cone.rays) {
+    if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
+  }
+  return (across - past).norm();
+}
+
+// An upper bound of the directional derivative along m of any unit direction of the cone: along its
+// lines, and beside them as its rays have across the lines.
+double cone_derivative(const RecessionCone& cone, const Vec3& m,
+                       double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
+  const Vec3 across = cone.across_lines(m);
   const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  return steepest / cone.least + of_lines;
+  return of_rays(cone, across) + of_lines;
+}
+
+// The same from the facets: no direction of the cone has a positive derivative along their normals,
+// nor along m one above the tilt of m against a normal.
+double derivative_by_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+  double tilt2 = kInfinity;
+  for (const Facet& facet : body.facets) {
+    tilt2 = std::min(tilt2, (m - facet.normal).squaredNorm());
+  }
+  return std::sqrt(tilt2) + kSlopeError;
 }
 
 }  // namespace
@@ -129,7 +162,12 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 // longer than the sum.
 double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
-  const double rate = greatest_derivative(body.recession_cone, m);
+  const RecessionCone& cone = body.recession_cone;
+  double rate = cone_derivative(cone, m, derivative_by_rays);
+  if (rate > kSlopeError) {
+    rate = std::min(
+        {rate, cone_derivative(cone, m, derivative_past_steepest), derivative_by_facets(body, m)});
+  }
   return rate * (within + body.bounding_radius);
 }
 

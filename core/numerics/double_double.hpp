@@ -5,9 +5,7 @@
 // 1e140.
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 
 namespace clearance {
 
@@ -43,22 +41,6 @@ constexpr DoubleDouble product(double a, double b) noexcept {
   const double p = a * b;
   const DoubleDouble x = split(a), y = split(b);
   return {p, ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low};
-}
-
-// Do these add up to zero or less beyond rounding? Errors of sums are summed up again, until most
-// of the sum is in the last part and mostly nothing in the others.
-template <std::size_t kCount>
-constexpr bool sum_is_not_positive(std::array<double, kCount> parts) noexcept {
-  for (std::size_t pass = 0; pass < kCount; ++pass) {
-    for (std::size_t i = 1; i < kCount; ++i) {
-      const DoubleDouble s = sum(parts[i - 1], parts[i]);
-      parts[i] = s.high;
-      parts[i - 1] = s.low;
-    }
-  }
-  double rest = 0.0;
-  for (std::size_t i = 0; i + 1 < kCount; ++i) rest += parts[i] < 0.0 ? -parts[i] : parts[i];
-  return parts[kCount - 1] <= -2.0 * rest;
 }
 
 }  // namespace exact

@@ -1,4 +1,4 @@
-// The arcs of a body against another of many corners: see core/penetration/normal_search.hpp.
+// The arcs of a body against another of many vertices: see core/penetration/normal_search.hpp.
 #include <algorithm>
 
 #include "core/model/support_function.hpp"
@@ -7,12 +7,12 @@
 namespace clearance {
 
 // Most arcs lie between facets that one and the same point is deep enough below: Y's lowest; or,
-// where the bodies are deep in each other, its inner ball.
-void DepthSearch::arcs(DeepestPoints& of_y) noexcept {
+// where the bodies are deep in each other, its inner sphere.
+void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   lower_to(best_.height);
-  const bool ball = of_y.ball() != nullptr;
-  auto open = of_y.list_not_below(ball ? *of_y.ball() : of_y.points()[0], best_.height);
-  if (ball && open.size() > body_.x().facets.size() / 2) {
+  const bool sphere = of_y.sphere() != nullptr;
+  auto open = of_y.list_not_below(sphere ? *of_y.sphere() : of_y.points()[0], best_.height);
+  if (sphere && open.size() > body_.x().facets.size() / 2) {
     open = of_y.list_not_below(of_y.points()[0], best_.height);
   }
   for (const std::uint16_t facet : open) {
@@ -22,37 +22,37 @@ void DepthSearch::arcs(DeepestPoints& of_y) noexcept {
 }
 
 // Of an arc that ends at two listed facets, the first sees to it.
-void DepthSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
+void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   const ConvexPolyhedron& x = body_.x();
   const Facet& here = x.facets[facet];
-  const Vec3 corner = corner_below(facet, of_y);
+  const Vec3 vertex = deepest_vertex_below(facet, of_y);
   for (std::int32_t k = here.first_side; k < here.first_side + here.sides; ++k) {
     const std::int32_t other = x.facets_beside[k];
     if (other < facet && of_y.is_listed(other)) continue;
-    const bool looked_up = of_y.corner(facet) != DeepestPoints::kNoCorner &&
-                           of_y.corner(other) != DeepestPoints::kNoCorner;
+    const bool looked_up = of_y.vertex(facet) != DeepestPoints::kNoVertex &&
+                           of_y.vertex(other) != DeepestPoints::kNoVertex;
     if (!looked_up && of_y.one_is_below(here, x.facets[other], best_.height)) continue;
-    const Vec3 beside = corner_below(other, of_y);
-    if (settles(here, corner, x.facets[other], beside, of_y.ball())) continue;
-    arc_from(x.facet_edges[k], corner, beside);
+    const Vec3 beside = deepest_vertex_below(other, of_y);
+    if (settles(here, vertex, x.facets[other], beside, of_y.sphere())) continue;
+    arc_from(x.facet_edges[k], vertex, beside);
   }
 }
 
-// The corner of Y that was looked up below a facet; or the deepest of those held against all, if it
-// is deep enough. What a ball has settled is looked up now.
-Vec3 DepthSearch::corner_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
-  if (of_y.corner(facet) == DeepestPoints::kNoCorner) {
+// The vertex of Y that was looked up below a facet; or the deepest of those held against all, if it
+// is deep enough. What a sphere has settled is looked up now.
+Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
+  if (of_y.vertex(facet) == DeepestPoints::kNoVertex) {
     const Facet& here = body_.x().facets[facet];
     const DeepestPoints::Point* deepest = nullptr;
     for (const DeepestPoints::Point& point : of_y.points()) {
-      if (&point == of_y.ball()) continue;
+      if (&point == of_y.sphere()) continue;
       if (deepest == nullptr || point.below(here) > deepest->below(here)) deepest = &point;
     }
     if (deepest->below(here) >= goal()) return deepest->at;
     const std::uint16_t list[] = {static_cast<std::uint16_t>(facet)};
-    look_up_farthest(body_.x(), body_.y(), body_.y_from_x().turn, list, of_y.corners());
+    look_up_farthest(body_.x(), body_.y(), body_.y_from_x().turn, list, of_y.vertices());
   }
-  return body_.point_from_y(body_.y().anchors[of_y.corner(facet)]);
+  return body_.point_from_y(body_.y().anchors[of_y.vertex(facet)]);
 }
 
 }  // namespace clearance

@@ -16,17 +16,17 @@ std::size_t few_of(const ConvexPolyhedron& body) noexcept {
 
 }  // namespace
 
-// A body of few corners: with all of them held against all facets, what is known of each is exact.
-void DepthSearch::take_least(const Facing& facing, const DeepestCorners& corners) noexcept {
-  const std::int32_t facet = corners.where_least();
+// A body of few vertices: with all of them held against all facets, what is known of each is exact.
+void NormalSearch::take_least(const Facing& facing, const DeepestVertices& vertices) noexcept {
+  const std::int32_t facet = vertices.where_least();
   const Facet& f = facing.body.facets[facet];
-  lower_to(corners.least());
-  improve(corners.least(), facing.source == Source::kFacetOfX ? f.normal : facing.against(f),
+  lower_to(vertices.least());
+  improve(vertices.least(), facing.source == Source::kFacetOfX ? f.normal : facing.against(f),
           facing.source, facet);
 }
 
-// The corner that is the deepest below a facet for certain.
-std::int32_t DepthSearch::look_up(const Facing& facing, std::int32_t facet) noexcept {
+// The vertex that is certainly the deepest below a facet.
+std::int32_t NormalSearch::look_up(const Facing& facing, std::int32_t facet) noexcept {
   const Facet& f = facing.body.facets[facet];
   const Vec3 m = facing.against(f);
   const std::int32_t anchor = support(facing.other, m).anchor;
@@ -36,24 +36,24 @@ std::int32_t DepthSearch::look_up(const Facing& facing, std::int32_t facet) noex
   return anchor;
 }
 
-// What the points leave open: the deepest corner below the facet that is least deep is one more to
+// What the points leave open: the deepest vertex below the facet that is least deep is one more to
 // hold against all facets, as long as it brings the goal nearer (which it hardly does where the
-// last query's direction was the first to beat); or else the other body's inner ball, and then
+// last query's direction was the first to beat); or else the other body's inner sphere, and then
 // again.
-DeepestPoints::Shallow DepthSearch::narrow_down(const Facing& facing,
-                                                DeepestPoints& points) noexcept {
+DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
+                                                 DeepestPoints& points) noexcept {
   DeepestPoints::Shallow shallow = points.list_shallow(settled());
   bool nearer = steady_ == 0.0;
   while (shallow.facets.size() > few_of(facing.body) && !ended_early()) {
-    if (nearer && points.room_beside_ball()) {
+    if (nearer && points.room_beside_sphere()) {
       const double before = best_.height;
       const std::int32_t anchor = look_up(facing, shallow.where_least);
       nearer = best_.height < before;
       if (!nearer) continue;
       points.add(facing.body_from_other(facing.other.anchors[anchor]));
-    } else if (points.ball() == nullptr) {
-      points.add_ball(facing.body_from_other(facing.other.interior), facing.other.inner_radius,
-                      rounding_of_place());
+    } else if (points.sphere() == nullptr) {
+      points.add_sphere(facing.body_from_other(facing.other.interior), facing.other.inner_radius,
+                        rounding_of_place());
       nearer = true;
     } else {
       break;
@@ -63,64 +63,64 @@ DeepestPoints::Shallow DepthSearch::narrow_down(const Facing& facing,
   return shallow;
 }
 
-// What is open then. A corner that need not be the deepest is enough where it is deep enough; where
+// What is open then. A vertex that need not be the deepest is enough where it is deep enough; where
 // it is not, the deepest is looked for.
-void DepthSearch::look_at_facets(const Facing& facing, DeepestPoints& points) noexcept {
+void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) noexcept {
   const DeepestPoints::Shallow shallow = narrow_down(facing, points);
   if (ended_early()) return;
   lower_to(shallow.rest);
   if (shallow.facets.size() <= few_of(facing.body)) {
-    return look_at_few(facing, shallow.facets, points.corners());
+    return look_at_few(facing, shallow.facets, points.vertices());
   }
   const Mat3 turn = facing.body_from_other.turn.transpose();
   for (std::size_t k = 0; k < shallow.facets.size() && !ended_early(); k += kLookedUpTogether) {
     const auto some =
         shallow.facets.subspan(k, std::min(kLookedUpTogether, shallow.facets.size() - k));
-    look_up_farthest(facing.body, facing.other, turn, some, points.corners());
+    look_up_farthest(facing.body, facing.other, turn, some, points.vertices());
     for (const std::uint16_t facet : some) {
-      const std::int32_t corner = points.corner(facet);
-      if (!is_settled(facing, facet, corner)) {
-        points.corners()[facet] = static_cast<std::uint16_t>(look_up(facing, facet));
+      const std::int32_t vertex = points.vertex(facet);
+      if (!is_settled(facing, facet, vertex)) {
+        points.vertices()[facet] = static_cast<std::uint16_t>(look_up(facing, facet));
       }
     }
   }
 }
 
 // One by one: what was found for one of them settles most of those beside it.
-void DepthSearch::look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
-                              std::uint16_t* corners) noexcept {
+void NormalSearch::look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
+                               std::uint16_t* vertices) noexcept {
   std::int32_t last = kNone;
   for (const std::uint16_t facet : facets) {
     if (last == kNone || !is_settled(facing, facet, last)) last = look_up(facing, facet);
     if (ended_early()) return;
-    corners[facet] = static_cast<std::uint16_t>(last);
+    vertices[facet] = static_cast<std::uint16_t>(last);
   }
 }
 
-// By a corner that is deep enough.
-bool DepthSearch::is_settled(const Facing& facing, std::int32_t facet,
-                             std::int32_t corner) noexcept {
-  const double depth = facing.below(facing.body.facets[facet], corner);
+// By a vertex that is deep enough.
+bool NormalSearch::is_settled(const Facing& facing, std::int32_t facet,
+                              std::int32_t vertex) noexcept {
+  const double depth = facing.below(facing.body.facets[facet], vertex);
   if (!(depth >= settled())) return false;
   lower_to(depth);
   return true;
 }
 
 // In Y's frame.
-void DepthSearch::facets_of_y_bounded() noexcept {
+void NormalSearch::facets_of_y_bounded() noexcept {
   const ConvexPolyhedron& x = body_.x();
-  if (!DeepestCorners::fit(x.anchors)) return facets_of_y_by_points();
+  if (!DeepestVertices::fit(x.anchors)) return facets_of_y_by_points();
   const Facing facing = y_facing_x();
-  take_least(facing, DeepestCorners(body_.y(), x.anchors, facing.body_from_other));
+  take_least(facing, DeepestVertices(body_.y(), x.anchors, facing.body_from_other));
 }
 
-// X's farthest point along the best direction settles most facets of Y, and the ball in its middle
-// those on the far side.
-void DepthSearch::facets_of_y_by_points() noexcept {
+// X's support point along the best direction settles most facets of Y, and the sphere in its
+// middle those on the far side.
+void NormalSearch::facets_of_y_by_points() noexcept {
   const Facing facing = y_facing_x();
   const ConvexPolyhedron& x = body_.x();
   DeepestPoints of_x(body_.y());
-  of_x.add_ball(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
+  of_x.add_sphere(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
   if (best_.source != Source::kNothing) {
     of_x.add(facing.body_from_other(x.anchors[support(x, best_.n).anchor]));
   }
@@ -129,7 +129,7 @@ void DepthSearch::facets_of_y_by_points() noexcept {
 
 // Along the arc between two facets' normals h is no less than what one point of Y has at both.
 // Those that the main point does not settle are few, mostly.
-void DepthSearch::arcs(DeepestCorners& of_y) noexcept {
+void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
   lower_to(best_.height);
   const ConvexPolyhedron& x = body_.x();
   for (const std::int32_t i : of_y.mark(best_.height, of_y.number(of_y.where_least()))) {
@@ -145,19 +145,20 @@ void DepthSearch::arcs(DeepestCorners& of_y) noexcept {
   }
 }
 
-// By what is known at the ends of an arc: the lowest corner of Y there, or one nearly as low. Up to
+// By what is known at the ends of an arc: the lowest vertex of Y there, or one nearly as low. Up to
 // half of what bounds may differ by is left for where they take over from one another.
-bool DepthSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
-                          const DeepestPoints::Point* ball) noexcept {
+bool NormalSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
+                           const DeepestPoints::Point* sphere) noexcept {
   const auto on_arc = [&](const Vec3& p) {
     return OnArc{l.offset - l.normal.dot(p), r.offset - r.normal.dot(p)};
   };
   const OnArc first = on_arc(at_l), last = on_arc(at_r);
   double bound = -kInfinity;
-  const OnArc middle = ball != nullptr ? on_arc(ball->at) : OnArc{};
-  if (ball != nullptr && middle.least() >= ball->margin) {
-    bound = least_with_ball(first, middle, ball->radius, last, (l.normal - r.normal).squaredNorm(),
-                            best_.height + 0.5 * tight_);
+  const OnArc middle = sphere != nullptr ? on_arc(sphere->at) : OnArc{};
+  if (sphere != nullptr && middle.least() >= sphere->margin) {
+    bound =
+        least_with_sphere(first, middle, sphere->radius, last, (l.normal - r.normal).squaredNorm(),
+                          best_.height + 0.5 * gap_tolerance_);
   }
   if (bound < best_.height) bound = std::max(bound, least_of_two(first, last));
   if (!(bound >= goal())) return false;
@@ -165,8 +166,8 @@ bool DepthSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, cons
   return true;
 }
 
-// The same corners, to begin with.
-void DepthSearch::arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept {
+// The same vertices, to begin with.
+void NormalSearch::arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept {
   const Arc arc = across(body_.x().edges[use.edge]);
   const auto known = [&](const Vec2& at, const Vec3& p) {
     const Sample there{at, arc.project(arc.on_edge - p)};
@@ -178,9 +179,9 @@ void DepthSearch::arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& a
   split(arc, from, known(end, forth ? at_other : at_own));
 }
 
-void DepthSearch::few_corners() noexcept {
+void NormalSearch::few_vertices() noexcept {
   const Facing facing = x_facing_y();
-  DeepestCorners of_y(body_.x(), body_.y().anchors, facing.body_from_other);
+  DeepestVertices of_y(body_.x(), body_.y().anchors, facing.body_from_other);
   take_least(facing, of_y);
   if (ended_early()) return;
   facets_of_y_bounded();
@@ -188,23 +189,23 @@ void DepthSearch::few_corners() noexcept {
 }
 
 // Y's lowest point along the best direction so far is mostly deeper below all other facets of X.
-void DepthSearch::many_corners() noexcept {
+void NormalSearch::many_vertices() noexcept {
   const Facing facing = x_facing_y();
   DeepestPoints of_y(body_.x());
-  of_y.add(body_.lowest_of_y(best_.source == Source::kNothing ? Vec3::UnitX() : best_.n));
+  of_y.add(body_.support_point_of_y(best_.source == Source::kNothing ? Vec3::UnitX() : best_.n));
   look_at_facets(facing, of_y);
   if (ended_early()) return;
   facets_of_y_bounded();
   if (!ended_early()) arcs(of_y);
 }
 
-void DepthSearch::run_bounded() noexcept {
-  const bool few = DeepestCorners::fit(body_.y().anchors) &&
-                   body_.x().facets.size() <= DeepestCorners::kMostFacets;
+void NormalSearch::run_bounded() noexcept {
+  const bool few = DeepestVertices::fit(body_.y().anchors) &&
+                   body_.x().facets.size() <= DeepestVertices::kMostFacets;
   if (few) {
-    few_corners();
+    few_vertices();
   } else {
-    many_corners();
+    many_vertices();
   }
 }
 

@@ -11,15 +11,15 @@ namespace clearance {
 namespace {
 
 // Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
-// the exact one next to it on the exact arc (6), a corner in its plane (6).
+// the exact one next to it on the exact arc (6), a vertex in its plane (6).
 constexpr double kOnArc = 12 * kUlp;
 // How near two bounds of h must come, in the same unit.
-constexpr double kTight = 8 * kUlp;
+constexpr double kGapTolerance = 8 * kUlp;
 
-using Source = DepthSearch::Source;
+using Source = NormalSearch::Source;
 
 // Where the best direction is exactly a facet's, the certificate may use the facet.
-Separator separator(const DifferenceBody& body, const DepthSearch::Best& best,
+Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& best,
                     const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
     return {body.to_common(best.n).normalized()};
@@ -30,10 +30,10 @@ Separator separator(const DifferenceBody& body, const DepthSearch::Best& best,
   return {-b.direction_to_common(normal).normalized(), kNone, best.facet};
 }
 
-// At no distance, for heights: corners are anchors, and of an unbounded body, too, no more than
+// At no distance, for heights: vertices are anchors, and of an unbounded body, too, no more than
 // those counts there.
-Precision precision_of_corners(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                               const RelativePose& a_from_b) noexcept {
+Precision precision_of_vertices(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                const RelativePose& a_from_b) noexcept {
   Precision p = precision(a, b, a_from_b, 0.0);
   const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;
   p.size -= beyond_a + beyond_b;
@@ -50,36 +50,16 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
   return kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
 }
 
-// How far along `s` parts the bodies for certain. With Y bounded, a facet of X, or the arc of an
+// The certified distance along `s` that parts the bodies. A facet of X, or the arc of an
 // edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
 // that comes out too far from `lower`, Depth's, every ulp counts, and both ways are gone.
-double certified(const DifferenceBody& body, const DepthSearch::Best& best, const Separator& s,
-                 const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
-                 double rounding, double lower) noexcept {
+double certified(const NormalSearch::Best& best, const Separator& s, const ActiveFeature& a,
+                 const ActiveFeature& b, const Precision& p, double rounding,
+                 double lower) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
-  const double by_feature = feature_of_x && body.y().bounded() ? best.height + rounding : kInfinity;
+  const double by_feature = feature_of_x ? best.height + rounding : kInfinity;
   if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
   return std::min(by_feature, -separation(s, a, b, p) + p.slack);
-}
-
-// Of two unbounded bodies the search may have taken a direction for the best along which one of
-// them is unbounded: then a facet's may still part them.
-void try_facets(const ActiveFeature& a, const ActiveFeature& b, const Precision& p,
-                Depth& out) noexcept {
-  const auto attempt = [&](const Separator& s) {
-    const double value = -separation(s, a, b, p);
-    if (!(value + p.slack < out.upper)) return;
-    out.value = value;
-    out.upper = value + p.slack;
-    out.normal = s.normal;
-  };
-  const auto count = [](const ActiveFeature& s) {
-    return static_cast<std::int32_t>(s.body().facets.size());
-  };
-  for (std::int32_t i = 0; i < count(a); ++i) attempt({a.body().facets[i].normal, i, kNone});
-  for (std::int32_t i = 0; i < count(b); ++i) {
-    attempt({-b.direction_to_common(b.body().facets[i].normal).normalized(), kNone, i});
-  }
 }
 
 // How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
@@ -93,23 +73,24 @@ double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
   const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
   // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
-  // If the bodies overlap there, they are no farther apart than B is from there.
+  // If the bodies penetrate there, they are no farther apart than B is from there.
   RelativePose placed = a_from_b;
   const double off = off_rotation(a_from_b.rotation);
   placed.rotation_error = off;
   placed.translation_error = 0.0;
-  const Precision there = precision_of_corners(a.body(), b.body(), placed);
+  const Precision there = precision_of_vertices(a.body(), b.body(), placed);
   if (!(least > rounding_of_height(placed, there, least))) return -kInfinity;
   return least - rounding - 2.0 * off * p.reach_b;
 }
 
 // Two points or segments have no inside: they meet in a point and are parted by next to nothing.
-Depth depth_of_lines(const ActiveFeature& a, const ActiveFeature& b, const Precision& p) noexcept {
+Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
+                        const Precision& p) noexcept {
   const auto along = [](const ActiveFeature& s) {
     return s.body().edges.empty() ? Vec3::Zero().eval()
                                   : s.direction_to_common(s.body().edges[0].direction);
   };
-  const Vec3 n = towards_case::across_both(along(a), along(b));
+  const Vec3 n = direction_case::across_both(along(a), along(b));
   const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
   Depth out;
   out.normal = forth >= back ? n : Vec3(-n);
@@ -122,17 +103,12 @@ Depth depth_of_lines(const ActiveFeature& a, const ActiveFeature& b, const Preci
 
 Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
             const Separator* guess) noexcept {
-  const Precision start = precision_of_corners(a.body(), b.body(), a_from_b);
-  if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_lines(a, b, start);
-  const DifferenceBody body(a.body(), b.body(), a_from_b);
+  const Precision start = precision_of_vertices(a.body(), b.body(), a_from_b);
+  if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_segments(a, b, start);
+  const MinkowskiDifference body(a.body(), b.body(), a_from_b);
   Depth out;
-  // Of two unbounded bodies the search sees Y's anchors: that bounds the depth from below, and all
-  // directions are X's facets' and arcs', where X has no vertices.
-  if (!body.y().bounded() && !body.x().vertices.empty()) {
-    try_facets(a, b, start, out);
-    return out;
-  }
-  DepthSearch search(body, kTight * start.size, a_from_b.rotation_error + 0x1p-50);
+  if (!body.y().bounded()) return out;  // two unbounded bodies: nothing is known
+  NormalSearch search(body, kGapTolerance * start.size, a_from_b.rotation_error + 0x1p-50);
   if (guess != nullptr) {
     const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
     const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
@@ -147,26 +123,16 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   }
   if (!search.ended_early()) search.run();
 
-  const DepthSearch::Best& best = search.best();
-  if (best.source == Source::kNothing) {
-    const double rounding = kOnArc * start.size + start.slack;
-    if (search.lower() > rounding) out.lower = search.lower() - rounding;
-    return out;
-  }
+  const NormalSearch::Best& best = search.best();
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
   const Separator s = separator(body, best, a, b);
   out.normal = s.normal;
   if (!search.ended_early()) {
     out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
-  out.upper = certified(body, best, s, a, b, p, rounding_of_height(a_from_b, start, best.height),
-                        out.lower);
-  if (!(out.upper < kInfinity)) {
-    out.value = kInfinity;
-  } else {
-    out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
-  }
-  if (!body.y().bounded() && !p.converged(out.upper - out.lower)) try_facets(a, b, p, out);
+  out.upper =
+      certified(best, s, a, b, p, rounding_of_height(a_from_b, start, best.height), out.lower);
+  out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
   return out;
 }
 

@@ -29,19 +29,20 @@ struct OnArc {
 }
 
 // One point up to where it has no more than `enough`, the other from where it has as much, and a
-// ball between: what its middle has, and its radius. apart: |l - r|^2, with which the middle's
+// sphere between: what its middle has, and its radius. apart: |l - r|^2, with which the middle's
 // share grows between the ends (1 / N >= 1 + s (1 - s) |l - r|^2 / 2).
-[[nodiscard]] inline double least_with_ball(const OnArc& first, const OnArc& middle, double radius,
-                                            const OnArc& last, double apart,
-                                            double enough) noexcept {
+[[nodiscard]] inline double least_with_sphere(const OnArc& first, const OnArc& middle,
+                                              double radius, const OnArc& last, double apart,
+                                              double enough) noexcept {
   if (!(middle.least() >= 0.0)) return -kInfinity;
   const double from = first.l > enough ? (first.l - enough) / (first.l - first.r) : 0.0;
   const double to = last.r > enough ? (last.r - enough) / (last.r - last.l) : 0.0;
   if (!(from >= 0.0 && to >= 0.0 && from + to <= 1.0)) return -kInfinity;
-  const auto ball = [&](double s) {
+  const auto sphere = [&](double s) {
     return middle.at(s) * (1.0 + 0.5 * s * (1.0 - s) * apart) + radius;
   };
-  return std::min({first.l, first.at(from), ball(from), ball(1.0 - to), last.at(1.0 - to), last.r});
+  return std::min(
+      {first.l, first.at(from), sphere(from), sphere(1.0 - to), last.at(1.0 - to), last.r});
 }
 
 }  // namespace clearance

@@ -20,12 +20,12 @@ struct Placement {
   }
 };
 
-class DifferenceBody {
+class MinkowskiDifference {
  public:
-  // X is the body whose edges the search follows: the unbounded one, of two such the one without
-  // vertices, the one without facets (a segment or a point), or else the one with fewer edges.
-  DifferenceBody(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                 const RelativePose& a_from_b) noexcept
+  // X is the body whose edges the search follows: the unbounded one, the one without facets (a
+  // segment or a point), or else the one with fewer edges.
+  MinkowskiDifference(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                      const RelativePose& a_from_b) noexcept
       : x_is_b_(prefers_second(a, b)),
         x_(x_is_b_ ? b : a),
         y_(x_is_b_ ? a : b),
@@ -63,22 +63,21 @@ class DifferenceBody {
   [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
     return support(y_, -direction_to_y(n)).anchor;
   }
-  [[nodiscard]] Vec3 lowest_of_y(const Vec3& n) const noexcept {
+  [[nodiscard]] Vec3 support_point_of_y(const Vec3& n) const noexcept {
     return point_from_y(y_.anchors[lowest_anchor_of_y(n)]);
   }
-  // A corner of the set that is farthest along n, of those that have `on_x` for their part of X.
-  [[nodiscard]] Vec3 corner(const Vec3& on_x, const Vec3& n) const noexcept {
-    return on_x - lowest_of_y(n);
+  // The support point of the set along n, where `on_x` is that of X.
+  [[nodiscard]] Vec3 support_point(const Vec3& on_x, const Vec3& n) const noexcept {
+    return on_x - support_point_of_y(n);
   }
   // The same with a point of Y.
-  [[nodiscard]] Vec3 corner_on_x(const Vec3& on_y, const Vec3& n) const noexcept {
+  [[nodiscard]] Vec3 support_point_on_x(const Vec3& on_y, const Vec3& n) const noexcept {
     return x_.anchors[support(x_, n).anchor] - point_from_y(on_y);
   }
 
  private:
   static bool prefers_second(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
     if (a.bounded() != b.bounded()) return a.bounded();
-    if (!a.bounded() && a.vertices.empty() != b.vertices.empty()) return b.vertices.empty();
     if (a.facets.empty() != b.facets.empty()) return b.facets.empty();
     return b.edges.size() < a.edges.size();
   }

@@ -5,13 +5,12 @@
 #include <cstdint>
 #include <span>
 
-#include "core/penetration/deepest_points.hpp"
-#include "core/penetration/deepest_vertices.hpp"
+#include "core/penetration/facet_scan.hpp"
 #include "core/penetration/minkowski_difference.hpp"
 
 namespace clearance {
 
-class DepthSearch {
+class NormalSearch {
  public:
   enum class Source : std::uint8_t { kNothing, kGuess, kFacetOfX, kFacetOfY, kArc };
   struct Best {
@@ -21,13 +20,14 @@ class DepthSearch {
     std::int32_t facet = kNone;
   };
 
-  // tight: m, how near to the best h a bound from below must come. direction_error: of a direction
-  // turned into the other body's frame.
-  DepthSearch(const DifferenceBody& body, double tight, double direction_error) noexcept
+  // gap_tolerance: m, how near to the best h a bound from below must come. direction_error: of a
+  // direction turned into the other body's frame.
+  NormalSearch(const MinkowskiDifference& body, double gap_tolerance,
+               double direction_error) noexcept
       : body_(body),
-        tight_(tight),
-        level_(0x1p-46 + direction_error),
-        certain_(0x1p-50 + direction_error) {}
+        gap_tolerance_(gap_tolerance),
+        within_rounding_(0x1p-46 + direction_error),
+        beyond_rounding_(0x1p-50 + direction_error) {}
 
   // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
   // all on the arc of `edge_of_x`, unless that is kNone.
@@ -47,7 +47,7 @@ class DepthSearch {
   [[nodiscard]] const Best& best() const noexcept { return best_; }
   // No h is lower (before rounding): valid after run() unless ended_early().
   [[nodiscard]] double lower() const noexcept { return lower_; }
-  [[nodiscard]] bool ended_early() const noexcept { return best_.height <= tight_; }
+  [[nodiscard]] bool ended_early() const noexcept { return best_.height <= gap_tolerance_; }
 
  private:
   using Vec2 = Eigen::Vector2d;
@@ -62,13 +62,13 @@ class DepthSearch {
   // What is known in one direction of an arc.
   struct Sample {
     Vec2 at;      // the direction
-    Vec2 corner;  // a farthest corner of the difference body along it, projected
-    [[nodiscard]] double height() const noexcept { return corner.dot(at); }
+    Vec2 vertex;  // the support point along it, projected
+    [[nodiscard]] double height() const noexcept { return vertex.dot(at); }
   };
 
   void hold(const Vec3& n) noexcept {
     held_ = n;
-    steady_ = 0.5 * tight_;
+    steady_ = 0.5 * gap_tolerance_;
   }
   // The direction guessed, as facets and arcs have it.
   [[nodiscard]] bool is_held(const Vec3& n) const noexcept {
@@ -77,16 +77,19 @@ class DepthSearch {
   static constexpr double kSame = 0x1p-26;
 
   // m: of how far a point of one body is inside a facet of the other, in roundings of both bodies'
-  // size: 6 for its place, 2 for the normal, 4 for the product and the difference. tight_ is 8.
-  [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * tight_; }
+  // size: 6 for its place, 2 for the normal, 4 for the product and the difference. gap_tolerance_
+  // is 8.
+  [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * gap_tolerance_; }
 
-  [[nodiscard]] double goal() const noexcept { return best_.height - tight_; }
+  [[nodiscard]] double goal() const noexcept { return best_.height - gap_tolerance_; }
   void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
   void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
 
-  // No facet or arc whose h is certain to be at least this can be better.
+  // No facet or arc whose h is certified to be at least this can be better.
   [[nodiscard]] double settled() const noexcept { return best_.height - steady_; }
 
+  // Has h not been shown to be as high as the best known one?
+  [[nodiscard]] bool may_be_lowest_along(const Vec3& n) const noexcept;
   void look_at_facet_of_x(std::int32_t facet) noexcept;
   void look_at_facet_of_y(std::int32_t facet) noexcept;
   void facets_of_x() noexcept;
@@ -104,9 +107,9 @@ class DepthSearch {
     [[nodiscard]] Vec3 against(const Facet& facet) const noexcept {
       return -(body_from_other.turn.transpose() * facet.normal);
     }
-    // How deep one of the other's corners lies below a facet, m.
-    [[nodiscard]] double below(const Facet& facet, std::int32_t corner) const noexcept {
-      return facet.offset - facet.normal.dot(body_from_other(other.anchors[corner]));
+    // How deep one of the other's vertices lies below a facet, m.
+    [[nodiscard]] double below(const Facet& facet, std::int32_t vertex) const noexcept {
+      return facet.offset - facet.normal.dot(body_from_other(other.anchors[vertex]));
     }
   };
   [[nodiscard]] Facing x_facing_y() const noexcept {
@@ -115,25 +118,25 @@ class DepthSearch {
   [[nodiscard]] Facing y_facing_x() const noexcept {
     return {body_.y(), body_.x(), body_.y_from_x(), Source::kFacetOfY};
   }
-  void take_least(const Facing& facing, const DeepestCorners& corners) noexcept;
+  void take_least(const Facing& facing, const DeepestVertices& vertices) noexcept;
   std::int32_t look_up(const Facing& facing, std::int32_t facet) noexcept;
   DeepestPoints::Shallow narrow_down(const Facing& facing, DeepestPoints& points) noexcept;
   void look_at_facets(const Facing& facing, DeepestPoints& points) noexcept;
   void look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
-                   std::uint16_t* corners) noexcept;
+                   std::uint16_t* vertices) noexcept;
   [[nodiscard]] bool is_settled(const Facing& facing, std::int32_t facet,
-                                std::int32_t corner) noexcept;
-  void few_corners() noexcept;
+                                std::int32_t vertex) noexcept;
+  void few_vertices() noexcept;
   void facets_of_y_bounded() noexcept;
-  // 82 kB of stack each, which a body of few corners does not go past.
-  [[gnu::noinline]] void many_corners() noexcept;
+  // 82 kB of stack each, which a body of few vertices does not go past.
+  [[gnu::noinline]] void many_vertices() noexcept;
   [[gnu::noinline]] void facets_of_y_by_points() noexcept;
-  void arcs(DeepestCorners& of_y) noexcept;
+  void arcs(DeepestVertices& of_y) noexcept;
   void arcs(DeepestPoints& of_y) noexcept;
   void arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept;
-  [[nodiscard]] Vec3 corner_below(std::int32_t facet, DeepestPoints& of_y) const noexcept;
+  [[nodiscard]] Vec3 deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept;
   [[nodiscard]] bool settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
-                             const DeepestPoints::Point* ball) noexcept;
+                             const DeepestPoints::Point* sphere) noexcept;
   void arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept;
   void full_circle(const Edge& edge) noexcept;
   [[nodiscard]] Arc across(const Edge& edge) const noexcept;
@@ -144,22 +147,29 @@ class DepthSearch {
   void settle(const Arc& arc, const Vec2& l, const Vec2& r) noexcept;
   void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
 
-  const DifferenceBody& body_;
-  double tight_;
-  // Rays that rise by less, per unit length, may be level; along a facet of Y, or of Y, by less
-  // than the smaller one: the facet's normal is off by 5 ulps when turned, the ray by 1, their
-  // product by 3.
-  double level_, certain_;
+  const MinkowskiDifference& body_;
+  double gap_tolerance_;
+  // Rays whose directional derivative is smaller, per unit length, may be orthogonal to the
+  // direction; of a facet of Y, smaller than the lesser one: the facet's normal is off by 5 ulps
+  // when turned, the ray by 1, their product by 3.
+  double within_rounding_, beyond_rounding_;
   Vec3 held_ = Vec3::Zero();  // the direction guessed
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
 
-  // Corners found on the way, by where the directions point that they were found for: six axes by
+  // Vertices found on the way, by where the directions point that they were found for: six axes by
   // the signs of the other two components.
   static std::size_t cell(const Vec3& n) noexcept;
-  std::array<Vec3, 24> corners_;
-  std::array<bool, 24> has_corner_{};
+  [[nodiscard]] const Vec3* cached(const Vec3& n) const noexcept {
+    return is_cached_[cell(n)] ? &cached_[cell(n)] : nullptr;
+  }
+  const Vec3& cache(const Vec3& n, const Vec3& vertex) noexcept {
+    is_cached_[cell(n)] = true;
+    return cached_[cell(n)] = vertex;
+  }
+  std::array<Vec3, 24> cached_;
+  std::array<bool, 24> is_cached_{};
 };
 
 }  // namespace clearance

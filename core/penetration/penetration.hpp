@@ -1,4 +1,4 @@
-// From the depth of two overlapping bodies to a DistanceResult, tracked.
+// From the penetration depth of two bodies to a DistanceResult, tracked.
 #pragma once
 
 #include "core/convex_polyhedron.hpp"
@@ -7,16 +7,18 @@
 
 namespace clearance {
 
-// For bodies that overlapped in the last query: settles this one, if they do still. False: not
-// proved; `result` is not touched, and the features of `state` are where a search should begin.
-[[nodiscard]] bool still_overlapping(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+// For bodies that penetrated each other in the last query: answers this one, if they do still.
+// False: that is not certified; `result` is not touched, and the features of `state` are where a
+// search should begin.
+[[nodiscard]] bool track_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                      const RelativePose& a_from_b, TrackingState& state,
                                      DistanceResult& result) noexcept;
 
-// For a result (cores only, without radii) whose lower bound is not positive: bounds it from below,
-// and where the cores overlap, finds their depth. `state` holds the last features, and is moved on.
-void measure_overlap(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, TrackingState& state,
-                     DistanceResult& result) noexcept;
+// For a result (of the polyhedra, without radii) whose lower bound is not positive: bounds it from
+// below, and where the polyhedra penetrate, finds the depth. `state` holds the last features, and
+// is moved on.
+void measure_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                         const RelativePose& a_from_b, TrackingState& state,
+                         DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -125,7 +125,7 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   state = {side_a.tracked(), side_b.tracked()};
   if (result.lower > 0.0) return result;
   if (depth) {
-    measure_overlap(a, b, a_from_b, state, result);
+    measure_penetration(a, b, a_from_b, state, result);
   } else {
     result.status = DistanceStatus::kDepthNotAsked;
   }
@@ -158,7 +158,7 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const RelativePose& a_from_b, TrackingState& state) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
-  if (still_overlapping(a, b, a_from_b, state, result)) {
+  if (track_penetration(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kOverlap;
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);

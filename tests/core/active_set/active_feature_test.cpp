@@ -30,7 +30,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   EXPECT_EQ(side.own(), Vec3(0.5, 0.5, 0.0));
 }
 
-TEST(ActiveFeature, OfABodyWithoutEndStartsNoFartherOutThanAnyClosestPoint) {
+TEST(ActiveFeature, OfAnUnboundedBodyStartsNoFartherOutThanAnyClosestPoint) {
   const ConvexPolyhedron floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
   const ActiveFeature other(box, nullptr);
   const TrackingState::Side near{FeatureKind::kFacet, false, 0, {1.0, 2.0, 0.0}},

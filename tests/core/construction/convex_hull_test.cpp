@@ -18,39 +18,39 @@ std::vector<Integer4> homogeneous(const std::vector<Vec3>& points) {
   return result;
 }
 
-// Every point is below every face; every corner is a point of the face; edges pair up; Euler.
+// Every point is below every face; every vertex is a point of the face; edges pair up; Euler.
 void expect_hull(const std::vector<Integer4>& points) {
   const PointSet set(points);
   const std::vector<HullFace> faces = hull_faces(set, convex_hull(set));
   ASSERT_FALSE(faces.empty());
-  std::set<int> corners;
+  std::set<int> vertices;
   std::set<std::pair<int, int>> edges;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const HullFace& face = faces[f];
-    ASSERT_GE(face.corner.size(), 3U);
-    ASSERT_EQ(face.corner.size(), face.neighbor.size());
+    ASSERT_GE(face.vertex.size(), 3U);
+    ASSERT_EQ(face.vertex.size(), face.neighbor.size());
     for (const Integer4& point : points) EXPECT_LE(sgn(dot(face.plane, point)), 0);
-    for (std::size_t i = 0; i < face.corner.size(); ++i) {
-      const int from = face.corner[i];
-      const int to = face.corner[(i + 1) % face.corner.size()];
+    for (std::size_t i = 0; i < face.vertex.size(); ++i) {
+      const int from = face.vertex[i];
+      const int to = face.vertex[(i + 1) % face.vertex.size()];
       EXPECT_EQ(sgn(dot(face.plane, points[static_cast<std::size_t>(from)])), 0);
-      corners.insert(from);
+      vertices.insert(from);
       EXPECT_TRUE(edges.insert({from, to}).second) << "an edge runs twice the same way";
       const HullFace& other = faces[static_cast<std::size_t>(face.neighbor[i])];
       bool found = false;
-      for (std::size_t j = 0; j < other.corner.size(); ++j) {
+      for (std::size_t j = 0; j < other.vertex.size(); ++j) {
         found = found ||
-                (other.corner[j] == to && other.corner[(j + 1) % other.corner.size()] == from &&
+                (other.vertex[j] == to && other.vertex[(j + 1) % other.vertex.size()] == from &&
                  other.neighbor[j] == static_cast<int>(f));
       }
       EXPECT_TRUE(found) << "the neighbour does not share the edge";
       // Strictly below the neighbour: coplanar faces were merged.
-      EXPECT_TRUE(std::any_of(face.corner.begin(), face.corner.end(), [&](int corner) {
-        return sgn(dot(other.plane, points[static_cast<std::size_t>(corner)])) < 0;
+      EXPECT_TRUE(std::any_of(face.vertex.begin(), face.vertex.end(), [&](int vertex) {
+        return sgn(dot(other.plane, points[static_cast<std::size_t>(vertex)])) < 0;
       }));
     }
   }
-  EXPECT_EQ(corners.size() + faces.size(), edges.size() / 2 + 2);
+  EXPECT_EQ(vertices.size() + faces.size(), edges.size() / 2 + 2);
 }
 
 TEST(ExactHull, LatticeClustersWithTiesEverywhere) {
@@ -110,7 +110,7 @@ TEST(ExactHull, GridOnACubeLeavesSixFacesOfFourCorners) {
   const PointSet set(exact);
   const std::vector<HullFace> faces = hull_faces(set, convex_hull(set));
   EXPECT_EQ(faces.size(), 6U);
-  for (const HullFace& face : faces) EXPECT_EQ(face.corner.size(), 4U);
+  for (const HullFace& face : faces) EXPECT_EQ(face.vertex.size(), 4U);
 }
 
 TEST(FilteredPlane, AgreesWithTheExactDeterminantNextToThePlane) {

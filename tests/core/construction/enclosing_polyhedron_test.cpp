@@ -117,7 +117,7 @@ TEST(EnclosingPolyhedron, MoreFacetsFitBetter) {
   EXPECT_LT(before, 0.06);  // twice what the best 96 planes leave
 }
 
-TEST(EnclosingPolyhedron, IsNotMadeOfNothingOrOfBodiesWithoutEnd) {
+TEST(EnclosingPolyhedron, IsNotMadeOfNothingOrOfUnboundedBodies) {
   EXPECT_FALSE(enclosing_polyhedron({}));
   Group group = boxes_apart(1.0);
   group.add({.rows = {{Vec3::UnitZ(), 0.0}}, .points = {}}, {});

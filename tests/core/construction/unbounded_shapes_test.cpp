@@ -72,7 +72,7 @@ TEST(UnboundedShapes, WedgeHasOneFullLine) {
   for (const Ray& ray : body.rays) EXPECT_TRUE(ray.exact);
 }
 
-TEST(UnboundedShapes, PrismWithoutEndsHasALineForEachSide) {
+TEST(UnboundedShapes, UnboundedPrismHasALineForEachSide) {
   for (const int sides : {3, 4, 9}) {
     std::vector<HalfSpace> rows;
     for (int i = 0; i < sides; ++i) {
@@ -100,7 +100,7 @@ TEST(UnboundedShapes, OctantHasThreeRaysFromOneCorner) {
   }
 }
 
-TEST(UnboundedShapes, HowTheyOpenIsKnownOnceTheyAreMade) {
+TEST(UnboundedShapes, RecessionConesAreKnownOnceTheyAreMade) {
   const auto opening = [](const std::vector<HalfSpace>& rows) {
     const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
     EXPECT_EQ(

@@ -31,7 +31,7 @@ void expect_right(const Body& a, const Body& b, const Vec3& a_at, const Vec3& b_
 }
 
 // The rays to both sides of its ridge all but cancel; along its ridge it is level.
-TEST(NearlyLevel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
+TEST(NearlyParallel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
   const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
   for (const double slope : {0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5}) {
     const Body gable{{{{0.0, slope, 1.0}, 1.0}, {{0.0, -slope, 1.0}, 1.0}, {{1.0, 0.0, 0.0}, 1.0}},
@@ -46,7 +46,7 @@ TEST(NearlyLevel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
 }
 
 // However thin: the point that they make is no more than rounding from their hull.
-TEST(NearlyLevel, WeightsOfASimplexAddUpToOne) {
+TEST(NearlyParallel, WeightsOfASimplexAddUpToOne) {
   Random random(7);
   int inside = 0;
   for (int k = 0; k < 100000; ++k) {

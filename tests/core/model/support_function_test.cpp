@@ -12,7 +12,7 @@ namespace {
 
 // Along a facet's normal all its vertices are level to rounding, and only one of them is the
 // farthest: a bound that took another one would be too low.
-TEST(Support, IsTheFarthestVertexAlsoWhereRoundingCallsManyLevel) {
+TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) {
   Random random(1);
   for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {
     const ConvexPolyhedron body = test::made(of);

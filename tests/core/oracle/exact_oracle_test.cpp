@@ -66,7 +66,7 @@ TEST(ExactOracle, RadiiMayGoDeeperThanZero) {
   EXPECT_EQ(d.upper, -1.5);
 }
 
-TEST(ExactOracle, KnowsBodiesWithoutEnd) {
+TEST(ExactOracle, KnowsUnboundedBodies) {
   Body floor, ceiling, bar = hard::box(Vec3::Constant(1.0));
   floor.rows = {{Vec3(0, 0, 2), 0.0}};
   ceiling.rows = {{Vec3(0, 0, -1), -3.0}};

@@ -191,7 +191,7 @@ TEST(ArcBounds, AreNoHigherThanWhatIsKnownAnywhereOnTheArc) {
     const double apart = (c.l - c.r).squaredNorm(), enough = random.uniform(0.5, 1.2);
     const double two = least_of_two(on(c.first), on(c.last));
     const double three =
-        least_with_ball(on(c.first), on(c.middle), c.radius, on(c.last), apart, enough);
+        least_with_sphere(on(c.first), on(c.middle), c.radius, on(c.last), apart, enough);
     double least_two = kInfinity, least_three = kInfinity;
     for (int i = 0; i <= 200; ++i) {
       const Vec3 n = (c.l + i / 200.0 * (c.r - c.l)).normalized();

@@ -129,7 +129,7 @@ void for_each_run(
   }
 }
 
-TEST(Witnesses, OfLevelFacesMoveNoFasterThanTheBodies) {
+TEST(Witnesses, OfParallelFacesMoveNoFasterThanTheBodies) {
   for_each_run({0.0, 1e-16, 2e-16},
                [](const FacingPair& pair, const Swing& motion, double tilt, const Quat& world) {
                  double fastest = 0.0;
@@ -156,7 +156,7 @@ void expect_jumps(const std::vector<double>& tilts, int most_a_turn) {
 TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) { expect_jumps({1e-11, 1e-9, 1e-7}, 1); }
 
 // Rounding decides there which of the steps of a turn are level.
-TEST(Witnesses, OfFacesAtTheBrinkOfLevelJumpAtMostThriceATurnOnAverage) {
+TEST(Witnesses, OfFacesAtTheBrinkOfParallelJumpAtMostThriceATurnOnAverage) {
   expect_jumps({7e-16, 1e-15, 2e-15, 5e-15, 1e-14, 1e-13, 1e-12}, 3);
 }
 

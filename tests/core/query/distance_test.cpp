@@ -31,7 +31,7 @@ ConvexPolyhedron capsule(double half_length, double radius) {
   return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
 }
 // Along z; each side's normal . x = 0.5.
-ConvexPolyhedron prism_without_end(std::initializer_list<Vec3> normals) {
+ConvexPolyhedron unbounded_prism(std::initializer_list<Vec3> normals) {
   std::vector<HalfSpace> rows;
   for (const Vec3& n : normals) rows.push_back({n, 0.5});
   return made(polyhedron_from_halfspaces(rows));
@@ -134,37 +134,20 @@ TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
   EXPECT_EQ(cold(floor, cube(), at(0, 0, -1e6)).status, DistanceStatus::kOverlapping);
 }
 
-TEST(Distance, OfHalfSpacesIsTheirGapOnlyWhenTheyAreExactlyParallel) {
+TEST(Distance, OfTwoUnboundedBodiesIsBoundedFromBelowWhereRoundingCanTell) {
   const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
-  expect_distance(cold(floor, half_space({0, 0, -1}, -2.0), at(5, 6, 0)), 2.0, 10);
-  // The last bit of tilt makes them meet, far away.
-  const DistanceResult tilted = cold(floor, half_space({0x1p-52, 0, -1}, -2.0), at(0, 0, 0));
-  EXPECT_LE(tilted.upper, 2.0 + kRounding);
-  EXPECT_LE(tilted.lower, 0.0);
-}
-
-TEST(Distance, OfUnboundedColumnsIsThatOfTheirSectionsWhereTheirTurnIsExact) {
-  const ConvexPolyhedron column = prism_without_end({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}});
-  const Eigen::Quaterniond turn = turned({1, 2, 3}, 0.4);
-  const Pose here{{0, 0, 0}, turn}, beside{turn * Vec3(3, 0.25, 17), turn};
-  TrackingState state;
-  expect_distance(distance(column, column, relative_pose(here, beside), state), 2.0, 20.0);
-  // Turned by any other rotation, doubles cannot tell whether they are parallel.
-  const Pose apart{{3, 0, 17}, turned(Vec3::UnitZ(), std::numbers::pi / 4)};
-  const DistanceResult unknown = cold(column, column, apart);
-  EXPECT_EQ(unknown.lower, -kInfinity);
-  EXPECT_NEAR(unknown.upper, 2.5 - std::sqrt(0.5), 20.0 * kRounding);
-  EXPECT_EQ(unknown.status, DistanceStatus::kIterationLimit);
-}
-
-TEST(Distance, OfUnboundedColumnsThatCrossIsBoundedAsFarAsTheirTurnIsKnown) {
-  const ConvexPolyhedron column =
-      prism_without_end({{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}});
-  for (const double lean : {1.0, 0.3, 1e-2, 1e-4}) {
-    const DistanceResult r = cold(column, column, Pose{{3, 1, 0}, turned(Vec3::UnitX(), lean)});
-    EXPECT_LE(r.lower, r.distance);
-    EXPECT_LT(r.upper - r.lower, 100.0 * kRounding / lean) << lean;
-    EXPECT_GT(r.lower, 0.0);
+  const ConvexPolyhedron corner =
+      made({{{{1, 0, 1}, 0.0}, {{-1, 0, 1}, 0.0}, {{0, 1, 1}, 0.0}, {{0, -1, 1}, 0.0}}, {}, 0.0});
+  const Pose upside_down{{0.5, 0.25, 2}, turned(Vec3::UnitX(), std::numbers::pi)};
+  expect_distance(cold(floor, corner, upside_down), 2.0, 20);
+  expect_distance(cold(corner, floor, upside_down), 2.0, 20);
+  expect_distance(cold(corner, corner, upside_down), std::sqrt(4.3125), 30);
+  // The last bit of tilt would make them meet, far away.
+  for (const double tilt : {0.0, 0x1p-52}) {
+    const DistanceResult parallel = cold(floor, half_space({tilt, 0, -1}, -2.0), at(0, 0, 0));
+    EXPECT_EQ(parallel.lower, -kInfinity);
+    EXPECT_LE(parallel.upper, 2.0 + kRounding);
+    EXPECT_EQ(parallel.status, DistanceStatus::kIterationLimit);
   }
 }
 
@@ -232,7 +215,7 @@ void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
 TEST(Distance, OfABadPoseHasInfiniteBoundsAndIsUnknown) {
   const ConvexPolyhedron bodies[] = {cube(), ball(0.5), capsule(1.0, 0.25),
                                      half_space({0, 0, 1}, 0.0),
-                                     prism_without_end({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}})};
+                                     unbounded_prism({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}})};
   for (const ConvexPolyhedron& a : bodies) {
     for (const ConvexPolyhedron& b : bodies) {
       for (int k = 0; k < 7; ++k) {
@@ -294,7 +277,7 @@ TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
 }
 
 TEST(Distance, SaysWhichWayTheAnswerCame) {
-  const ConvexPolyhedron column = prism_without_end({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
+  const ConvexPolyhedron column = unbounded_prism({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
   TrackingState state;
   const auto way = [&](const ConvexPolyhedron& body, const Pose& pose, double far_away) {
     const RelativePose b = relative_pose(Pose{}, pose);

@@ -1,0 +1,166 @@
+// How deep do points of one body lie below the facets of another? Many facets at a time.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+// For each facet n.x <= d of a body the greatest d - n.x (m) over the vertices of another, and
+// whose it is.
+class DeepestVertices {
+ public:
+  static constexpr std::size_t kMostVertices = 24;
+  // Of a body with no more edges than one of so many vertices can have (66).
+  static constexpr std::size_t kMostFacets = 44;
+
+  [[nodiscard]] static bool fit(const std::vector<Vec3>& vertices) noexcept {
+    return vertices.size() <= kMostVertices;
+  }
+
+  // `placed` gives the vertices in the body's frame. Not more than fit.
+  template <class Placed>
+  DeepestVertices(const ConvexPolyhedron& body, const std::vector<Vec3>& vertices,
+                  const Placed& placed) noexcept
+      : body_(body), count_(vertices.size()) {
+    for (std::size_t k = 0; k < count_; ++k) points_[k] = placed(vertices[k]);
+    find_deepest();
+  }
+
+  // Over all facets, and the first facet where that is.
+  [[nodiscard]] double least() const noexcept { return least_; }
+  [[nodiscard]] std::int32_t where_least() const noexcept { return where_least_; }
+
+  // What follows is for bodies of no more than kMostFacets.
+
+  // The deepest vertex below a facet, and its number.
+  [[nodiscard]] const Vec3& deepest(std::int32_t facet) const noexcept {
+    return points_[number(facet)];
+  }
+  [[nodiscard]] std::size_t number(std::int32_t facet) const noexcept {
+    return static_cast<std::size_t>(whose_[static_cast<std::size_t>(facet)]);
+  }
+
+  // Marks which vertices are so deep (m) below which facets, and lists those that vertex `main` is
+  // not.
+  [[nodiscard]] std::span<const std::int32_t> mark(double enough, std::size_t main) noexcept;
+  // As last marked: is that one? Is any of them, below both?
+  [[nodiscard]] bool main_is(std::int32_t facet) const noexcept {
+    return (marks_[static_cast<std::size_t>(facet)] & main_) != 0;
+  }
+  [[nodiscard]] bool one_is(std::int32_t facet, std::int32_t other) const noexcept {
+    return (marks_[static_cast<std::size_t>(facet)] & marks_[static_cast<std::size_t>(other)]) != 0;
+  }
+
+ private:
+  void find_deepest() noexcept;
+
+  // Vectors of up to four run over the end.
+  static constexpr std::size_t kRow = kMostFacets + 4;
+
+  const ConvexPolyhedron& body_;
+  std::array<double, kRow> depths_, whose_;  // [facet]
+  std::array<std::uint64_t, kRow> marks_;    // [facet]: a bit a vertex
+  std::array<std::int32_t, kRow> list_;
+  std::array<Vec3, kMostVertices> points_;
+  std::size_t count_;
+  std::uint64_t main_ = 0;
+  double least_ = kInfinity;
+  std::int32_t where_least_ = 0;
+};
+
+// Facets n.x <= d of a body, of no more than kMostFacets.
+class DeepestPoints {
+ public:
+  static constexpr std::size_t kMostFacets = 16384;
+  static constexpr std::size_t kMostPoints = 4;
+
+  // A point, or the sphere around it, all of which belongs to the other body: that reaches d - n.at
+  // + radius below a facet.
+  struct Point {
+    Vec3 at;        // the body's frame
+    double radius;  // m
+    double margin;  // m: what rounding may hide of how far `at` is inside a facet
+    [[nodiscard]] double below(const Facet& facet) const noexcept {
+      return (facet.offset - facet.normal.dot(at)) + radius;
+    }
+    // How deep it must be below two facets that it is `enough` deep below all between them: a
+    // sphere's middle must be inside both for certain. Beyond the edge of a body all but flat it
+    // may be outside both by less than rounding can tell, and along the arc by metres.
+    [[nodiscard]] double for_arcs(double enough) const noexcept {
+      return std::max(enough, radius + margin);
+    }
+  };
+
+  explicit DeepestPoints(const ConvexPolyhedron& body) noexcept : body_(body) {
+    std::fill_n(vertices_.begin(), body.facets.size(), kNoVertex);
+  }
+
+  [[nodiscard]] static bool fits(const ConvexPolyhedron& body) noexcept {
+    return body.facets.size() <= kMostFacets;
+  }
+  [[nodiscard]] bool room_beside_sphere() const noexcept {
+    return count_ + (sphere() == nullptr) < kMostPoints;
+  }
+  // Only where there is room.
+  void add(const Vec3& at) noexcept { points_[count_++] = {at, 0.0, 0.0}; }
+  // Once.
+  void add_sphere(const Vec3& middle, double radius, double margin) noexcept {
+    sphere_ = count_;
+    points_[count_++] = {middle, radius, margin};
+  }
+  [[nodiscard]] const Point* sphere() const noexcept {
+    return sphere_ < count_ ? &points_[sphere_] : nullptr;
+  }
+  [[nodiscard]] std::span<const Point> points() const noexcept { return {points_.data(), count_}; }
+
+  // One more vertex of the other body for one facet only, by its number.
+  static constexpr std::uint16_t kNoVertex = 0xffff;
+  static_assert(2 * kMostFacets - 4 < kNoVertex, "a body has no more vertices (Euler)");
+  [[nodiscard]] std::uint16_t* vertices() noexcept { return vertices_.data(); }
+  [[nodiscard]] std::uint16_t vertex(std::int32_t facet) const noexcept {
+    return vertices_[static_cast<std::size_t>(facet)];
+  }
+
+  // The facets that none of the points is so deep (m) below.
+  struct Shallow {
+    std::span<const std::uint16_t> facets;  // ascending; valid until the next list
+    double rest;                            // m: the least depth below the others
+    std::int32_t where_least;               // the first facet of all with the least depth
+  };
+  [[nodiscard]] Shallow list_shallow(double enough) noexcept;
+  // Those that one point is not so deep below that it is so along arcs; for is_listed(), too.
+  [[nodiscard]] std::span<const std::uint16_t> list_not_below(const Point& point,
+                                                              double enough) noexcept;
+  // Is one of the points that deep below both facets, and so below all between them?
+  [[nodiscard]] bool one_is_below(const Facet& facet, const Facet& other,
+                                  double enough) const noexcept {
+    return std::any_of(points().begin(), points().end(), [&](const Point& point) {
+      const double each = point.for_arcs(enough);
+      return point.below(facet) >= each && point.below(other) >= each;
+    });
+  }
+  [[nodiscard]] bool is_listed(std::int32_t facet) const noexcept {
+    return listed_[static_cast<std::size_t>(facet)];
+  }
+
+ private:
+  // Vectors of up to four run over the end.
+  static constexpr std::size_t kRow = kMostFacets + 4;
+
+  const ConvexPolyhedron& body_;
+  std::array<Point, kMostPoints> points_;
+  std::size_t count_ = 0, sphere_ = kMostPoints;
+  std::array<std::uint16_t, kRow> list_;
+  // [facet]; only of those that there are. listed_: from the first list_not_below() on.
+  std::array<std::uint16_t, kMostFacets> vertices_;
+  std::array<bool, kMostFacets> listed_;
+};
+
+}  // namespace clearance
