@@ -22,7 +22,7 @@ class ExactCheck {
   // `tolerance` is relative: for distance and witness points to the larger of scale and distance,
   // for depth to the scale. Bounds have no tolerance. `widest` is the largest accepted gap between
   // the bounds, relative to the bounding radii plus the distance of the origins; a converged answer
-  // promises 1e-14 (and kUnderflow).
+  // promises 1e-14 (and kUnderflow). Of two unbounded bodies only true bounds are promised.
   ExactCheck(double tolerance, double widest) : tolerance_(tolerance), widest_(widest) {}
 
   // One sentence for each thing that is wrong with the answer. Throws BadLine when the exact answer
