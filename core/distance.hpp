@@ -1,8 +1,10 @@
 // How far apart are two convex bodies? Tracked: each call starts where the last one ended.
 //
-// Minimises |b - a| over a in A, b in B with the active-set QP of core/active_set/dqp3.hpp (§3.3,
-// §3.4). Every answer is certified: a separating direction bounds it from below (weak
-// duality, §3.2), witness points on the bodies from above. Everything is in frame A, in metres.
+// Minimises |b - a| over a in A, b in B (§3.2). Tracked queries walk from the last closest features
+// to these (core/feature_walk); what the walk leaves open is decided by the active-set QP of
+// core/active_set/dqp3.hpp (§3.3, §3.4). Every answer is certified: a separating direction bounds
+// it from below (weak duality, §3.2), witness points on the bodies from above. Everything is in
+// frame A, in metres.
 #pragma once
 
 #include "core/convex_polyhedron.hpp"

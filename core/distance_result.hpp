@@ -40,19 +40,17 @@ enum class DistancePath : std::uint8_t {
 // (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
 // up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
-// Two unbounded bodies are answered in doubles: where these cannot tell along which directions
-// neither is unbounded, lower is -infinity and the status kIterationLimit; or kOverlapping,
-// where upper still bounds the depth (-infinity: no translation parts them), and with no
-// translation known the distance is -infinity, too, and the normal zero.
+// Two unbounded bodies are answered in doubles, with true bounds: where these cannot tell along
+// which directions neither body is unbounded, lower is -infinity and the status kIterationLimit.
 //
-// Unknown is a bound that is infinite, a distance that is -infinity, a normal that is zero; no
-// number is ever a NaN. All of it is unknown, and the points are zero, of a bad pose: one that is
-// not finite, with a quaternion that is off unit length by more than kUnitTolerance, or with frames
-// more than kLargestCoordinate apart.
+// One rule for what is unknown, here and in reports: a bound that is not known is infinite, a
+// figure that is not known is NaN. All of it is unknown of a bad pose: one that is not finite, with
+// a quaternion that is off unit length by more than kUnitTolerance, or with frames more than
+// kLargestCoordinate apart. Nothing else makes a NaN.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;
-  Vec3 normal = Vec3::Zero();  // unit, from A towards B; zero when unknown
+  Vec3 normal = Vec3::Zero();                                 // unit, from A towards B
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // witness points, both in frame A
   DistanceStatus status = DistanceStatus::kIterationLimit;
   DistancePath path = DistancePath::kWalk;

@@ -10,8 +10,8 @@ const char* name(PairStatus status) noexcept {
       return "touching";
     case PairStatus::kOverlapping:
       return "overlapping";
-    case PairStatus::kLoose:
-      return "loose";
+    case PairStatus::kIterationLimit:
+      return "iteration_limit";
     case PairStatus::kCarried:
       return "carried";
     case PairStatus::kStale:

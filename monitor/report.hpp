@@ -16,10 +16,10 @@
 namespace clearance {
 
 enum class PairStatus : std::uint8_t {
-  kConverged = 0,    // evaluated this tick: bounds are rounding only
-  kTouching = 1,     // evaluated: contact to within rounding
-  kOverlapping = 2,  // evaluated: they share a point
-  kLoose = 3,        // evaluated: the bounds hold but are wider than rounding
+  kConverged = 0,       // evaluated this tick: bounds are rounding only
+  kTouching = 1,        // evaluated: contact to within rounding
+  kOverlapping = 2,     // evaluated: they share a point
+  kIterationLimit = 3,  // evaluated: the bounds hold but are wider than rounding
   // Not evaluated this tick: bounds carried over by the motion bound. A pair that has not been
   // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
   kCarried = 4,

@@ -1,5 +1,5 @@
-// The proof that comes with every answer: a direction that separates the bodies by at least
-// `lower`.
+// What certifies an answer of the active-set iteration: a direction that separates the bodies by at
+// least `lower`.
 #pragma once
 
 #include <array>

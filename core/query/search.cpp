@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
@@ -140,10 +141,14 @@ bool is_good(const RelativePose& pose) noexcept {
 
 DistanceResult of_bad_pose(TrackingState& state) noexcept {
   state = {};
-  return {.distance = -kInfinity,
-          .lower = -kInfinity,
-          .upper = kInfinity,
-          .status = DistanceStatus::kBadPose};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  DistanceResult r;
+  r.distance = kUnknown;
+  r.lower = -kInfinity;
+  r.upper = kInfinity;
+  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kUnknown);
+  r.status = DistanceStatus::kBadPose;
+  return r;
 }
 
 DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

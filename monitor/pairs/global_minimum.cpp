@@ -9,7 +9,7 @@ void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   swept_lower_ = std::min(swept_lower_, bounds.swept_lower);
   if (bounds.status == PairStatus::kUnknown) return;
 
-  const bool tight = is_evaluated(bounds.status) && bounds.status != PairStatus::kLoose;
+  const bool tight = is_evaluated(bounds.status) && bounds.status != PairStatus::kIterationLimit;
   if (!tight && bounds.lower < loose_lower_) {
     if (pair != loose_pair_) next_loose_lower_ = loose_lower_;
     loose_lower_ = bounds.lower;

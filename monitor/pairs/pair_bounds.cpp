@@ -31,7 +31,7 @@ PairStatus status_of(DistanceStatus status) noexcept {
     case DistanceStatus::kBadPose:
       break;
   }
-  return PairStatus::kLoose;
+  return PairStatus::kIterationLimit;
 }
 
 // The part pair with the smallest upper bound, evaluated ones before all others.
@@ -77,7 +77,8 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
   for (std::uint32_t part_pair = first; part_pair < end; ++part_pair) {
     if (part_pair == closest || table.lower[part_pair] >= table.upper[closest]) continue;
     if (table.part_pair_evaluated_cycle[part_pair] != cycle) return PairStatus::kCarried;
-    if (status_of(table.status[part_pair]) == PairStatus::kLoose) status = PairStatus::kLoose;
+    if (status_of(table.status[part_pair]) == PairStatus::kIterationLimit)
+      status = PairStatus::kIterationLimit;
   }
   return status;
 }

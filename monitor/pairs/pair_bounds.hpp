@@ -47,7 +47,7 @@ void report_on(std::uint32_t pair, const PairBounds& bounds,
 [[nodiscard]] PairReport unknown_report() noexcept;
 
 [[nodiscard]] inline bool is_evaluated(PairStatus status) noexcept {
-  return status <= PairStatus::kLoose;
+  return status <= PairStatus::kIterationLimit;
 }
 
 }  // namespace clearance

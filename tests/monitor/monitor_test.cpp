@@ -209,7 +209,7 @@ TEST(Monitor, EveryPairHasOneStatusAndBoundsInOrder) {
       seen |= 1u << static_cast<unsigned>(pair.status);
       ASSERT_LE(pair.lower, pair.upper);
       ASSERT_GE(pair.lower, report.lower_all);
-      if (pair.status > PairStatus::kLoose) continue;
+      if (pair.status > PairStatus::kIterationLimit) continue;
       ASSERT_LE(pair.lower, pair.distance);
       ASSERT_GE(pair.upper, pair.distance);
     }

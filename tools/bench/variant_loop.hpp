@@ -55,9 +55,9 @@ template <Release kRelease>
 bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
   const Vec3 towards = b.common() - a.common();
   const Lambda of_a = lambda(a, towards), of_b = lambda(b, -towards);
-  const bool a_wants = of_a.rate > least, b_wants = of_b.rate > least;
+  const bool a_wants = of_a.derivative > least, b_wants = of_b.derivative > least;
   const bool both = kRelease == Release::kDual;
-  const bool a_first = of_a.rate >= of_b.rate;
+  const bool a_first = of_a.derivative >= of_b.derivative;
   if (a_wants && (both || a_first)) let_go(a, of_a);
   if (b_wants && (both || !a_first)) let_go(b, of_b);
   return a_wants || b_wants;
@@ -66,7 +66,7 @@ bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
 // Drops every active facet with a negative multiplier at once; returns the feature that is left.
 inline bool release_all(ActiveFeature& side, const Vec3& towards_in_common, double least) {
   const Lambda best = lambda(side, towards_in_common);
-  if (!(best.rate > least)) return false;
+  if (!(best.derivative > least)) return false;
   const Vec3 towards = side.direction_to_own(towards_in_common);
   if (side.feature() == FeatureKind::kEdge) {
     const bool both = (side.edge().inward * towards).minCoeff() > least;

@@ -204,8 +204,11 @@ void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
          {distance(a, b, Pose{}, pose, state), distance(a, b, relative_pose(pose, {}), other)}) {
       EXPECT_EQ(r.lower, -kInfinity);
       EXPECT_EQ(r.upper, kInfinity);
-      EXPECT_EQ(r.distance, -kInfinity);
-      EXPECT_TRUE(r.normal.isZero(0.0) && r.point_on_a.isZero(0.0) && r.point_on_b.isZero(0.0));
+      for (const double x : {r.distance, r.normal.x(), r.normal.y(), r.normal.z(), r.point_on_a.x(),
+                             r.point_on_a.y(), r.point_on_a.z(), r.point_on_b.x(), r.point_on_b.y(),
+                             r.point_on_b.z()}) {
+        EXPECT_TRUE(std::isnan(x));
+      }
       EXPECT_EQ(r.status, DistanceStatus::kBadPose);
     }
     expect_distance(distance(sound, sound, Pose{}, at(1.5, 0.25, 0), state), 0.5);

@@ -63,7 +63,9 @@ void Judge::judge_pairs(const Report& report, const Monitor& monitor) {
     const PairReport pair = monitor.pair(p);
     judge_bounds(p, pair);
     EXPECT_GE(pair.lower, report.lower_all);
-    ++counted_[pair.status <= PairStatus::kLoose ? 0 : static_cast<std::size_t>(pair.status) - 3];
+    ++counted_[pair.status <= PairStatus::kIterationLimit
+                   ? 0
+                   : static_cast<std::size_t>(pair.status) - 3];
     judge_age(p, pair, report.cycle);
   }
 }
