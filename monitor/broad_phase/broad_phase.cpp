@@ -175,11 +175,11 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
-  const double allowance = lower - level_of(pair);  // s = L - max(H, Z + U)
+  const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z + U)
   const double usual = usual_displacement_[a] + usual_displacement_[b];
   if (!(allowance >= kLeastAllowance + kLeastTicks * usual)) return false;
   CLEARANCE_INVARIANT(lower - allowance >= std::max(horizon_, zone_level(pair)));
-  // Of two fixed objects only the horizon moves.
+  // A fixed object uses nothing of the allowance.
   if (body_b.fixed) return wheels_.set(2 * pair, a, allowance);
   if (body_a.fixed) return wheels_.set(2 * pair + 1, b, allowance);
   const double share = share_of_a(usual_displacement_[a], usual_displacement_[b]);

@@ -43,6 +43,8 @@ void Zones::finish(std::span<const TrackedObject> objects, const Clearance& wait
                    std::uint64_t cycle) noexcept {
   for (std::uint32_t z = 0; z < updates_.size(); ++z) {
     ZoneHysteresis& update = updates_[z];
+    // Pairs that were not added are culled or wait. Culled ones are outside by the broad phase's
+    // invariant (monitor/broad_phase/README.md), so only what waits has to be said.
     if (added_[z] < scene_.zones[z].pairs.size()) {
       const auto least = [&](double lower) {
         return std::min(ZoneLevels::outside_from(scene_.zones[z], true),

@@ -1,4 +1,5 @@
-// What the hulls are is held in core/enclosing_polyhedron_test.cpp; here: who gets one.
+// What the hulls are is held in tests/core/construction/enclosing_polyhedron_test.cpp; here: who
+// gets one.
 #include "monitor/geometry/bounding_hull.hpp"
 
 #include <gtest/gtest.h>
