@@ -46,68 +46,6 @@ TEST(MonitorInputs, ClosingSpeedIsUnknownWhileAVelocityIs) {
 
 // A floor that is tilted against a fixed one: they overlap without end, and no direction parts
 // them.
-TEST(MonitorInputs, ClosingSpeedIsUnknownWhereNoTranslationParts) {
-  const Scene scene = test::cell_of(
-      {test::moving("ramp", {test::floor()}), test::fixed("floor", {test::floor()}, Pose{})});
-  Monitor monitor(scene);
-  for (int k = 0; k < 3; ++k) {
-    const Report& report =
-        tick_with(monitor, 0, {Vec3::Zero(), test::turned(Vec3::UnitX(), 0.5 + 0.01 * k)},
-                  kStart + k * kTick);
-    EXPECT_TRUE(report.minimum_known);
-    EXPECT_EQ(report.minimum.status, PairStatus::kOverlapping);
-    EXPECT_EQ(report.minimum.distance, -kInfinity);
-    EXPECT_EQ(report.minimum.lower, -kInfinity);
-    EXPECT_TRUE(report.minimum.normal.array().isNaN().all()) << "there is none";
-    EXPECT_TRUE(report.minimum.witness_a.allFinite());
-    EXPECT_TRUE(std::isnan(report.minimum.closing_speed));
-    EXPECT_EQ(report.minimum.time_to_contact, 0.0);
-  }
-}
-
-// 300 pairs of balls sleep, one of them 19.8 m apart; then a ramp overlaps the floor without end;
-// then all that was nearer goes far away.
-TEST(MonitorInputs, TheMinimumIsFoundAgainAfterOneWithoutEnd) {
-  constexpr int kPairs = 300;
-  std::vector<Object> objects = {
-      test::moving("probe", {test::ball(0.1)}), test::fixed("post", {test::ball(0.1)}, Pose{}),
-      test::moving("ramp", {test::floor()}), test::fixed("floor", {test::floor()}, Pose{})};
-  for (int i = 1; i <= kPairs; ++i) {
-    objects.push_back(test::moving("ball" + std::to_string(i), {test::ball(0.1)}));
-    objects.push_back(test::fixed("other" + std::to_string(i), {test::ball(0.1)},
-                                  test::at(i == kPairs / 2 ? 20.0 : 500.0, 0, 100.0 * i)));
-  }
-  Scene scene = test::cell_of(std::move(objects));
-  std::erase_if(scene.pairs,
-                [](const ObjectPair& p) { return p.first % 2 != 0 || p.second != p.first + 1; });
-  Monitor monitor(scene);
-  std::vector<PoseSample> samples;
-  const auto tick = [&](int k, double probe, const Pose& ramp) -> const Report& {
-    const std::int64_t now = kStart + k * kTick;
-    samples = {test::sample(0, test::at(0.2 + probe, 0, 0), now), test::sample(2, ramp, now)};
-    for (int i = 1; i <= kPairs; ++i) {
-      samples.push_back(test::sample(2 + 2 * i, test::at(0, 0, 100.0 * i), now));
-    }
-    return monitor.tick(samples, now);
-  };
-  const auto ceiling = [](double height) { return Pose{{0, 0, height}, {0, 1, 0, 0}}; };
-  for (int k = 0; k < 50; ++k) {
-    EXPECT_NEAR(tick(k, 0.05, ceiling(90)).minimum.distance, 0.05, 1e-12);
-  }
-  const Pose tilted{Vec3::Zero(), test::turned(Vec3::UnitX(), 0.5)};
-  for (int k = 50; k < 52; ++k) EXPECT_EQ(tick(k, 0.05, tilted).minimum.distance, -kInfinity);
-  bool proved = false;
-  for (int k = 52; k < 200; ++k) {
-    const Report& report = tick(k, 40.0, ceiling(90));
-    EXPECT_LE(report.lower_all, 19.8) << k;
-    proved = report.minimum_certified;
-    if (proved) {
-      EXPECT_NEAR(report.minimum.distance, 19.8, 1e-12) << k;
-    }
-  }
-  EXPECT_TRUE(proved);
-}
-
 TEST(MonitorInputs, VelocitySentWithTheFirstPoseIsKnownAtOnce) {
   const Scene scene = two_balls();
   Monitor monitor(scene);
