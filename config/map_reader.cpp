@@ -37,7 +37,7 @@ MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagno
   }
 }
 
-// Asking makes a key known: refuse_unknown_keys() reports those that nobody asked for.
+// A key that is read becomes known; refuse_unknown_keys() reports all others.
 const YamlNode* MapReader::optional(const std::string& key) {
   known_.push_back(key);
   for (const YamlEntry& entry : node_.entries) {

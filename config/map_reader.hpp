@@ -1,4 +1,4 @@
-// Reads one YAML map key by key, and refuses the keys that nobody asked for.
+// Reads one YAML map key by key, and refuses the keys that no reader knows.
 #pragma once
 
 #include <string>

@@ -85,7 +85,7 @@ void PairReader::read_rules(const YamlNode& node) {
   if (complete_ && objects_.names_known) refuse_unwatched_objects();
 }
 
-// An object that no rule covers would be a robot link that nobody watches.
+// An object that no rule covers would be a robot link without any monitored pair.
 void PairReader::refuse_unwatched_objects() const {
   std::vector<bool> watched(objects_.objects.size(), false);
   for (const Candidate& candidate : candidates_) {

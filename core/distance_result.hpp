@@ -9,7 +9,7 @@ namespace clearance {
 
 enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
-  kFarAway,         // lower >= far_away > 0, by the spheres around them; nobody asked by how much
+  kFarAway,         // lower >= far_away > 0, by the spheres around them; no query was made
   kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
   kOverlapping,     // certified: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding

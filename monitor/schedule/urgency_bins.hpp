@@ -41,7 +41,7 @@ class UrgencyBins {
   const double period_s_;
   // By object.
   std::vector<double> reach_;          // no point of it is farther from its origin, m
-  std::vector<double> stated_speed_;   // of any point of it, m/s; 0: fixed, or nobody said
+  std::vector<double> stated_speed_;   // of any point of it, m/s; 0: fixed, or not stated
   std::vector<std::uint32_t> in_bin_;  // pairs of the bin that is being evaluated
 };
 
