@@ -25,8 +25,8 @@ struct TrackedObject {
   // None of the exceptions: known and on time, now and at the last tick, and no discontinuity
   // between.
   bool plain = false;
-  double may_have_moved =
-      0.0;  // since its stamp, m, at most: 0 unless late; infinity: no speed is stated
+  // Since its stamp, m, at most: 0 unless late; infinity: no speed is stated.
+  double may_have_moved = 0.0;
   double unseen_since = 0.0;  // the larger of that at the last tick, if known then, and now, m
   // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
   // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
