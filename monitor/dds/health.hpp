@@ -30,8 +30,13 @@ class HealthLog {
   void update(const clearance_msg_Health& health);
 
  private:
+  void log_clock(const clearance_msg_Health& health);
+
   std::map<std::string, std::uint64_t> rejected_;  // by "object: cause"
   std::vector<bool> stale_;                        // by object
+  std::vector<std::string> other_source_;          // by object
+  std::uint64_t clock_steps_ = 0;
+  std::int64_t clock_offset_ns_ = 0;
   std::uint64_t lost_ = 0, overruns_ = 0, dropped_ = 0;
 };
 
