@@ -6,7 +6,6 @@
 #include <cassert>
 #include <new>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 #include "core/batch/block.hpp"
@@ -74,9 +73,10 @@ class DistanceBatch::Rounds {
 
   static constexpr std::uint32_t kBits = 64;  // of a word of unassigned_
 
-  [[nodiscard]] std::optional<FeaturePair> features_of(std::uint32_t pair,
-                                                       const TrackingState& state) const noexcept {
-    return lane_features(of_.a(pair), of_.b(pair), state);
+  // A bool, and not the features if they fit: an optional of an enum is stored as two parts and
+  // loaded as one, a failed store forwarding that takes up to 6 % of a batch's time.
+  [[nodiscard]] bool fits_lane(std::uint32_t pair) const noexcept {
+    return clearance::fits_lane(of_.a(pair), of_.b(pair), of_.states[pair]);
   }
 
   void judge_blocks() noexcept {
@@ -133,10 +133,10 @@ class DistanceBatch::Rounds {
     unassigned_[pair / kBits] |= std::uint64_t{1} << (pair % kBits);
     ++unassigned_pairs_;
   }
-  void assign(std::uint32_t pair, FeaturePair features) noexcept {
+  void assign(std::uint32_t pair) noexcept {
     unassigned_[pair / kBits] &= ~(std::uint64_t{1} << (pair % kBits));
     --unassigned_pairs_;
-    slots_.enter(pair, features);
+    slots_.enter(pair);
   }
 
   // In the order of the pairs. After more than one transition the features are others, or the pair
@@ -149,8 +149,8 @@ class DistanceBatch::Rounds {
         Residence& residence = residences_[pair];
         residence.add(rounds_, results_[pair].iterations != 1);
         if (!residence.settled(rounds_)) continue;
-        if (const auto features = features_of(pair, of_.states[pair])) {
-          assign(pair, *features);
+        if (fits_lane(pair)) {
+          assign(pair);
         } else {
           residence.wait(Residence::kNotAtAll);
         }
@@ -163,13 +163,12 @@ class DistanceBatch::Rounds {
     ask(pair, of.start);
     Residence& residence = residences_[pair];
     residence.add(rounds_, true);
-    const auto features = features_of(pair, of_.states[pair]);
     if (results_[pair].iterations == 1) {
       residence.wait(Residence::kRetry);
-    } else if (!features) {
+    } else if (!fits_lane(pair)) {
       residence.wait(Residence::kNotAtAll);
     } else if (residence.settled(rounds_)) {
-      slots_.enter(pair, *features);
+      slots_.enter(pair);
       return;
     }
     unassign(pair);

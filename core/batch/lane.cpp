@@ -194,29 +194,22 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 
 }  // namespace
 
-std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                         const TrackingState& state) noexcept {
-  if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return {};
-  if (!a.bounded() && !b.bounded()) return {};
-  const FeaturePair features = feature_pair(state);
-  switch (features) {
+bool fits_lane(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+               const TrackingState& state) noexcept {
+  if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return false;
+  if (!a.bounded() && !b.bounded()) return false;
+  switch (feature_pair(state)) {
     case FeaturePair::kEdgeEdge:
-      if (!a.bounded() || !b.bounded()) return {};
-      break;
+      return a.bounded() && b.bounded();
     case FeaturePair::kEdgeFacet:
-      if (!a.bounded()) return {};
-      break;
+      return a.bounded();
     case FeaturePair::kFacetEdge:
-      if (!b.bounded()) return {};
-      break;
+      return b.bounded();
     case FeaturePair::kFacetFacet:
-      if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
-      if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};
-      break;
+      return few(repeats(a, state.a), kMostSidesOfTwo) && few(repeats(b, state.b), kMostSidesOfTwo);
     default:
-      break;
+      return true;
   }
-  return features;
 }
 
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept {

@@ -28,7 +28,8 @@ void BatchSlots::clear() noexcept {
   for (std::size_t i = blocks_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void BatchSlots::enter(std::uint32_t pair, FeaturePair features) noexcept {
+void BatchSlots::enter(std::uint32_t pair) noexcept {
+  const FeaturePair features = feature_pair(of_.states[pair]);
   std::vector<Slot>& holes = settled_[static_cast<std::size_t>(features)].holes;
   Slot slot;
   while (slot.block == kNowhere && !holes.empty()) {
