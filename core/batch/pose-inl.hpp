@@ -18,6 +18,7 @@ struct Quaternions {
   Lanes x, y, z, w;
 };
 
+// World from body, m; orientations as they came, of unit length or not.
 struct Poses {
   Points position;
   Quaternions orientation;
@@ -27,6 +28,8 @@ struct Rotations {
   Points x, y, z;  // rows
 };
 
+// B as seen from A, and what rounding can have done to it: as in RelativePose4 of
+// core/model/relative_pose-inl.hpp (of the rotation in the 2-norm, of the translation in m).
 struct RelativePoses {
   Rotations rotation;
   Points translation;
@@ -55,6 +58,7 @@ HWY_INLINE Points point_to_b(const RelativePoses& a_from_b, const Points& p) {
 static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == sizeof(Pose));
 static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
 
+// Of the bodies which[0], ..., which[kWidth - 1]: rows in memory, columns in vectors.
 HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
   const double* rows[kWidth];
   for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
@@ -132,6 +136,7 @@ HWY_INLINE LaneMask multiple_of_half(Lanes v) {
   const Lanes twice = hn::Add(v, v);
   return hn::Eq(twice, hn::Round(twice));
 }
+// Of unit quaternions, as permutes_axes() of core/model/relative_pose-inl.hpp.
 HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
   return hn::And(hn::And(multiple_of_half(q.x), multiple_of_half(q.y)),
                  hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
@@ -177,6 +182,7 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
     spoil(hn::And(near, hn::And(are_unit(a), are_unit(b))), out);
   }
   out.translation_error = hn::Mul(all(kTranslationError), apart);
+  // As may_be_exact() there: moving orientations nearly never pass.
   const LaneMask may_be_exact = hn::Or(multiple_of_half(a.w), multiple_of_half(q.z));
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), may_be_exact))) set_exactness(a, b, apart, out);
   return out;
