@@ -54,8 +54,9 @@ struct Publisher {
   Participant participant{dds};
   PoseReader poses{scene, participant};
   ReportQueue queue{scene, {.reports = 16}};
+  RecordingHealth recording;
   std::unique_ptr<ReportWriter> reports =
-      std::make_unique<ReportWriter>(scene, participant, queue, poses);
+      std::make_unique<ReportWriter>(scene, participant, queue, poses, recording);
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 
