@@ -39,8 +39,10 @@ StopSignal::StopSignal() {
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  // Whoever reads our output may leave first: then a write fails, that is all.
+  // Whoever reads our output may leave first, and a file may get too large: then a write fails,
+  // that is all.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 // A signal that is pending is delivered when the mask is restored.

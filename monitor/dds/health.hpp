@@ -21,7 +21,7 @@ namespace clearance {
                                                        const LoopStatistics& statistics,
                                                        const PoseReader& poses,
                                                        std::uint64_t dropped_reports,
-                                                       const RecordingHealth& recording);
+                                                       const RecordingHealth& recording = {});
 
 // Tells the log which rejections, losses and late inputs are new since the health before: a few
 // lines a second at most.
