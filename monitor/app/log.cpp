@@ -92,7 +92,7 @@ class LogWriter {
     if (count == 0) return;
     write({.time = time,
            .level = spdlog::level::warn,
-           .text = fmt::format("{} lines are left out here: the log was not read", count)});
+           .text = fmt::format("{} lines are left out here: stderr took them too slowly", count)});
   }
 
   void write(const LogLine& line) {
