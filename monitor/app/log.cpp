@@ -79,7 +79,7 @@ class LogWriter {
       LogLine line;
       while (queue_.pop(line)) {
         note_left_out(line.left_out_before, line.time);
-        write(line);
+        if (!write(line)) queue_.leave_out(1);
         ++written_;
       }
       note_left_out(queue_.take_left_out(), std::chrono::system_clock::now());
@@ -90,12 +90,13 @@ class LogWriter {
  private:
   void note_left_out(std::uint64_t count, std::chrono::system_clock::time_point time) {
     if (count == 0) return;
-    write({.time = time,
-           .level = spdlog::level::warn,
-           .text = fmt::format("{} lines are left out here: stderr took them too slowly", count)});
+    const std::string text =
+        fmt::format("{} lines are left out here: stderr took them too slowly", count);
+    if (!write({.time = time, .level = spdlog::level::warn, .text = text})) queue_.leave_out(count);
   }
 
-  void write(const LogLine& line) {
+  // False: it could not be written.
+  bool write(const LogLine& line) {
     const std::string text = printable(line.text);
     const spdlog::details::log_msg message(line.time, {}, name_, line.level, text);
     spdlog::memory_buf_t formatted;
@@ -105,7 +106,7 @@ class LogWriter {
       out.insert(message.color_range_end, kPlain);
       out.insert(message.color_range_start, kColours[static_cast<std::size_t>(line.level)]);
     }
-    if (!write_all(STDERR_FILENO, out)) queue_.leave_out();
+    return write_all(STDERR_FILENO, out);
   }
 
   std::string name_;
@@ -138,7 +139,11 @@ class LogSink final : public spdlog::sinks::sink {
   LogSink& operator=(const LogSink&) = delete;
   ~LogSink() override {
     writer_->close();
-    comes_true([this] { return writer_->ended(); }) ? thread_.join() : thread_.detach();
+    if (comes_true([this] { return writer_->ended(); })) {
+      thread_.join();
+    } else {
+      thread_.detach();
+    }
   }
 
   void log(const spdlog::details::log_msg& message) override {

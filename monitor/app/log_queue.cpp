@@ -12,7 +12,7 @@ LogQueue::LogQueue(std::size_t lines) : slots_(lines) {
 void LogQueue::push(LogLine line) noexcept {
   const std::uint64_t waiting = back_.load() - front_.load();
   if (overflowed_.load(std::memory_order_relaxed) && 2 * waiting > slots_.size()) {
-    leave_out();
+    leave_out(1);
     return;
   }
   overflowed_ = false;
@@ -20,7 +20,7 @@ void LogQueue::push(LogLine line) noexcept {
   const std::uint64_t lost = line.left_out_before + 1;
   if (place(line)) return;
   overflowed_ = true;
-  left_out_.fetch_add(lost, std::memory_order_relaxed);
+  leave_out(lost);
 }
 
 // Repeats only when another producer has taken the slot: one of them always succeeds.

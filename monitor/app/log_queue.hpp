@@ -30,8 +30,10 @@ class LogQueue {
 
   // Any thread. A line that finds no room is counted and lost.
   void push(LogLine line) noexcept;
-  // Counts a line that was lost elsewhere.
-  void leave_out() noexcept { left_out_.fetch_add(1, std::memory_order_relaxed); }
+  // Counts lines that were lost elsewhere.
+  void leave_out(std::uint64_t lines) noexcept {
+    left_out_.fetch_add(lines, std::memory_order_relaxed);
+  }
 
   // The thread that writes. False: no line is ready.
   bool pop(LogLine& line) noexcept;

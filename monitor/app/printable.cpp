@@ -52,7 +52,11 @@ std::string printable(std::string_view text, LineBreaks breaks) {
     while (!good.empty()) {
       const std::string_view character = good.substr(0, length_of(good.front()));
       good.remove_prefix(character.size());
-      is_shown(character, breaks) ? void(out += character) : escape(character, out);
+      if (is_shown(character, breaks)) {
+        out += character;
+      } else {
+        escape(character, out);
+      }
     }
     escape(text.substr(0, 1), out);
     text.remove_prefix(text.empty() ? 0 : 1);

@@ -58,16 +58,26 @@ Recording::~Recording() { finish(); }
 void Recording::finish() {
   if (!thread_.joinable()) return;
   queue_.close();
-  std::uint64_t steps = steps_;
-  for (std::int64_t waited_ms = 0; !ended_ && waited_ms < kDiskPatienceMs; ++waited_ms) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (const std::uint64_t now = steps_; now != steps) waited_ms = 0, steps = now;
-  }
+  wait_for_the_disk();
   hangs_ = !ended_;
-  hangs_ ? thread_.detach() : thread_.join();
-  if (hangs_) spdlog::error("recording: the disk takes nothing, {} is left unfinished", file_);
+  if (hangs_) {
+    thread_.detach();
+    spdlog::error("recording: the disk takes nothing, {} is left unfinished", file_);
+  } else {
+    thread_.join();
+  }
   watch();
   complete_ = !hangs_ && !health_.failed() && missing() == 0;
+}
+
+// Until the thread has ended, or has handed nothing to the disk for as long as that may take.
+void Recording::wait_for_the_disk() const {
+  std::uint64_t steps = steps_;
+  for (int waited_ms = 0; !ended_ && waited_ms < kDiskPatienceMs; ++waited_ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (steps_ != steps) waited_ms = 0;
+    steps = steps_;
+  }
 }
 
 // Empties the queue until it is closed.

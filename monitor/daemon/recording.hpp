@@ -51,6 +51,7 @@ class Recording {
  private:
   void run();
   void record_all();
+  void wait_for_the_disk() const;
   void count(std::uint64_t messages);
   [[nodiscard]] std::uint64_t missing() const noexcept;
 

@@ -15,16 +15,25 @@ namespace {
 
 using testing::HasSubstr;
 
+const bool kNoHangingDisk = std::string(CLEARANCE_HANGING_DISK).empty();
+
 // A daemon that records, with a client of its reports and its health.
 class RecordingDaemon : public testing::Test {
  protected:
+  explicit RecordingDaemon(const std::string& text = small_cell("small")) : cell(text) {}
+
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
-  void start(const ChildOptions& options = {}, const std::vector<std::string>& more = {}) {
-    daemon.emplace(
-        kDaemon, with(with({cell.path(), "--record", path("run.mcap")}, dds_arguments(dds)), more),
-        options);
+  void start(const ChildOptions& options = {}) {
+    daemon.emplace(kDaemon, with({cell.path(), "--record", path("run.mcap")}, dds_arguments(dds)),
+                   options);
     distances.settle();
+  }
+  // With a disk that hangs as long as the file 'hang' exists.
+  void start_on_a_disk_that_may_hang() {
+    start({.environment = {{"LD_PRELOAD", CLEARANCE_HANGING_DISK},
+                           {"CLEARANCE_DISK_HANGS_IF", path("hang")}}});
+    ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; })) << daemon->output();
   }
   // Reports go on without a gap.
   void expect_reports(int count) {
@@ -38,14 +47,15 @@ class RecordingDaemon : public testing::Test {
       cycle = (*report)->cycle;
     }
   }
-  // Until the health topic says this of the recording.
-  bool health_says(const std::string& what) {
+  // Until the health topic says this of the recording, and that so much is missing.
+  bool health_says(const std::string& what, std::uint64_t missing = 0) {
     Sample<clearance_msg_Health> sample;
     void* pointer = &*sample;
     dds_sample_info_t info{};
     return eventually([&] {
       return dds_take(health, &pointer, &info, 1, 1) == 1 && info.valid_data &&
-             std::string(sample->recording).find(what) != std::string::npos;
+             std::string(sample->recording).find(what) != std::string::npos &&
+             sample->recording_missing >= missing;
     });
   }
   // What a fault of the file must lead to, whichever it is.
@@ -72,7 +82,7 @@ class RecordingDaemon : public testing::Test {
   }
 
   ScratchFolder folder;
-  CellFile cell{small_cell("small")};
+  CellFile cell;
   Scene scene = cell.scene();
   DdsOptions dds = own_dds();
   Participant client{dds};
@@ -182,10 +192,8 @@ TEST_F(RecordingDaemon, TellsThatItsDiskIsFull) {
 
 // A disk that takes nothing any more (a network file system that is away): write() does not return.
 TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
-  if (std::string(CLEARANCE_HANGING_DISK).empty()) GTEST_SKIP() << "no preloading with sanitizers";
-  start({.environment = {{"LD_PRELOAD", CLEARANCE_HANGING_DISK},
-                         {"CLEARANCE_DISK_HANGS_IF", path("hang")}}});
-  ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; })) << daemon->output();
+  if (kNoHangingDisk) GTEST_SKIP() << "no preloading with sanitizers";
+  start_on_a_disk_that_may_hang();
   write_text(folder / "hang", "");
   expect_reports(200);
   daemon->signal(SIGTERM);
@@ -193,6 +201,31 @@ TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
   EXPECT_THAT(daemon->output(), HasSubstr("the disk takes nothing"));
   EXPECT_THAT(daemon->output(), HasSubstr("recording INCOMPLETE"));
   EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
+}
+
+// The queue in front of the disk holds a thousand reports: a fast daemon fills it in a second.
+class FastRecordingDaemon : public RecordingDaemon {
+ protected:
+  FastRecordingDaemon() : RecordingDaemon(small_cell_at("1000")) {}
+
+  static std::string small_cell_at(const std::string& rate_hz) {
+    std::string text = small_cell("small");
+    return text.replace(text.find("200"), 3, rate_hz);
+  }
+};
+
+TEST_F(FastRecordingDaemon, CountsWhatADiskIsTooSlowFor) {
+  if (kNoHangingDisk) GTEST_SKIP() << "no preloading with sanitizers";
+  start_on_a_disk_that_may_hang();
+  write_text(folder / "hang", "");
+  EXPECT_TRUE(health_says("recording " + path("run.mcap"), 1)) << daemon->output();
+  EXPECT_TRUE(eventually([&] { return daemon->wrote("the disk is too slow"); }));
+  std::filesystem::remove(folder / "hang");
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(5, daemon->wait()) << daemon->output();
+  EXPECT_THAT(daemon->output(), HasSubstr("the disk was too slow; "));
+  std::string output;
+  EXPECT_EQ(0, replay("run.mcap", output)) << output;
 }
 
 TEST_F(RecordingDaemon, NeverRecordsOverItsCell) {

@@ -1,5 +1,5 @@
-// Preloaded into a program under test: once the file that CLEARANCE_DISK_HANGS_IF names exists, no
-// write to an MCAP file returns, as with a disk that is away.
+// Preloaded into a program under test: as long as the file that CLEARANCE_DISK_HANGS_IF names
+// exists, no write to an MCAP file returns, as with a disk that is away.
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -24,6 +24,6 @@ bool hangs() {
 }  // namespace
 
 extern "C" ssize_t write(int descriptor, const void* bytes, size_t count) {
-  while (is_recording(descriptor) && hangs()) pause();
+  while (is_recording(descriptor) && hangs()) usleep(1000);
   return syscall(SYS_write, descriptor, bytes, count);
 }
