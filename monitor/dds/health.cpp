@@ -131,10 +131,13 @@ void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
 
 // A new sample each time: its strings differ in length from second to second.
 Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
-                                         const PoseReader& poses, std::uint64_t dropped_reports) {
+                                         const PoseReader& poses, std::uint64_t dropped_reports,
+                                         const RecordingHealth& recording) {
   Sample<clearance_msg_Health> sample;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
+  sample->recording = dds_string_dup(recording.state().c_str());
+  sample->recording_missing = recording.missing();
   fill_loop(statistics, *sample);
   fill_rejections(scene, statistics, poses.refused_sources(), *sample);
   fill_inputs(scene, statistics, *sample);

@@ -9,6 +9,7 @@
 
 #include "config/scene.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
@@ -19,7 +20,8 @@ namespace clearance {
 [[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene,
                                                        const LoopStatistics& statistics,
                                                        const PoseReader& poses,
-                                                       std::uint64_t dropped_reports);
+                                                       std::uint64_t dropped_reports,
+                                                       const RecordingHealth& recording = {});
 
 // Tells the log which rejections, losses and late inputs are new since the health before: a few
 // lines a second at most.

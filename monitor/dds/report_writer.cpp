@@ -54,10 +54,11 @@ dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind
 
 // The catalogue is latched: clients that come later get it as well.
 ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
-                           const PoseReader& poses)
+                           const PoseReader& poses, const RecordingHealth& recording)
     : scene_(scene),
       queue_(queue),
       poses_(poses),
+      recording_(recording),
       distances_(make_writer(participant, scene, TopicKind::kDistances)),
       catalogue_(make_writer(participant, scene, TopicKind::kCatalogue)),
       zones_(make_writer(participant, scene, TopicKind::kZones)),
@@ -129,8 +130,8 @@ void ReportWriter::write_zones(const Report& report) {
 
 // Failed writes count as dropped: the client got neither.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
-  const auto sample =
-      make_health(scene_, statistics, poses_, queue_.dropped_reports() + failed_writes_.load());
+  const auto sample = make_health(scene_, statistics, poses_,
+                                  queue_.dropped_reports() + failed_writes_.load(), recording_);
   write(health_, &*sample, "health");
   health_log_.update(*sample);
 }

@@ -21,7 +21,7 @@ class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.
   ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
-               const PoseReader& poses);
+               const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
   // After the last tick: writes what is queued.
@@ -41,6 +41,7 @@ class ReportWriter {
   const Scene& scene_;
   ReportQueue& queue_;
   const PoseReader& poses_;
+  const RecordingHealth& recording_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   Sample<clearance_msg_Distances> distances_sample_;
   WrittenZones written_zones_;
