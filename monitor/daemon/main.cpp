@@ -19,7 +19,7 @@ constexpr const char* kFooter = R"(Exit status:
   1  something else failed, or --check was stopped before its end
   2  wrong usage
   3  the cell file is wrong
-  4  DDS could not be joined
+  4  DDS could not be joined, or another daemon publishes this cell already
   5  the recording could not be made, or is incomplete
 
 Example:
@@ -71,6 +71,7 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
   print(stdout, "{}", daemon.summary());
+  if (daemon.gave_way()) return kDdsFailed;
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 

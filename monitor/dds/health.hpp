@@ -32,7 +32,7 @@ class HealthLog {
  private:
   std::map<std::string, std::uint64_t> rejected_;  // by "object: cause"
   std::vector<bool> stale_;                        // by object
-  std::uint64_t lost_ = 0, overruns_ = 0, dropped_ = 0;
+  std::uint64_t lost_ = 0, undecodable_ = 0, foreign_ = 0, overruns_ = 0, dropped_ = 0;
 };
 
 }  // namespace clearance
