@@ -28,7 +28,7 @@ ifreq named(const char* name) {
 
 bool bring_up(int socket, const char* name) {
   ifreq request = named(name);
-  request.ifr_flags = IFF_UP | IFF_RUNNING;
+  request.ifr_flags = IFF_UP | IFF_RUNNING | IFF_MULTICAST;
   return ioctl(socket, SIOCSIFFLAGS, &request) == 0;
 }
 

@@ -64,7 +64,8 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   std::optional<ChildProcess> daemon, watch;
   robot.run([&] { daemon.emplace(test::kDaemon, test::with({cell.path()}, arguments)); });
   panel.run([&] { watch.emplace(test::kWatch, test::with({"--plain"}, arguments)); });
-  ASSERT_TRUE(eventually([&] { return watch->wrote("cycle "); })) << daemon->output();
+  ASSERT_TRUE(eventually([&] { return watch->wrote("cycle "); }))
+      << daemon->output() << watch->output();
   EXPECT_TRUE(daemon->wrote("interface eth0, datagrams of up to 1400 B")) << daemon->output();
 
   wire.lose(0.1);
