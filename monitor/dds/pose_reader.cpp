@@ -225,7 +225,7 @@ void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer)
         "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
         tally->source.view(), batch.scene_revision, scene_.revision);
   }
-  log_slow_poses(*slot);
+  if (made_for(*slot, scene_.revision)) log_slow_poses(*slot);
   ++tally->batches;
   ring_.push();
 }

@@ -30,7 +30,7 @@ void SourceTally::note_sequence(std::uint64_t number) noexcept {
 
 PoseSources::PoseSources() {
   tallies_.reserve(kMaxSources);
-  refused_.reserve(2 * kMaxSources + 1);
+  refused_.reserve(2 * kMaxSources + 2);
 }
 
 Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
@@ -82,18 +82,21 @@ void PoseSources::keep(std::span<const std::uint64_t> writers) {
   }
 }
 
-// The first ones are named, all others counted together.
+// The first ones are named, all others counted together by cause.
 Admission PoseSources::refuse(const SourceName& source, SourceRefusal cause, std::size_t poses) {
   Admission refusal{.cause = cause};
-  auto entry = std::ranges::find_if(refused_, [&](const RefusedSource& refused) {
-    return refused.source == source && refused.cause == cause;
-  });
+  const auto entry_of = [&](const SourceName& name) {
+    return std::ranges::find_if(refused_, [&](const RefusedSource& refused) {
+      return refused.source == name && refused.cause == cause;
+    });
+  };
+  auto entry = entry_of(source);
   if (entry == refused_.end() && refused_.size() < 2 * kMaxSources) {
     refusal.news = Admission::News::kFirstRefusal;
     entry = refused_.insert(refused_.end(), {.source = source, .cause = cause});
   } else if (entry == refused_.end()) {
-    entry = std::ranges::find(refused_, SourceName(), &RefusedSource::source);
-    if (entry == refused_.end()) entry = refused_.insert(refused_.end(), RefusedSource{});
+    entry = entry_of(SourceName());
+    if (entry == refused_.end()) entry = refused_.insert(refused_.end(), {.cause = cause});
   }
   entry->poses += poses;
   return refusal;

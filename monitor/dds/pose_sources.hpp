@@ -35,7 +35,7 @@ enum class SourceRefusal : std::uint8_t {
 [[nodiscard]] const char* name(SourceRefusal cause) noexcept;
 
 struct RefusedSource {
-  SourceName source;  // empty: all others together
+  SourceName source = {};  // empty: all others together
   SourceRefusal cause = SourceRefusal::kTooMany;
   std::uint64_t poses = 0;
 };

@@ -76,6 +76,8 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   EXPECT_EQ(watch->wait(), 0);
   const auto [came, missed] = came_and_missed(watch->output());
   EXPECT_GT(came, missed) << watch->output();
+  RecordProperty("came", std::to_string(came));
+  RecordProperty("missed", std::to_string(missed));
   robot.run([] { EXPECT_EQ(fragments_created(), 0u); });
   EXPECT_EQ(wire.ip_fragments(), 0u);
   daemon->signal(SIGTERM);

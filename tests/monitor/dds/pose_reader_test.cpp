@@ -250,6 +250,7 @@ TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
   dds_qset_partition1(qos, std::getenv(kPartition));
   const dds_entity_t publisher = dds_create_publisher(participant.handle(), qos, nullptr);
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
   const dds_entity_t writer =
       check_dds(dds_create_writer(publisher, topic, qos, nullptr), "writer");
   dds_delete_qos(qos);
