@@ -53,6 +53,7 @@ void conclude(const Published& published, const Displacements& displaced, const 
   if (unseen.any) conclusion.minimum.add_rest(unseen.all().now, unseen.all().since);
   const std::span<const TrackedObject> objects(evaluation.objects);
   zones.finish(displaced.any_lost ? objects : objects.first(0), unseen.waiting(), evaluation.cycle);
+  zones.explain(objects);
 }
 
 }  // namespace clearance

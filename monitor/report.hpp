@@ -64,6 +64,15 @@ struct PairReport {
   std::uint64_t refresh_age_cycles = 0;
 };
 
+// Why a zone is active.
+enum class ZoneCause : std::uint8_t {
+  kInactive = 0,
+  kNear = 1,     // by distance, or not yet proved to be farther
+  kLate = 2,     // what a late object may have moved unseen: on time, the pair would be outside
+  kUnknown = 3,  // an object was never seen
+  kDiscontinuous = 4,  // nobody can say what was between the last two poses of an object
+};
+
 struct ZoneReport {
   // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
   // what came too near and was gone again between two ticks has entered, for this tick. An unknown
@@ -78,6 +87,8 @@ struct ZoneReport {
   double clearance = 0.0;         // the smallest (lower - margins), m
   double swept_clearance = 0.0;   // the smallest (swept_lower - margins), m
   std::uint64_t since_cycle = 0;  // when `active` last changed; 0: never
+  ZoneCause cause = ZoneCause::kInactive;
+  std::uint32_t cause_object = 0;  // of `pair`, for all causes from kLate on: index into objects
 };
 
 struct Report {
@@ -88,7 +99,8 @@ struct Report {
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;
   // The pair with the smallest upper bound, of all that are not kUnknown and have ever been
-  // evaluated.
+  // evaluated. While it is stale it is no minimum of anything: its distance is that of an old pose,
+  // and another stale pair may have the least lower bound. `lower_all` bounds all pairs always.
   PairReport minimum;
   bool minimum_known = false;  // false: there is no such pair
   // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and

@@ -104,7 +104,7 @@ int run_watch(const Arguments& arguments, StopSignal& signal) {
   } while ((arguments.seconds == 0.0 || seconds < arguments.seconds) && !display.quit() &&
            !signal.wait(kFrameMs));
   display.close();
-  print(stdout, "{}", watch::final_summary(feed, seconds));
+  print(stdout, "{}", watch::final_summary(feed, seconds, clock.realtime_ns()));
   return feed.any() ? kOk : kIncomplete;
 }
 

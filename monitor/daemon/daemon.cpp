@@ -82,7 +82,7 @@ void Daemon::run(StopSignal& signal) {
   std::thread ticking([&] { tick_thread(done); });
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
-  while (!done && !signal.wait(kSignalPollMs)) {
+  while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
     if (recording_) recording_->watch();
   }
   stop_ = true;

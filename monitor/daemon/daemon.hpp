@@ -39,9 +39,12 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Ticks until a signal comes or `max_ticks` are done; then everything that was queued is written.
+  // Ticks until a signal comes, `max_ticks` are done, or another daemon turns out to have published
+  // this cell before; then everything that was queued is written.
   void run(StopSignal& signal);
 
+  // Ended, or about to, because another daemon publishes this cell.
+  [[nodiscard]] bool gave_way() const noexcept { return reports_.gives_way(); }
   // After run(): what happened, for a person.
   [[nodiscard]] std::string summary() const;
   // After run(): nothing was to be recorded, or all of it is in the file.

@@ -22,7 +22,7 @@ constexpr const char* kFooter = R"(Exit status:
   1  something else failed, or --check was stopped before its end
   2  wrong usage
   3  the cell file is wrong
-  4  DDS could not be joined
+  4  DDS could not be joined, or another daemon publishes this cell already
   5  the recording could not be begun (no folder, no permission, no regular file), or is incomplete at the end
      (deleted, moved or changed under way, a disk that is full or too slow). Nothing else depends on it: ticks go on
 
@@ -80,6 +80,7 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
     drain_log();
     std::_Exit(kIncomplete);
   }
+  if (daemon.gave_way()) return kDdsFailed;
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 

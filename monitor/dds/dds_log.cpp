@@ -13,10 +13,16 @@ namespace clearance {
 namespace {
 
 constexpr int kLinesASecond = 5;
+// What Cyclone's receiving thread says of a sample that it cannot decode.
+constexpr std::string_view kUndecodable = ": deserialization ";
+
+std::atomic<std::uint64_t> undecodable{0};
 
 // Called from any of Cyclone's threads. A link that is down makes it complain at every write, so
 // lines beyond the rate are counted and left out.
 void log_dds(void*, const dds_log_data_t* message) {
+  std::string_view text(message->message, message->size);
+  if (text.find(kUndecodable) != std::string_view::npos) ++undecodable;
   static std::atomic<std::int64_t> second{0};
   static std::atomic<int> lines{0}, left_out{0};
   const std::int64_t now = dds_time() / DDS_NSECS_IN_SEC;
@@ -29,7 +35,6 @@ void log_dds(void*, const dds_log_data_t* message) {
     ++left_out;
     return;
   }
-  std::string_view text(message->message, message->size);
   while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
   const bool severe = (message->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
   spdlog::log(severe ? spdlog::level::err : spdlog::level::warn, "dds: {}", text);
@@ -38,5 +43,7 @@ void log_dds(void*, const dds_log_data_t* message) {
 }  // namespace
 
 void route_dds_log() { dds_set_log_sink(log_dds, nullptr); }
+
+std::uint64_t undecodable_samples() noexcept { return undecodable.load(); }
 
 }  // namespace clearance

@@ -7,6 +7,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <string_view>
+
+#include "monitor/loop/ports.hpp"
 
 namespace clearance {
 namespace {
@@ -49,15 +52,17 @@ const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(caus
 
 // By source, by object and, for ids that no object has, by cause alone: what the totals hold beyond
 // the objects' counts.
-void fill_rejections(const Scene& scene, const LoopStatistics& statistics,
-                     const std::vector<RefusedSource>& refused, clearance_msg_Health& out) {
-  const std::size_t most = refused.size() + (scene.objects.size() + 1) * kRejects;
+void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
+                     clearance_msg_Health& out) {
+  const std::vector<RefusedSource> refused = poses.refused_sources();
+  const std::size_t most = 1 + refused.size() + (scene.objects.size() + 1) * kRejects;
   reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
   for (const RefusedSource& source : refused) {
-    const std::string name(source.source.view());
-    add_rejection(out, name.empty() ? "other sources" : fmt::format("source '{}'", name),
-                  "one source too many", source.poses);
+    const std::string_view of = source.source.view();
+    add_rejection(out, of.empty() ? "other sources" : fmt::format("source '{}'", of),
+                  name(source.cause), source.poses);
   }
+  add_rejection(out, "sources", "batches of a writer with too many names", poses.refused_names());
   std::array<std::uint64_t, kRejects> nameless = statistics.rejected_total;
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
     for (std::size_t cause = 0; cause < kRejects; ++cause) {
@@ -94,8 +99,12 @@ void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance
   }
 }
 
-// One entry a source, and their sums.
-void fill_sources(const std::vector<SourceTally>& sources, clearance_msg_Health& out) {
+// One entry a source, and the sums of these and of those that were heard before.
+void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& departed,
+                  clearance_msg_Health& out) {
+  out.batches = departed.batches;
+  out.lost_batches = departed.lost;
+  const std::int64_t now = SystemClock().monotonic_ns();
   reserve_sequence(out.sources, sources.size());
   for (const SourceTally& tally : sources) {
     clearance_msg_SourceHealth& entry = out.sources._buffer[out.sources._length++];
@@ -103,7 +112,7 @@ void fill_sources(const std::vector<SourceTally>& sources, clearance_msg_Health&
     entry.batches = tally.batches;
     entry.lost_batches = tally.lost;
     entry.cut_poses = tally.cut_poses;
-    entry.age_ns = std::max<std::int64_t>(0, out.now_ns - tally.last_ns);
+    entry.age_ns = std::max<std::int64_t>(0, now - tally.last_ns);
     out.batches += tally.batches;
     out.lost_batches += tally.lost;
   }
@@ -138,10 +147,11 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   sample->dropped_reports = dropped_reports;
   sample->recording = dds_string_dup(recording.state().c_str());
   sample->recording_missing = recording.missing();
+  sample->undecodable_samples = poses.undecodable();
   fill_loop(statistics, *sample);
-  fill_rejections(scene, statistics, poses.refused_sources(), *sample);
+  fill_rejections(scene, statistics, poses, *sample);
   fill_inputs(scene, statistics, *sample);
-  fill_sources(poses.tallies(), *sample);
+  fill_sources(poses.tallies(), poses.departed(), *sample);
   return sample;
 }
 
@@ -161,7 +171,7 @@ void HealthLog::log_clock(const clearance_msg_Health& health) {
   clock_offset_ns_ = health.clock_offset_ns;
 }
 
-// Refusals, then late inputs, then the three totals. The limit on lines is for a cell that loses
+// Refusals, then late inputs, then the totals. The limit on lines is for a cell that loses
 // all its objects at once.
 void HealthLog::update(const clearance_msg_Health& health) {
   int lines = 0;
@@ -198,6 +208,8 @@ void HealthLog::update(const clearance_msg_Health& health) {
   }
   log_clock(health);
   log_growth("batches lost", health.lost_batches, lost_);
+  log_growth("samples that cannot be decoded", health.undecodable_samples, undecodable_);
+  log_growth("reports of other daemons", health.foreign_reports, foreign_);
   log_growth("overruns", health.overruns, overruns_);
   log_growth("reports dropped", health.dropped_reports, dropped_);
 }

@@ -39,7 +39,7 @@ class HealthLog {
   std::vector<std::string> other_source_;          // by object
   std::uint64_t clock_steps_ = 0;
   std::int64_t clock_offset_ns_ = 0;
-  std::uint64_t lost_ = 0, overruns_ = 0, dropped_ = 0;
+  std::uint64_t lost_ = 0, undecodable_ = 0, foreign_ = 0, overruns_ = 0, dropped_ = 0;
 };
 
 }  // namespace clearance

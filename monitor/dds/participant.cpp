@@ -53,26 +53,18 @@ Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
   return qos;
 }
 
-// Measured on loopback: whole batches in one datagram. The default of 14720 B cuts a batch of 100
-// poses in two. On a real network Cyclone's own sizes fit an Ethernet frame better.
-std::string configuration(const DdsOptions& options) {
-  const bool loopback = options.interface == "lo";
-  std::string xml = fmt::format(
-      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface "
-      "name=\"{}\"/></Interfaces>",
-      options.interface);
-  xml += loopback ? "<AllowMulticast>false</AllowMulticast>"
-                    "<MaxMessageSize>65000B</MaxMessageSize><FragmentSize>64000B</FragmentSize>"
-                  : "<AllowMulticast>spdp</AllowMulticast>";
-  xml +=
-      "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-      "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>";
-  if (loopback) xml += "<Peer Address=\"127.0.0.1\"/>";
-  for (const std::string& peer : options.peers) xml += fmt::format("<Peer Address=\"{}\"/>", peer);
-  xml += "</Peers></Discovery></Domain></CycloneDDS>";
-  // What a person sets for all of Cyclone comes last, so it wins.
-  if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
-  return xml;
+// How large a datagram may be, and a fragment of a sample in it with its headers.
+struct DatagramSizes {
+  int message, fragment;
+};
+
+bool is_loopback(const DdsOptions& options) { return options.interface == "lo"; }
+
+// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and is ten IP
+// fragments on a network.
+DatagramSizes datagram_sizes(const DdsOptions& options) {
+  return is_loopback(options) ? DatagramSizes{.message = 65'000, .fragment = 64'000}
+                              : DatagramSizes{.message = 1'400, .fragment = 1'300};
 }
 
 // A process can configure a domain once: participants of the same domain share it, and the first
@@ -83,7 +75,7 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
   const std::lock_guard lock(mutex);
   if (auto open = domains[options.domain].lock()) return open;
   const dds_entity_t handle =
-      check_dds(dds_create_domain(options.domain, configuration(options).c_str()),
+      check_dds(dds_create_domain(options.domain, domain_configuration(options).c_str()),
                 fmt::format("configuring DDS domain {}", options.domain));
   std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
                                              [](const dds_entity_t* entity) {
@@ -95,10 +87,10 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
 }
 
 std::string describe(const DdsOptions& options) {
-  return fmt::format("domain {}, {}, interface {}", options.domain,
+  return fmt::format("domain {}, {}, interface {}, datagrams of up to {} B", options.domain,
                      options.partition.empty() ? "default partition"
                                                : fmt::format("partition {}", options.partition),
-                     options.interface);
+                     options.interface, datagram_sizes(options).message);
 }
 
 // "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
@@ -109,6 +101,51 @@ std::string host_of(const std::string& peer) {
 }
 
 }  // namespace
+
+std::string domain_configuration(const DdsOptions& options) {
+  const DatagramSizes sizes = datagram_sizes(options);
+  std::string xml = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface "
+      "name=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>"
+      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize>"
+      "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>",
+      options.interface, is_loopback(options) ? "false" : "spdp", sizes.message, sizes.fragment);
+  if (is_loopback(options)) xml += "<Peer Address=\"127.0.0.1\"/>";
+  for (const std::string& peer : options.peers) xml += fmt::format("<Peer Address=\"{}\"/>", peer);
+  xml += "</Peers></Discovery></Domain></CycloneDDS>";
+  // What a person sets for all of Cyclone comes last, so it wins.
+  if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
+  return xml;
+}
+
+// Cyclone keeps the facts while the writer matches; the copy is ours to free.
+WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
+  dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader, writer);
+  if (endpoint == nullptr) return {};
+  WriterFacts facts{.present = true};
+  for (const std::uint8_t byte : endpoint->key.v) facts.guid += fmt::format("{:02x}", byte);
+  void* bytes = nullptr;
+  std::size_t size = 0;
+  if (dds_qget_userdata(endpoint->qos, &bytes, &size) && bytes != nullptr) {
+    facts.user_data.assign(static_cast<const char*>(bytes), size);
+    dds_free(bytes);
+  }
+  dds_builtintopic_free_endpoint(endpoint);
+  return facts;
+}
+
+// Asked again with more room when there are more than fit.
+std::vector<std::uint64_t> writers_of(dds_entity_t reader) {
+  std::vector<std::uint64_t> writers(64);
+  for (;;) {
+    const dds_return_t count = check_dds(
+        dds_get_matched_publications(reader, writers.data(), writers.size()), "listing writers");
+    const bool all = static_cast<std::size_t>(count) <= writers.size();
+    writers.resize(static_cast<std::size_t>(count));
+    if (all) return writers;
+  }
+}
 
 bool can_be_looked_up(const std::string& peer) {
   addrinfo* found = nullptr;
@@ -151,23 +188,45 @@ dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const s
                    fmt::format("making topic {}", name));
 }
 
-// Latched topics keep the depth of the table: a reader with a greater one would not get more.
+// Latched topics keep the depth of the table: a reader with a greater one would not get more. The
+// filter is that of the topic entity, of which this reader has one of its own.
 dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
-                                 const dds_listener_t* listener) {
+                                 const dds_listener_t* listener, const dds_topic_filter* filter) {
   const Topic& row = topic(kind);
   const bool own_depth = depth > 0 && row.delivery == Delivery::kStream;
   const Qos qos = endpoint_qos(row.delivery, own_depth ? depth : row.reader_depth);
-  return check_dds(dds_create_reader(subscriber_, make_topic(*row.type, name), qos.get(), listener),
+  const dds_entity_t of = make_topic(*row.type, name);
+  if (filter != nullptr) check_dds(dds_set_topic_filter_extended(of, filter), "filtering a topic");
+  return check_dds(dds_create_reader(subscriber_, of, qos.get(), listener),
+                   fmt::format("making a reader of {}", name));
+}
+
+// A late joiner needs nothing, and a sample that is lost is followed by another.
+dds_entity_t Participant::reader_of_others(const std::string& name,
+                                           const dds_listener_t* listener) {
+  const Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  const dds_entity_t of = make_topic(*topic(TopicKind::kDistances).type, name);
+  return check_dds(dds_create_reader(subscriber_, of, qos.get(), listener),
                    fmt::format("making a reader of {}", name));
 }
 
 // Depth and durability are those of the table, whatever readers ask for.
 dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
-                                 const dds_listener_t* listener) {
+                                 const WriterOptions& options) {
   const Topic& row = topic(kind);
   const Qos qos = endpoint_qos(row.delivery, row.writer_depth);
-  return check_dds(dds_create_writer(publisher_, make_topic(*row.type, name), qos.get(), listener),
-                   fmt::format("making a writer of {}", name));
+  if (options.lease_ns > 0) {
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, options.lease_ns);
+  }
+  if (!options.user_data.empty()) {
+    dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());
+  }
+  return check_dds(
+      dds_create_writer(publisher_, make_topic(*row.type, name), qos.get(), options.listener),
+      fmt::format("making a writer of {}", name));
 }
 
 // A guard condition beside the readers' conditions lets another thread end the wait.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/wire/convert.hpp"
 
@@ -24,21 +25,52 @@ void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_
       status.last_policy_id);
 }
 
-// Cyclone calls this in a thread of its own.
-void log_matched(dds_entity_t, const dds_subscription_matched_status_t status, void*) {
+// Cyclone calls this in a thread of its own. The flag makes the taking thread look who has left.
+void log_matched(dds_entity_t, const dds_subscription_matched_status_t status, void* changed) {
+  static_cast<std::atomic<bool>*>(changed)->store(true);
   spdlog::info("a writer of poses {}: {} now",
                status.current_count_change > 0 ? "appeared" : "left", status.current_count);
 }
 
-// The listener is copied by Cyclone, so ours is deleted at once.
-dds_entity_t make_reader(const Scene& scene, Participant& participant) {
-  dds_listener_t* listener = dds_create_listener(nullptr);
-  dds_lset_requested_incompatible_qos(listener, log_incompatible);
-  dds_lset_subscription_matched(listener, log_matched);
-  const dds_entity_t reader =
-      participant.reader(TopicKind::kPoses, scene.topics.poses, PoseReader::kDepth, listener);
-  dds_delete_listener(listener);
-  return reader;
+// Cyclone asks before it stores a sample, with the name's instance handle and no decoded sample.
+bool admits(const dds_sample_info_t* info, void* names) {
+  return static_cast<NameLimit*>(names)->admits(info->publication_handle, info->instance_handle,
+                                                SystemClock().monotonic_ns());
+}
+
+// What a person should know of a batch's source. Writers are named by their GUIDs.
+void log_news(const Admission& admission, const SourceName& source, dds_entity_t reader,
+              std::uint64_t writer) {
+  const auto guid = [reader](std::uint64_t handle) {
+    const WriterFacts facts = writer_facts(reader, handle);
+    return facts.present ? facts.guid : std::string("that has left");
+  };
+  switch (admission.news) {
+    case Admission::News::kNothing:
+      return;
+    case Admission::News::kNewSource:
+      if (admission.place_of.view().empty()) {
+        spdlog::info("poses from source '{}'", source.view());
+      } else {
+        spdlog::info("poses from source '{}', in the place of '{}'", source.view(),
+                     admission.place_of.view());
+      }
+      return;
+    case Admission::News::kTakenOver:
+      spdlog::warn("source '{}' is now writer {}; before, it was writer {}", source.view(),
+                   guid(writer), guid(admission.former_writer));
+      return;
+    case Admission::News::kFirstRefusal:
+      if (admission.cause == SourceRefusal::kTooMany) {
+        spdlog::warn("source '{}' is one too many: {} sources are heard, its poses are not used",
+                     source.view(), kMaxSources);
+      } else {
+        spdlog::warn(
+            "writer {} uses the name of source '{}', which is writer {}: its poses are not used",
+            guid(writer), source.view(), guid(admission.former_writer));
+      }
+      return;
+  }
 }
 
 }  // namespace
@@ -53,21 +85,36 @@ std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
 PoseReader::PoseReader(const Scene& scene, Participant& participant)
     : scene_(scene),
       samples_a_batch_(samples_a_batch(scene)),
-      reader_(make_reader(scene, participant)),
+      undecodable_before_(undecodable_samples()),
+      reader_(make_reader(participant)),
       wait_(participant, {reader_}),
-      ring_(kBatches) {
+      ring_(kBatches),
+      slow_poses_(scene) {
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
   ring_.prepare([this](PoseBatch& slot) { slot.samples.resize(samples_a_batch_); });
-  tallies_.reserve(kMaxSources);
-  refused_.reserve(kMaxSources + 1);
   thread_ = std::thread([this] { run(); });
 }
 
-// Ends the thread before the ring is destroyed.
+// The listener and the filter are copied by Cyclone; what they point to is here.
+dds_entity_t PoseReader::make_reader(Participant& participant) {
+  dds_listener_t* listener = dds_create_listener(nullptr);
+  dds_lset_requested_incompatible_qos(listener, log_incompatible);
+  dds_lset_subscription_matched_arg(listener, log_matched, &writers_changed_, true);
+  const dds_topic_filter filter{
+      .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
+  const dds_entity_t reader =
+      participant.reader(TopicKind::kPoses, scene_.topics.poses, kDepth, listener, &filter);
+  dds_delete_listener(listener);
+  return reader;
+}
+
+// Ends the thread before the ring is destroyed, and the reader before what its listener and filter
+// point to.
 PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
   thread_.join();
+  dds_delete(reader_);
 }
 
 // The slot lent by the last call is given back by this one. No lock: the ring has one filler and
@@ -82,12 +129,21 @@ const PoseBatch* PoseReader::next() noexcept {
 // A copy, since the taking thread goes on changing them.
 std::vector<SourceTally> PoseReader::tallies() const {
   const std::lock_guard lock(tallies_mutex_);
-  return tallies_;
+  return sources_.tallies();
 }
 
 std::vector<RefusedSource> PoseReader::refused_sources() const {
   const std::lock_guard lock(tallies_mutex_);
-  return refused_;
+  return sources_.refused();
+}
+
+SourceTally PoseReader::departed() const {
+  const std::lock_guard lock(tallies_mutex_);
+  return sources_.departed();
+}
+
+std::uint64_t PoseReader::undecodable() const {
+  return undecodable_samples() - undecodable_before_;
 }
 
 // Waits for data or for the destructor.
@@ -107,51 +163,52 @@ void PoseReader::take_all() {
     const dds_return_t count = dds_take(reader_, pointers.data(), infos.data(), kDepth, kDepth);
     if (count < 0) spdlog::error("taking poses failed: {}", dds_strretcode(count));
     if (count <= 0) return;
+    if (writers_changed_.exchange(false)) note_writers();
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) hand_over(*taken_[i]);
+      if (infos[i].valid_data) hand_over(*taken_[i], infos[i].publication_handle);
+      if (infos[i].instance_state != DDS_IST_ALIVE) names_.forget_name(infos[i].instance_handle);
     }
   }
 }
 
-// Null: one source too many.
-SourceTally* PoseReader::tally_of(const SourceName& source) {
-  const auto found = std::find_if(tallies_.begin(), tallies_.end(),
-                                  [&](const SourceTally& tally) { return tally.source == source; });
-  if (found != tallies_.end()) return &*found;
-  if (tallies_.size() == kMaxSources) return nullptr;
-  spdlog::info("poses from source '{}'", source.view());
-  return &tallies_.emplace_back(SourceTally{.source = source});
+// Names and places of writers that have left are free.
+void PoseReader::note_writers() {
+  const std::vector<std::uint64_t> writers = writers_of(reader_);
+  names_.keep(writers);
+  const std::lock_guard lock(tallies_mutex_);
+  sources_.keep(writers);
 }
 
-// The first sources beyond the limit are named, all others counted together.
-void PoseReader::refuse(const SourceName& source, std::uint64_t poses) {
-  auto entry = std::ranges::find(refused_, source, &RefusedSource::source);
-  if (entry == refused_.end()) {
-    const bool named = refused_.size() < kMaxSources;
-    if (named) {
-      spdlog::warn("source '{}' is one too many: {} sources are heard, its poses are not used",
-                   source.view(), kMaxSources);
-    }
-    if (refused_.size() <= kMaxSources) refused_.push_back({named ? source : SourceName(), 0});
-    entry = refused_.end() - 1;
+// Null: the batch is refused. The log gets what is new.
+SourceTally* PoseReader::tally_of(const clearance_msg_PoseBatch& batch, std::uint64_t writer,
+                                  std::int64_t now_ns) {
+  const SourceName source(batch.source);
+  const Admission admission = sources_.admit(source, writer, batch.poses._length, now_ns);
+  log_news(admission, source, reader_, writer);
+  return admission.tally;
+}
+
+void PoseReader::log_slow_poses(const PoseBatch& batch) {
+  for (const PoseSample& sample : batch.samples) {
+    const auto interval_ns = slow_poses_.note(sample.object, sample.stamp_ns);
+    if (!interval_ns) continue;
+    const Object& object = scene_.objects[sample.object];
+    spdlog::warn(
+        "poses of {} come every {} ms, its age limit is {} ms: it is late again and again, and its "
+        "zones flicker; age_limit_ms of {} would fit",
+        object.name, *interval_ns / 1'000'000, object.age_limit_ns / 1'000'000,
+        fitting_age_limit_ms(*interval_ns));
   }
-  entry->poses += poses;
 }
 
 // Counts what is missing, converts into a free slot, and hands it to the tick thread.
-void PoseReader::hand_over(clearance_msg_PoseBatch& batch) {
+void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer) {
   const std::lock_guard lock(tallies_mutex_);
-  SourceTally* tally = tally_of(SourceName(batch.source));
-  if (tally == nullptr) {
-    refuse(SourceName(batch.source), batch.poses._length);
-    return;
-  }
-  // A smaller number is a source that started again.
-  if (tally->last_ns != 0 && batch.sequence_number > tally->last_sequence + 1) {
-    tally->lost += batch.sequence_number - tally->last_sequence - 1;
-  }
-  tally->last_sequence = batch.sequence_number;
-  tally->last_ns = dds_time();
+  const std::int64_t now = SystemClock().monotonic_ns();
+  SourceTally* tally = tally_of(batch, writer, now);
+  if (tally == nullptr) return;
+  tally->note_sequence(batch.sequence_number);
+  tally->last_ns = now;
 
   PoseBatch* slot = ring_.back();
   if (slot == nullptr) {
@@ -168,6 +225,7 @@ void PoseReader::hand_over(clearance_msg_PoseBatch& batch) {
         "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
         tally->source.view(), batch.scene_revision, scene_.revision);
   }
+  if (made_for(*slot, scene_.revision)) log_slow_poses(*slot);
   ++tally->batches;
   ring_.push();
 }

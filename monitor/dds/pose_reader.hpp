@@ -11,29 +11,15 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/participant.hpp"
+#include "monitor/dds/pose_sources.hpp"
+#include "monitor/dds/slow_poses.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
-
-// What came from one source, since the start.
-struct SourceTally {
-  SourceName source;
-  std::uint64_t batches = 0;    // handed to the tick
-  std::uint64_t lost = 0;       // gaps in the sequence numbers, and batches with no slot free
-  std::uint64_t cut_poses = 0;  // beyond what a batch of this cell can hold: not used
-  std::uint64_t last_sequence = 0;
-  std::int64_t last_ns = 0;  // when its last sample was taken, CLOCK_REALTIME
-  bool warned_of_revision = false;
-};
-
-// A source beyond those that are heard.
-struct RefusedSource {
-  SourceName source;  // empty: all others together
-  std::uint64_t poses = 0;
-};
 
 // next() is called by the tick thread and takes no lock; everything else by other threads.
 class PoseReader final : public PoseSource {
@@ -54,16 +40,29 @@ class PoseReader final : public PoseSource {
   // Any thread but the tick's.
   [[nodiscard]] std::vector<SourceTally> tallies() const;
   [[nodiscard]] std::vector<RefusedSource> refused_sources() const;
+  // What sources that have given up their places had counted.
+  [[nodiscard]] SourceTally departed() const;
+  // Samples of writers that use more names than NameLimit allows.
+  [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
+  // Samples that Cyclone could not decode since this was made: it drops them with a line in its
+  // log, which is where they are counted. Those of other readers of the process count as well.
+  [[nodiscard]] std::uint64_t undecodable() const;
 
  private:
+  dds_entity_t make_reader(Participant& participant);
   void run();
   void take_all();
-  void hand_over(clearance_msg_PoseBatch& batch);
-  SourceTally* tally_of(const SourceName& source);
-  void refuse(const SourceName& source, std::uint64_t poses);
+  void note_writers();
+  void hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer);
+  SourceTally* tally_of(const clearance_msg_PoseBatch& batch, std::uint64_t writer,
+                        std::int64_t now_ns);
+  void log_slow_poses(const PoseBatch& batch);
 
   const Scene& scene_;
   std::size_t samples_a_batch_;
+  std::uint64_t undecodable_before_;
+  NameLimit names_;
+  std::atomic<bool> writers_changed_{false};
   dds_entity_t reader_;
   DataWait wait_;
   std::array<Sample<clearance_msg_PoseBatch>, kDepth> taken_;
@@ -72,8 +71,8 @@ class PoseReader final : public PoseSource {
 
   mutable std::mutex
       tallies_mutex_;  // between the taking and the publishing thread; never the tick's
-  std::vector<SourceTally> tallies_;
-  std::vector<RefusedSource> refused_;
+  PoseSources sources_;
+  SlowPoses slow_poses_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

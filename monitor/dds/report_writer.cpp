@@ -6,7 +6,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "monitor/loop/realtime.hpp"
 #include "monitor/pair_name.hpp"
@@ -28,29 +31,47 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
       topic, status.last_policy_id);
 }
 
-// "entered at cycle 12: hand - box, 0.043 m clear, 0.041 m since the tick before".
+// "entered at cycle 12 by distance: hand - box, 0.043 m clear, 0.041 m since the tick before", or
+// "entered at cycle 12 because poses of hand are late: ...".
 std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
-  const std::string at_cycle = fmt::format("at cycle {}", cycle);
-  if (!zone.active) return fmt::format("left {}", at_cycle);
-  const std::string pair = fmt::format("entered {}: {}", at_cycle, pair_name(scene, zone.pair));
-  if (zone.clearance == -kInfinity)
-    return fmt::format("{} unknown: no pose of one of them, or too old", pair);
-  if (zone.swept_clearance == -kInfinity)
-    return fmt::format("{}, unknown since the last tick: the pose of one is discontinuous", pair);
-  return fmt::format("{}, {:.3f} m clear, {:.3f} m since the tick before", pair, zone.clearance,
-                     zone.swept_clearance);
+  if (!zone.active) return fmt::format("left at cycle {}", cycle);
+  const std::string pair = pair_name(scene, zone.pair);
+  const std::string& object = scene.objects[zone.cause_object].name;
+  const std::string clear = fmt::format("{:.3f} m clear, {:.3f} m since the tick before",
+                                        zone.clearance, zone.swept_clearance);
+  switch (zone.cause) {
+    case ZoneCause::kUnknown:
+      return fmt::format("entered at cycle {}: {} unknown, no pose of {} has come", cycle, pair,
+                         object);
+    case ZoneCause::kLate:
+      return fmt::format(
+          "entered at cycle {} because poses of {} are late, not by distance: {}, at least {}",
+          cycle, object, pair, clear);
+    case ZoneCause::kDiscontinuous:
+      return fmt::format(
+          "entered at cycle {}: {}, unknown since the last tick: the pose of {} is discontinuous",
+          cycle, pair, object);
+    default:
+      return fmt::format("entered at cycle {} by distance: {}, {}", cycle, pair, clear);
+  }
 }
 
 // The name of the topic is the cell's, which the table points to.
-dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind kind) {
+dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind kind,
+                         WriterOptions options = {}) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_offered_incompatible_qos(listener, log_incompatible);
-  const dds_entity_t writer = participant.writer(kind, scene.topics.*topic(kind).name, listener);
+  options.listener = listener;
+  const dds_entity_t writer = participant.writer(kind, scene.topics.*topic(kind).name, options);
   dds_delete_listener(listener);
   return writer;
 }
 
 }  // namespace
+
+std::int64_t lease_ns(double rate_hz) noexcept {
+  return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
+}
 
 // The catalogue is latched: clients that come later get it as well.
 ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
@@ -59,15 +80,19 @@ ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQ
       queue_(queue),
       poses_(poses),
       recording_(recording),
-      distances_(make_writer(participant, scene, TopicKind::kDistances)),
+      identity_(make_identity()),
+      distances_(
+          make_writer(participant, scene, TopicKind::kDistances,
+                      {.lease_ns = lease_ns(scene.rate_hz), .user_data = to_user_data(identity_)})),
       catalogue_(make_writer(participant, scene, TopicKind::kCatalogue)),
       zones_(make_writer(participant, scene, TopicKind::kZones)),
       health_(make_writer(participant, scene, TopicKind::kHealth)),
+      others_(participant, scene.topics.distances, identity_),
       distances_sample_(make_distances(scene)),
       written_zones_(scene.zones.size()),
       health_log_(scene) {
-  const auto catalogue = make_catalogue(scene);
-  check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
+  distances_sample_->daemon = identity_.id;
+  check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
 }
 
@@ -88,12 +113,28 @@ std::uint32_t ReportWriter::distance_readers() const {
              : 0;
 }
 
+Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
+  auto catalogue = make_catalogue(scene_);
+  catalogue->daemon = identity_.id;
+  return catalogue;
+}
+
+// A client has one value of a latched topic, whoever wrote it last: after another daemon has left,
+// ours are written again.
+void ReportWriter::look_for_others() {
+  others_.look();
+  if (!others_.have_just_left()) return;
+  write_zones_again_ = true;
+  write(catalogue_, &*own_catalogue(), "catalogue");
+}
+
 // Reports in order, then statistics; ends when the queue is closed and empty.
 void ReportWriter::run() {
   name_thread("reports");
   for (bool closed = false; !closed;) {
     queue_.wait();
     closed = queue_.closed();  // asked before the last look, so that nothing is left behind
+    look_for_others();
     while (const QueuedReport* queued = queue_.reports().front()) {
       write_report(*queued);
       queue_.reports().pop();
@@ -112,15 +153,19 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   write_zones(queued.report);
 }
 
-// A zone is written at the start, and whenever it changes from what was written last.
+// A zone is written at the start, whenever it changes from what was written last, and again after
+// somebody else may have written it.
 void ReportWriter::write_zones(const Report& report) {
+  const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    if (written_zones_.is(zone, active)) continue;
+    const bool is_written = written_zones_.is(zone, active);
+    if (is_written && !again) continue;
     clearance_msg_ZoneState state{};
+    state.daemon = identity_.id;
     to_wire(scene_, report, zone, state);
     write(zones_, &state, "zone state");
-    if (written_zones_.any(zone) || active) {
+    if (!is_written && (written_zones_.any(zone) || active)) {
       spdlog::info("zone '{}' {}", scene_.zones[zone].name,
                    change_of_zone(scene_, report.zones[zone], report.cycle));
     }
@@ -130,13 +175,17 @@ void ReportWriter::write_zones(const Report& report) {
 
 // Failed writes count as dropped: the client got neither.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
-  const auto sample = make_health(scene_, statistics, poses_,
-                                  queue_.dropped_reports() + failed_writes_.load(), recording_);
+  auto sample = make_health(scene_, statistics, poses_,
+                            queue_.dropped_reports() + failed_writes_.load(), recording_);
+  sample->daemon = identity_.id;
+  sample->other_writers = others_.writers();
+  sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
   health_log_.update(*sample);
 }
 
 void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {
+  if (others_.give_way()) return;
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return;
   // At a tick rate the log would be flooded: powers of two say it often enough.

@@ -6,7 +6,9 @@
 #include <thread>
 
 #include "config/scene.hpp"
+#include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
+#include "monitor/dds/other_daemons.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/loop/report_queue.hpp"
@@ -14,6 +16,10 @@
 #include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
+
+// Without a report for this long, clients are told that the daemon is not alive: 10 periods, and no
+// less than 100 ms, so that neither a lost datagram nor a busy machine looks like death.
+[[nodiscard]] std::int64_t lease_ns(double rate_hz) noexcept;
 
 // The only thread that writes to DDS. A report that cannot be written is counted and left out; the
 // tick thread never waits for it.
@@ -30,9 +36,13 @@ class ReportWriter {
   // Clients that are listening for distances right now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
+  // Another daemon publishes this cell and was here first. Nothing more is written.
+  [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
  private:
   void run();
+  [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
+  void look_for_others();
   void write_report(const QueuedReport& queued);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
@@ -42,9 +52,12 @@ class ReportWriter {
   ReportQueue& queue_;
   const PoseReader& poses_;
   const RecordingHealth& recording_;
+  DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
+  OtherDaemons others_;
   Sample<clearance_msg_Distances> distances_sample_;
   WrittenZones written_zones_;
+  bool write_zones_again_ = false;
   HealthLog health_log_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::thread thread_;

@@ -119,6 +119,8 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
   copy_text(scene.zones[zone].name, out.name);
   out.active = state.active;
   out.certified = state.certified;
+  out.cause = static_cast<std::uint8_t>(state.cause);
+  out.cause_object = state.cause_object;
   out.pair = state.pair;
   out.clearance = state.clearance;
   out.swept_clearance = state.swept_clearance;

@@ -5,6 +5,25 @@
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
+namespace {
+
+// What an object contributes to a pair that is inside a zone.
+ZoneCause cause_of(const TrackedObject& object) noexcept {
+  if (!object.seen) return ZoneCause::kUnknown;
+  if (object.unseen_since > 0.0) return ZoneCause::kLate;
+  return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
+}
+
+// Whether the pair would be inside if all its poses had been on time: now, or since the last tick.
+bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
+             double outside_from) noexcept {
+  if (!a.known() || !b.known()) return false;
+  const double unseen = a.unseen_since + b.unseen_since;
+  if (report.clearance + unseen < outside_from) return true;
+  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unseen < outside_from;
+}
+
+}  // namespace
 
 Zones::Zones(const Scene& scene, const ZoneLevels& levels)
     : scene_(scene), levels_(levels), reports_(scene.zones.size()), added_(scene.zones.size()) {
@@ -62,6 +81,25 @@ void Zones::finish(std::span<const TrackedObject> objects, const Clearance& wait
     update.finish(cycle, reports_[z]);
   }
   begin_tick();
+}
+
+// The weightier cause of the pair's two objects counts, and of two late ones the one that may have
+// moved farther.
+void Zones::explain(std::span<const TrackedObject> objects) noexcept {
+  for (std::size_t z = 0; z < reports_.size(); ++z) {
+    ZoneReport& report = reports_[z];
+    report.cause = report.active ? ZoneCause::kNear : ZoneCause::kInactive;
+    report.cause_object = 0;
+    if (!report.active || report.pair >= scene_.pairs.size()) continue;
+    const std::uint32_t a = scene_.pairs[report.pair].first, b = scene_.pairs[report.pair].second;
+    const double level = ZoneLevels::outside_from(scene_.zones[z], !report.changed);
+    if (is_near(report, objects[a], objects[b], level)) continue;
+    const ZoneCause of_a = cause_of(objects[a]), of_b = cause_of(objects[b]);
+    const bool is_a =
+        of_a != of_b ? of_a > of_b : objects[a].unseen_since >= objects[b].unseen_since;
+    report.cause = is_a ? of_a : of_b;
+    report.cause_object = is_a ? a : b;
+  }
 }
 
 }  // namespace clearance

@@ -32,6 +32,8 @@ class Zones {
   // known and none has made a discontinuity. Ends the tick.
   void finish(std::span<const TrackedObject> objects, const Clearance& waiting,
               std::uint64_t cycle) noexcept;
+  // After finish(), with all objects: why each zone is active.
+  void explain(std::span<const TrackedObject> objects) noexcept;
 
  private:
   void begin_tick() noexcept;

@@ -159,6 +159,16 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }
 
+TEST(Daemon, SaysOnceThatASourceIsSlowerThanTheAgeLimit) {
+  const test::CellFile cell(test::small_cell("small", 20));
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "20"}, dds));
+  EXPECT_TRUE(eventually([&] { return daemon.wrote("age_limit_ms of 1"); })) << daemon.output();
+  EXPECT_TRUE(daemon.wrote("its age limit is 20 ms: it is late again and again"))
+      << daemon.output();
+}
+
 TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {
   const test::CellFile cell(test::small_cell("small"));
   ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--ticks", "7"},

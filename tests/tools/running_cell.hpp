@@ -44,12 +44,13 @@ class CellFile {
 };
 
 // Two boxes that swing over a floor; slow enough for any machine and sanitizer.
-inline std::string small_cell(const std::string& name) {
+inline std::string small_cell(const std::string& name, int age_limit_ms = 10'000) {
   return "name: " + name +
          R"(
 units: {length: m, angle: deg}
 rate_hz: 200
-defaults: {age_limit_ms: 10000, max_speed: 5}
+defaults: {age_limit_ms: )" +
+         std::to_string(age_limit_ms) + R"(, max_speed: 5}
 objects:
   - {name: left, groups: [arm], box: {size: [0.2, 0.2, 0.2]}}
   - {name: right, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}

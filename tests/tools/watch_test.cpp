@@ -1,7 +1,9 @@
 // clearance-watch and clearance-robot as a user starts them.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "tests/tools/running_cell.hpp"
 
@@ -64,6 +66,65 @@ TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
   watch.signal(SIGTERM);
   EXPECT_EQ(watch.wait(), 0);
   EXPECT_TRUE(watch.wrote(" 1 restarts")) << watch.output();
+}
+
+TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
+  const test::CellFile cell(test::small_cell("small"));
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0);
+  ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced has ended "); })) << watch.output();
+  watch.signal(SIGTERM);
+  EXPECT_EQ(watch.wait(), 0);
+  const std::string output = watch.output();
+  const std::string summary = output.substr(output.find(" reports in "));
+  EXPECT_NE(summary.find("clearanced has ended "), std::string::npos) << summary;
+  EXPECT_NE(summary.find("left - right, at cycle "), std::string::npos) << summary;
+}
+
+TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
+  const test::CellFile cell(test::small_cell("small"));
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("cycle "); })) << watch.output();
+  watch.signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // three times what is called old
+  watch.signal(SIGCONT);
+  EXPECT_TRUE(eventually([&] {
+    return watch.wrote("(the reports are 1.") || watch.wrote("were old when they were read");
+  })) << watch.output();
+  watch.signal(SIGTERM);
+  EXPECT_EQ(watch.wait(), 0);
+  EXPECT_TRUE(watch.wrote("of them were old when they were read, up to 1.")) << watch.output();
+}
+
+TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
+  const test::CellFile cell(test::small_cell("small", 100));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Poses poses(client, scene);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no pose of left"); }))
+      << watch.output();
+  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  // 0.8 m apart, until that is known; then silence.
+  ASSERT_TRUE(eventually([&] {
+    poses.send(0.0);
+    return daemon.wrote("zone 'near' left at cycle");
+  }));
+  EXPECT_TRUE(eventually([&] { return daemon.wrote("because poses of left are late"); }))
+      << daemon.output();
+  EXPECT_TRUE(eventually([&] {
+    return watch.wrote("no minimum known, poses are late: least upper bound ") &&
+           watch.wrote("zone near: poses of left are late");
+  })) << watch.output();
 }
 
 TEST(Watch, EndsAfterItsSecondsAndSaysSoWhenNothingCame) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "monitor/report.hpp"
 
@@ -33,10 +34,20 @@ Style status_style(std::uint8_t status) {
   }
 }
 
-std::string metres(double value) { return fmt::format("{:9.4f}", value); }
+bool is_stale(const clearance_msg_PairDistance& pair) {
+  return static_cast<PairStatus>(pair.status) == PairStatus::kStale;
+}
+
+// Right-aligned, whatever it is: fmt puts what is not finite to the left.
+std::string aligned(double value, int precision, int width) {
+  const std::string text = std::isnan(value) ? "unknown" : fmt::format("{:.{}f}", value, precision);
+  return fmt::format("{:>{}}", text, width);
+}
+
+std::string metres(double value) { return aligned(value, 4, 9); }
 
 std::string point(const clearance_msg_Vector3& p) {
-  return fmt::format("({:7.3f} {:7.3f} {:7.3f})", p.x, p.y, p.z);
+  return fmt::format("({} {} {})", aligned(p.x, 3, 7), aligned(p.y, 3, 7), aligned(p.z, 3, 7));
 }
 
 // Seven columns; contacts more than a quarter of an hour away are not shown.
@@ -57,7 +68,59 @@ std::string approach(const clearance_msg_PairDistance& pair) {
                      contact_time(pair.time_to_contact));
 }
 
-bool silent(const Feed& feed, std::int64_t now_ns) { return now_ns - feed.last_ns() > kSilentNs; }
+double seconds_of(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+// "12:34:56", local time.
+std::string time_of_day(std::int64_t realtime_ns) {
+  const std::time_t seconds = realtime_ns / 1'000'000'000;
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  return fmt::format("{:02}:{:02}:{:02}", local.tm_hour, local.tm_min, local.tm_sec);
+}
+
+// Why what is shown is not what is; empty: it is.
+std::string frozen(const Feed& feed, std::int64_t now_ns) {
+  const std::int64_t since = now_ns - feed.last_ns();
+  const std::string last =
+      fmt::format("last cycle {} at {}", feed.distances().cycle, time_of_day(feed.last_ns()));
+  if (feed.has_ended())
+    return fmt::format("clearanced has ended {:.1f} s ago, {}", seconds_of(since), last);
+  if (feed.publishers() == 0 || since > kSilentNs) {
+    return fmt::format("clearanced is silent for {:.1f} s: it died or stands still, {}",
+                       seconds_of(since), last);
+  }
+  return {};
+}
+
+// What is wrong with the latest reports themselves, or was until a second ago; empty: nothing.
+std::string not_fresh(const Feed& feed, std::int64_t now_ns) {
+  if (feed.check().clocks_disagree) {
+    return fmt::format("the clock of clearanced is {:.1f} s ahead of this one: ages mean nothing",
+                       -seconds_of(feed.check().age_ns));
+  }
+  if (feed.check().is_old) {
+    return fmt::format("the reports are {:.1f} s old", seconds_of(feed.check().age_ns));
+  }
+  const OldReports& old = feed.old_reports();
+  if (old.count == 0 || now_ns - old.last_ns > kSilentNs) return {};
+  return fmt::format("{} reports so far were old when they were read, up to {:.1f} s", old.count,
+                     seconds_of(old.oldest_ns));
+}
+
+// "", or ": poses of hand are late".
+std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
+  const std::string object = feed.object_name(zone.cause_object);
+  switch (static_cast<ZoneCause>(zone.cause)) {
+    case ZoneCause::kLate:
+      return fmt::format(": poses of {} are late", object);
+    case ZoneCause::kUnknown:
+      return fmt::format(": no pose of {}", object);
+    case ZoneCause::kDiscontinuous:
+      return fmt::format(": the pose of {} is discontinuous", object);
+    default:
+      return "";
+  }
+}
 
 Line title_line(const Feed& feed, const ViewContext& context, std::size_t width) {
   Line line(width);
@@ -67,10 +130,11 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
   }
   line.add(context.where).add("  ");
   if (!feed.any()) return line.add("waiting for clearanced", Style::kWarning);
-  if (silent(feed, context.now_ns)) {
-    return line.add(fmt::format("clearanced is silent for {:.1f} s",
-                                1e-9 * static_cast<double>(context.now_ns - feed.last_ns())),
-                    Style::kAlarm);
+  if (const std::string why = frozen(feed, context.now_ns); !why.empty()) {
+    return line.add(why, Style::kAlarm);
+  }
+  if (const std::string why = not_fresh(feed, context.now_ns); !why.empty()) {
+    return line.add(why, Style::kAlarm);
   }
   if (feed.publishers() > 1) {
     return line.add(fmt::format("{} daemons publish here: figures are mixed", feed.publishers()),
@@ -88,6 +152,12 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
     return;
   }
   const clearance_msg_PairDistance& pair = report.minimum;
+  if (is_stale(pair)) {
+    line.add(fmt::format("not known, poses are late; the least upper bound is {:.4f} m, of {}",
+                         pair.upper, feed.pair_name(pair)),
+             Style::kWarning);
+    return;
+  }
   line.add(fmt::format("{:.4f} m  ", pair.distance), Style::kBold)
       .add(feed.pair_name(pair), Style::kBold);
   lines.emplace_back(width)
@@ -123,7 +193,7 @@ void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   Line& line = lines.emplace_back(width);
   line.add("zones     ", Style::kDim);
   for (const auto& [id, zone] : feed.zones()) {
-    line.add(fmt::format("{} {}", zone.name, zone.active ? "ACTIVE" : "clear"),
+    line.add(fmt::format("{} {}{}", zone.name, zone.active ? "ACTIVE" : "clear", cause(feed, zone)),
              zone.active ? Style::kAlarm : Style::kGood)
         .add("  ");
   }
@@ -253,14 +323,16 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
 
 std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (!feed.any()) return fmt::format("waiting for clearanced on {}", context.where);
-  if (silent(feed, context.now_ns)) {
-    return fmt::format("clearanced is silent for {:.1f} s, last cycle {}",
-                       1e-9 * static_cast<double>(context.now_ns - feed.last_ns()),
-                       feed.distances().cycle);
-  }
+  if (const std::string why = frozen(feed, context.now_ns); !why.empty()) return why;
   const clearance_msg_Distances& report = feed.distances();
   std::string text = fmt::format("cycle {}", report.cycle);
-  if (report.minimum_known) {
+  if (const std::string why = not_fresh(feed, context.now_ns); !why.empty()) {
+    text += fmt::format("  ({})", why);
+  }
+  if (report.minimum_known && is_stale(report.minimum)) {
+    text += fmt::format("  no minimum known, poses are late: least upper bound {:.4f} m, {}",
+                        report.minimum.upper, feed.pair_name(report.minimum));
+  } else if (report.minimum_known) {
     const clearance_msg_PairDistance& pair = report.minimum;
     text += fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  {}", pair.distance, pair.lower,
                         pair.upper, feed.pair_name(pair), approach(pair));
@@ -268,7 +340,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
     text += "  no pair known";
   }
   for (const auto& [id, zone] : feed.zones()) {
-    if (zone.active) text += fmt::format("  zone {}", zone.name);
+    if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
   }
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
@@ -282,10 +354,15 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   return text;
 }
 
-std::string final_summary(const Feed& feed, double seconds) {
+std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns) {
   if (!feed.any()) return fmt::format("no report came in {:.1f} s\n", seconds);
   std::string text = fmt::format("{} reports in {:.1f} s, {} missed, {} restarts of the daemon\n",
                                  feed.reports(), seconds, feed.missed(), feed.restarts());
+  if (const OldReports& old = feed.old_reports(); old.count != 0) {
+    text += fmt::format("{} of them were old when they were read, up to {:.1f} s\n", old.count,
+                        seconds_of(old.oldest_ns));
+  }
+  if (const std::string why = frozen(feed, now_ns); !why.empty()) text += fmt::format("{}\n", why);
   if (feed.smallest().known) {
     const clearance_msg_PairDistance& pair = feed.smallest().pair;
     text += fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n", pair.distance,

@@ -10,7 +10,7 @@
 
 namespace clearance::watch {
 
-// The daemon counts as silent when no report has arrived for this long.
+// The daemon counts as silent when no report has arrived for this long, or for its own lease.
 inline constexpr std::int64_t kSilentNs = 1'000'000'000;
 
 struct ViewContext {
@@ -26,7 +26,7 @@ struct ViewContext {
 // One line without escape sequences.
 [[nodiscard]] std::string plain_line(const Feed& feed, const ViewContext& context);
 
-// Several lines about what was received in `seconds`.
-[[nodiscard]] std::string final_summary(const Feed& feed, double seconds);
+// Several lines about what was received in `seconds`; `now_ns` is CLOCK_REALTIME.
+[[nodiscard]] std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns);
 
 }  // namespace clearance::watch

@@ -1,10 +1,15 @@
 // The poses topic as the tick thread sees it, through real DDS on loopback.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <cstring>
+
+#include "monitor/dds/dds_log.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/child_process.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -33,6 +38,7 @@ class Sender {
   }
 
   [[nodiscard]] dds_entity_t writer() const { return writer_; }
+  void rename(std::string_view source) { batch_.source = SourceName(source); }
   void send(std::uint64_t sequence_number, std::size_t poses = 1) {
     batch_.sequence_number = sequence_number;
     batch_.samples.assign(poses, test::sample(1, test::at(0, 0, 1), test::kStart));
@@ -144,6 +150,132 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
   EXPECT_STREQ(health->rejected._buffer[0].cause, "one source too many");
   EXPECT_EQ(health->rejected._buffer[0].count, 3u);
   EXPECT_EQ(port.poses.tallies().size(), kMaxSources);
+  EXPECT_EQ(port.poses.next(), nullptr);
+}
+
+// What health says of one cause, of all objects and sources.
+std::uint64_t refused(const Port& port, std::string_view cause) {
+  const auto health = make_health(port.scene, no_statistics(port.scene), port.poses, 0);
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < health->rejected._length; ++i) {
+    if (cause == health->rejected._buffer[i].cause) count += health->rejected._buffer[i].count;
+  }
+  return count;
+}
+
+TEST(PoseReader, LeavesANameToItsFirstWriterUntilThatOneLeaves) {
+  Port port;
+  auto first = std::make_unique<Sender>(port.scene, port.dds, "arm");
+  Sender second(port.scene, port.dds, "arm");
+  port.wait_for(*first);
+  port.wait_for(second);
+  first->send(1);
+  EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{1});
+  for (std::uint64_t i = 2; i <= 10; ++i) {
+    second.send(1'968'000'000 + i);
+    first->send(i);
+    EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{i});
+  }
+  EXPECT_TRUE(test::eventually([&] { return refused(port, "another writer's name") == 9; }));
+  EXPECT_EQ(port.poses.tallies().at(0).lost, 0u);
+
+  first.reset();
+  std::vector<std::uint64_t> taken;
+  EXPECT_TRUE(test::eventually([&] {
+    second.send(2'000'000'000);
+    while (const PoseBatch* batch = port.poses.next()) taken.push_back(batch->sequence_number);
+    return !taken.empty();
+  }));
+  EXPECT_EQ(port.poses.tallies().at(0).lost, 0u);
+}
+
+TEST(PoseReader, StoresNoMoreThanSixteenNamesOfAWriterAndStillHearsOthers) {
+  Port port;
+  Sender hostile(port.scene, port.dds, "name0", 4), arm(port.scene, port.dds, "arm", 4);
+  port.wait_for(hostile);
+  port.wait_for(arm);
+  arm.send(1);
+  EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{1});
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    hostile.rename("name" + std::to_string(i));
+    hostile.send(1);
+  }
+  EXPECT_TRUE(test::eventually([&] { return port.poses.refused_names() >= 1000 - kMaxSources; }));
+  EXPECT_EQ(refused(port, "batches of a writer with too many names"), 1000 - kMaxSources);
+  arm.send(2);
+  std::vector<std::uint64_t> heard;
+  EXPECT_TRUE(test::eventually([&] {
+    while (const PoseBatch* batch = port.poses.next()) {
+      if (batch->source.view() == "arm") heard.push_back(batch->sequence_number);
+    }
+    return !heard.empty();
+  }));
+  EXPECT_EQ(heard, std::vector<std::uint64_t>{2});
+}
+
+constexpr const char* kDomain = "CLEARANCE_TEST_DOMAIN";
+constexpr const char* kPartition = "CLEARANCE_TEST_PARTITION";
+
+// Not a test of its own: the process that the one below starts. Sends samples that end after their
+// key, under the poses' topic and type names.
+TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
+  const char* domain = std::getenv(kDomain);
+  if (domain == nullptr) GTEST_SKIP() << "started by another test only";
+  const Scene scene = two_movers();
+  // The type's operations up to its key, and the end: Cyclone's descriptors are lists of these.
+  std::vector<std::uint32_t> operations;
+  const std::uint32_t* original = clearance_msg_PoseBatch_desc.m_ops;
+  while (operations.size() < 3) operations.push_back(*original++);
+  operations.push_back(DDS_OP_RTS);
+  for (int i = 0; i < 2; ++i) operations.push_back(i == 0 ? DDS_OP_KOF | 1 : 0u);
+  const dds_key_descriptor_t key{"source", 4, 0};
+  const dds_topic_descriptor_t type{.m_size = 40,
+                                    .m_align = 1,
+                                    .m_flagset = 0,
+                                    .m_nkeys = 1,
+                                    .m_typename = clearance_msg_PoseBatch_desc.m_typename,
+                                    .m_keys = &key,
+                                    .m_nops = 2,
+                                    .m_ops = operations.data(),
+                                    .m_meta = "",
+                                    .type_information = {},
+                                    .type_mapping = {},
+                                    .restrict_data_representation = 0};
+  Participant participant({.domain = static_cast<std::uint32_t>(std::atoi(domain)),
+                           .partition = std::getenv(kPartition)});
+  const dds_entity_t topic = check_dds(
+      dds_create_topic(participant.handle(), &type, scene.topics.poses.c_str(), nullptr, nullptr),
+      "topic");
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_partition1(qos, std::getenv(kPartition));
+  const dds_entity_t publisher = dds_create_publisher(participant.handle(), qos, nullptr);
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
+  dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
+  const dds_entity_t writer =
+      check_dds(dds_create_writer(publisher, topic, qos, nullptr), "writer");
+  dds_delete_qos(qos);
+  ASSERT_TRUE(test::eventually([&] { return test::matched_readers(writer) == 1; }));
+  struct {
+    char source[40] = "garbage";
+  } sample;
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(dds_write(writer, &sample), DDS_RETCODE_OK);
+  dds_wait_for_acks(writer, DDS_SECS(10));
+}
+
+TEST(PoseReader, CountsWhatCannotBeDecodedInHealth) {
+  route_dds_log();
+  Port port;
+  ::setenv(kDomain, std::to_string(port.dds.domain).c_str(), 1);
+  ::setenv(kPartition, port.dds.partition.c_str(), 1);
+  test::ChildProcess sender("/proc/self/exe",
+                            {"--gtest_also_run_disabled_tests",
+                             "--gtest_filter=PoseReader.DISABLED_SendsWhatCannotBeDecoded"});
+  EXPECT_TRUE(
+      test::eventually([&] { return port.poses.undecodable() == 100; }, std::chrono::seconds(20)))
+      << port.poses.undecodable() << sender.output();
+  EXPECT_EQ(make_health(port.scene, no_statistics(port.scene), port.poses, 0)->undecodable_samples,
+            port.poses.undecodable());
+  EXPECT_EQ(sender.wait(), 0) << sender.output();
   EXPECT_EQ(port.poses.next(), nullptr);
 }
 

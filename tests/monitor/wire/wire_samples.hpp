@@ -72,6 +72,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_PoseBatch>& batch
 }
 
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_Distances>& report) {
+  report->daemon = random();
   report->cycle = random();
   report->now_ns = static_cast<std::int64_t>(random());
   report->publish_ns = static_cast<std::int64_t>(random());
@@ -93,6 +94,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Distances>& repor
 }
 
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_Catalogue>& catalogue) {
+  catalogue->daemon = random();
   catalogue->scene = any_text(random);
   catalogue->scene_revision = random();
   catalogue->rate_hz = any_double(random);
@@ -123,7 +125,10 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Catalogue>& catal
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_ZoneState>& zone) {
   zone->zone = static_cast<std::uint32_t>(random());
   any_bounded_text(random, zone->name);
+  zone->daemon = random();
   zone->active = random() % 2 != 0;
+  zone->cause = static_cast<std::uint8_t>(random() % 5);
+  zone->cause_object = static_cast<std::uint32_t>(random());
   zone->clearance = any_double(random);
   zone->swept_clearance = any_double(random);
   zone->since_cycle = random();
@@ -131,7 +136,11 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_ZoneState>& zone)
 }
 
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) {
+  health->daemon = random();
   health->cycle = random();
+  health->undecodable_samples = random();
+  health->other_writers = random();
+  health->foreign_reports = random();
   health->tick_p50_us = any_double(random);
   health->overruns = random();
   health->recording = any_text(random);

@@ -138,22 +138,28 @@ TYPED_TEST(EveryTopic, RefusesTrailingBytesOfAnotherLayout) {
 }
 
 TEST(Cdr, ReadsBigEndianWriters) {
-  // ZoneState {zone 2, "stop", active, not certified, pair 5, clearance 0.5 and
-  // 0.25, since 7, cycle 9, now 1}
-  constexpr unsigned char kBytes[] = {
-      0,    0,    0, 0,  // encapsulation: XCDR1, big-endian
-      0,    0,    0, 2, 0, 0, 0, 5, 's', 't', 'o', 'p', 0, 1, 0, 0,  //
-      0,    0,    0, 5, 0, 0, 0, 0,                                  // pair, padding to 8
-      0x3f, 0xe0, 0, 0, 0, 0, 0, 0,                                  // 0.5
-      0x3f, 0xd0, 0, 0, 0, 0, 0, 0,                                  // 0.25
-      0,    0,    0, 0, 0, 0, 0, 7, 0,   0,   0,   0,   0, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0, 1};
+  // ZoneState {zone 2, daemon 3, "stop", active, not certified, cause 2, object 4, pair 5,
+  // clearance 0.5 and 0.25, since 7, cycle 9, now 1}
+  constexpr unsigned char kBytes[] = {0,    0,    0, 0,  // encapsulation: XCDR1, big-endian
+                                      0,    0,    0, 2, 0,   0,   0,   0,  // zone, padding to 8
+                                      0,    0,    0, 0, 0,   0,   0,   3,  // daemon
+                                      0,    0,    0, 5, 's', 't', 'o', 'p', 0, 1, 0, 2,  //
+                                      0,    0,    0, 4,                    // cause_object
+                                      0,    0,    0, 5, 0,   0,   0,   0,  // pair, padding to 8
+                                      0x3f, 0xe0, 0, 0, 0,   0,   0,   0,  // 0.5
+                                      0x3f, 0xd0, 0, 0, 0,   0,   0,   0,  // 0.25
+                                      0,    0,    0, 0, 0,   0,   0,   7,   0, 0, 0, 0,
+                                      0,    0,    0, 9, 0,   0,   0,   0,   0, 0, 0, 1};
   Sample<clearance_msg_ZoneState> zone;
   CdrDecoder decoder;
   ASSERT_TRUE(decoder.decode(std::as_bytes(std::span(kBytes)), zone));
   EXPECT_EQ(2u, zone->zone);
+  EXPECT_EQ(3u, zone->daemon);
   EXPECT_STREQ("stop", zone->name);
   EXPECT_TRUE(zone->active);
   EXPECT_FALSE(zone->certified);
+  EXPECT_EQ(2u, zone->cause);
+  EXPECT_EQ(4u, zone->cause_object);
   EXPECT_EQ(5u, zone->pair);
   EXPECT_EQ(0.5, zone->clearance);
   EXPECT_EQ(0.25, zone->swept_clearance);

@@ -1,0 +1,69 @@
+#include "monitor/dds/daemon_identity.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <random>
+#include <tuple>
+
+#include "monitor/loop/ports.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::string_view kProgram = "clearanced ";
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
+}
+
+// What stands behind "key=", up to the next blank; empty: there is no such key.
+std::string_view value_of(std::string_view text, std::string_view key) {
+  const std::size_t at = text.find(fmt::format(" {}=", key));
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + key.size() + 2);
+  return text.substr(0, text.find(' '));
+}
+
+template <class Number>
+bool read_number(std::string_view text, Number& out, int base = 10) {
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, out, base);
+  return error == std::errc() && stopped == end;
+}
+
+}  // namespace
+
+std::string DaemonIdentity::described() const { return fmt::format("pid {} on {}", pid, host); }
+
+DaemonIdentity make_identity() {
+  std::random_device random;
+  DaemonIdentity identity{
+      .start_ns = SystemClock().realtime_ns(), .pid = getpid(), .host = host_name()};
+  while (identity.id == 0) identity.id = std::uint64_t{random()} << 32 | random();
+  return identity;
+}
+
+std::string to_user_data(const DaemonIdentity& identity) {
+  return fmt::format("{}id={:016x} start_ns={} pid={} host={}", kProgram, identity.id,
+                     identity.start_ns, identity.pid, identity.host);
+}
+
+std::optional<DaemonIdentity> from_user_data(std::string_view text) {
+  DaemonIdentity identity{.host = std::string(value_of(text, "host"))};
+  if (!text.starts_with(kProgram) || !read_number(value_of(text, "id"), identity.id, 16) ||
+      !read_number(value_of(text, "start_ns"), identity.start_ns) ||
+      !read_number(value_of(text, "pid"), identity.pid)) {
+    return std::nullopt;
+  }
+  return identity;
+}
+
+bool gives_way(const DaemonIdentity& one, const DaemonIdentity& other) noexcept {
+  return std::tie(one.start_ns, one.id) > std::tie(other.start_ns, other.id);
+}
+
+}  // namespace clearance

@@ -1,0 +1,53 @@
+// What a client should check of every report before it believes it: is it fresh, and is it the next
+// one of the same daemon? A reader that was held up gets the reports of that time one after
+// another, and each of them looks like news.
+#pragma once
+
+#include <cstdint>
+
+#include "clearance.h"
+
+namespace clearance {
+
+// Of one report.
+struct ReportCheck {
+  // Since it was published, by the client's clock. Negative: the clock of the daemon's machine is
+  // ahead.
+  std::int64_t age_ns = 0;
+  bool is_old = false;           // it says what was, not what is
+  bool clocks_disagree = false;  // published later than now: its age means nothing
+  // Not of the daemon of the report before: it was started again, or two daemons publish.
+  bool other_daemon = false;
+  std::uint64_t missed = 0;  // reports between the one before and this one
+
+  [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
+};
+
+class ReportChecker {
+ public:
+  // A report older than this is old, and one that is from the future by more than it shows that the
+  // clocks disagree. On two machines the limit must be above what their clocks differ by.
+  explicit ReportChecker(std::int64_t limit_ns) : limit_ns_(limit_ns) {}
+
+  // To be called with every report, in the order in which they are taken; `realtime_ns` is
+  // CLOCK_REALTIME when it was taken.
+  ReportCheck check(const clearance_msg_Distances& report, std::int64_t realtime_ns) noexcept {
+    ReportCheck found;
+    if (report.publish_ns != 0) found.age_ns = realtime_ns - report.publish_ns;  // 0: a replay
+    found.is_old = found.age_ns > limit_ns_;
+    found.clocks_disagree = found.age_ns < -limit_ns_;
+    const bool again = report.cycle <= cycle_ || report.scene_revision != revision_;
+    found.other_daemon = cycle_ != 0 && (report.daemon != daemon_ || again);
+    if (cycle_ != 0 && !found.other_daemon) found.missed = report.cycle - cycle_ - 1;
+    daemon_ = report.daemon;
+    cycle_ = report.cycle;
+    revision_ = report.scene_revision;
+    return found;
+  }
+
+ private:
+  std::int64_t limit_ns_;
+  std::uint64_t daemon_ = 0, cycle_ = 0, revision_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,38 @@
+#include "monitor/dds/daemon_identity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace clearance {
+namespace {
+
+TEST(DaemonIdentity, GoesThroughUserDataAndBack) {
+  const DaemonIdentity made = make_identity();
+  const auto read = from_user_data(to_user_data(made));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->id, made.id);
+  EXPECT_EQ(read->start_ns, made.start_ns);
+  EXPECT_EQ(read->pid, made.pid);
+  EXPECT_EQ(read->host, made.host);
+  EXPECT_NE(made.id, 0u);
+  EXPECT_NE(make_identity().id, made.id);
+}
+
+TEST(DaemonIdentity, IsNotReadFromOtherPrograms) {
+  for (const char* text :
+       {"", "clearanced", "clearanced id=1", "id=1 start_ns=2 pid=3 host=x",
+        "clearanced id=zz start_ns=2 pid=3 host=x", "clearanced id=1 start_ns=2x pid=3 host=x"}) {
+    EXPECT_FALSE(from_user_data(text)) << text;
+  }
+}
+
+TEST(DaemonIdentity, ExactlyOneOfTwoGivesWay) {
+  const DaemonIdentity early{.id = 9, .start_ns = 100}, late{.id = 1, .start_ns = 101},
+      as_late{.id = 2, .start_ns = 101};
+  EXPECT_TRUE(gives_way(late, early));
+  EXPECT_FALSE(gives_way(early, late));
+  EXPECT_TRUE(gives_way(as_late, late));
+  EXPECT_FALSE(gives_way(late, as_late));
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,71 @@
+// Why a zone is active, as the monitor says it.
+#include <gtest/gtest.h>
+
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+// A ball (0) that goes at 1 m/s at most around a post (1); the zone ends at 0.3 m.
+struct BallAndPost {
+  explicit BallAndPost(double max_speed = 1.0) {
+    Object ball = test::moving("ball", {test::ball(0.1)});
+    ball.max_speed = max_speed;
+    scene = test::cell_of({test::fixed("post", {test::ball(0.1)}, test::at(0, 0, 0)), ball});
+    scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+    monitor.emplace(scene);
+  }
+  // A tick this long after the last one, with a pose of that time or none.
+  const ZoneReport& tick(std::optional<double> x, std::int64_t after_ns = test::kTick) {
+    now += after_ns;
+    std::vector<PoseSample> samples;
+    if (x) samples.push_back(test::sample(1, test::at(*x, 0, 0), now));
+    return monitor->tick(samples, now).zones[0];
+  }
+  Scene scene;
+  std::optional<Monitor> monitor;
+  std::int64_t now = test::kStart;
+};
+
+void expect(const ZoneReport& zone, ZoneCause cause, std::uint32_t object) {
+  EXPECT_EQ(zone.cause, cause);
+  EXPECT_EQ(zone.cause_object, object);
+  EXPECT_EQ(zone.active, cause != ZoneCause::kInactive);
+}
+
+TEST(ZoneCause, IsDistanceWhenTheObjectsAreNear) {
+  BallAndPost cell;
+  cell.tick(0.7);
+  expect(cell.tick(0.7), ZoneCause::kInactive, 0);
+  expect(cell.tick(0.45), ZoneCause::kNear, 0);
+}
+
+TEST(ZoneCause, IsTheObjectThatWasNeverSeen) {
+  BallAndPost cell;
+  expect(cell.tick(std::nullopt), ZoneCause::kUnknown, 1);
+}
+
+TEST(ZoneCause, IsALateObjectThatMayHaveComeNearUnseen) {
+  BallAndPost cell;
+  cell.tick(0.6);
+  expect(cell.tick(0.6), ZoneCause::kInactive, 0);
+  // 0.4 m apart; after 150 ms without a pose perhaps only 0.25 m.
+  expect(cell.tick(std::nullopt, 150 * test::kTick), ZoneCause::kLate, 1);
+}
+
+TEST(ZoneCause, IsALateObjectWithoutAStatedSpeed) {
+  BallAndPost cell(kInfinity);
+  cell.tick(0.6);
+  expect(cell.tick(0.6), ZoneCause::kInactive, 0);
+  expect(cell.tick(std::nullopt, 21 * test::kTick), ZoneCause::kLate, 1);
+}
+
+TEST(ZoneCause, IsStillDistanceWhenANearObjectIsLate) {
+  BallAndPost cell;
+  cell.tick(0.45);
+  cell.tick(0.45);
+  expect(cell.tick(std::nullopt, 25 * test::kTick), ZoneCause::kNear, 0);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,141 @@
+// A daemon that dies, one that hangs, and two on one cell: what their clients see, over real DDS.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <map>
+
+#include "monitor/dds/report_writer.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using test::ChildProcess;
+using test::eventually;
+
+std::uint32_t alive_writers(dds_entity_t reader) {
+  dds_liveliness_changed_status_t status{};
+  dds_get_liveliness_changed_status(reader, &status);
+  return status.alive_count;
+}
+
+// A cell, a client with default liveliness, and how soon that one is told.
+struct WatchedDaemon {
+  test::CellFile cell{test::small_cell("small")};
+  Scene scene = cell.scene();
+  DdsOptions dds = test::own_dds();
+  Participant client{dds};
+  test::Distances distances{client, scene};
+  ChildProcess daemon{test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds))};
+
+  // Cyclone itself gives a dead process up after 10 s: a tenth of that, where the lease is 100 ms.
+  static constexpr std::chrono::seconds kSoon{1};
+
+  void run() {
+    distances.settle();
+    ASSERT_EQ(alive_writers(distances.reader()), 1u);
+  }
+  [[nodiscard]] bool is_given_up() {
+    return eventually([&] { return alive_writers(distances.reader()) == 0; }, kSoon);
+  }
+};
+
+TEST(DaemonLiveliness, TellsClientsWithinASecondThatADaemonWasKilled) {
+  WatchedDaemon watched;
+  watched.run();
+  watched.daemon.signal(SIGKILL);
+  EXPECT_TRUE(watched.is_given_up());
+}
+
+TEST(DaemonLiveliness, TellsClientsThatADaemonStandsStillAndThatItGoesOn) {
+  WatchedDaemon watched;
+  watched.run();
+  watched.daemon.signal(SIGSTOP);
+  EXPECT_TRUE(watched.is_given_up());
+  watched.daemon.signal(SIGCONT);
+  EXPECT_TRUE(eventually([&] { return alive_writers(watched.distances.reader()) == 1; }));
+}
+
+TEST(DaemonLiveliness, LeaseIsTenPeriodsAndNoLessThanATenthOfASecond) {
+  EXPECT_EQ(lease_ns(1000.0), 100'000'000);
+  EXPECT_EQ(lease_ns(10.0), 1'000'000'000);
+}
+
+TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds);
+  test::Distances distances(client, scene);
+  const auto arguments = test::with({cell.path()}, test::dds_arguments(dds));
+  ChildProcess first(test::kDaemon, arguments);
+  distances.settle();
+  const auto report = distances.next();
+  ASSERT_NE(report, nullptr);
+  const std::uint64_t daemon = (*report)->daemon;
+  EXPECT_NE(daemon, 0u);
+
+  ChildProcess second(test::kDaemon, arguments);
+  EXPECT_EQ(second.wait(), 4) << second.output();
+  EXPECT_TRUE(second.wrote("was here first: this one ends")) << second.output();
+  EXPECT_TRUE(eventually([&] { return first.wrote("it started later and has to give way"); }))
+      << first.output();
+
+  // Until the second one knew, clients had reports of both, and could tell them apart.
+  std::map<std::uint64_t, std::uint64_t> cycle_of;
+  std::uint64_t after = 0;
+  const bool went_on = eventually([&] {
+    const auto next = distances.next();
+    if (next == nullptr) return false;
+    std::uint64_t& cycle = cycle_of[(*next)->daemon];
+    EXPECT_GT((*next)->cycle, cycle);
+    cycle = (*next)->cycle;
+    after = (*next)->daemon == daemon ? after + 1 : 0;
+    return after == 100;
+  });
+  EXPECT_TRUE(went_on);
+  EXPECT_LE(cycle_of.size(), 2u);
+  EXPECT_TRUE(eventually([&] {
+    return first.wrote("another writer of clearance/distances has left");
+  })) << first.output();
+  first.signal(SIGTERM);
+  EXPECT_EQ(first.wait(), 0) << first.output();
+}
+
+TEST(TwoDaemons, OneThatStandsStillOrIsDeadIsInNobodysWay) {
+  for (const int signal : {SIGSTOP, SIGKILL}) {
+    WatchedDaemon watched;
+    watched.run();
+    watched.daemon.signal(signal);
+    ChildProcess second(test::kDaemon, test::with({watched.cell.path(), "--ticks", "200"},
+                                                  test::dds_arguments(watched.dds)));
+    EXPECT_EQ(second.wait(), 0) << second.output();
+  }
+}
+
+TEST(TwoDaemons, AnotherProgramOnTheTopicIsNamedAndCountedInHealth) {
+  const test::CellFile cell(test::small_cell("small"));
+  const Scene scene = cell.scene();
+  const DdsOptions dds = test::own_dds();
+  Participant client(dds), replay(dds);
+  const dds_entity_t health = client.reader(TopicKind::kHealth, scene.topics.health);
+  const dds_entity_t writer = replay.writer(TopicKind::kDistances, scene.topics.distances);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
+  const auto foreign = make_distances(scene);
+  Sample<clearance_msg_Health> sample;
+  EXPECT_TRUE(eventually([&] {
+    dds_write(writer, &*foreign);
+    void* pointer = &*sample;
+    dds_sample_info_t info{};
+    return dds_take(health, &pointer, &info, 1, 1) == 1 && info.valid_data &&
+           sample->foreign_reports > 0;
+  })) << daemon.output();
+  EXPECT_NE(sample->daemon, 0u);
+  EXPECT_TRUE(daemon.wrote("a program that is no daemon (writer ")) << daemon.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << "it goes on: " << daemon.output();
+}
+
+}  // namespace
+}  // namespace clearance

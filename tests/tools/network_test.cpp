@@ -1,0 +1,88 @@
+// Reports above 20 kB between two machines, on a network that loses one packet in ten.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "tests/tools/lossy_network.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using test::ChildProcess;
+using test::eventually;
+
+// Twenty boxes, all 190 pairs of them published: reports of 38 kB.
+std::string crowded_cell() {
+  std::string text = R"(
+name: crowd
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 10000, max_speed: 5}
+objects:
+)";
+  for (int i = 0; i < 20; ++i) {
+    text +=
+        "  - {name: box" + std::to_string(i) + ", groups: [all], box: {size: [0.2, 0.2, 0.2]}}\n";
+  }
+  return text + "pairs:\n  - {between: [all, all], publish: true}\n";
+}
+
+// Of the calling thread's namespace: how many IP fragments were made since it is there.
+std::uint64_t fragments_created() {
+  std::ifstream file("/proc/thread-self/net/snmp");
+  std::string names, values, name, value;
+  while (std::getline(file, names) && std::getline(file, values)) {
+    std::istringstream name_stream(names), value_stream(values);
+    while (name_stream >> name && value_stream >> value) {
+      if (name == "FragCreates") return std::stoull(value);
+    }
+  }
+  ADD_FAILURE() << "no FragCreates in /proc/net/snmp";
+  return 0;
+}
+
+// "123 reports in 2.0 s, 4 missed".
+std::pair<std::uint64_t, std::uint64_t> came_and_missed(const std::string& summary) {
+  std::smatch found;
+  if (!std::regex_search(summary, found, std::regex("(\\d+) reports in .* s, (\\d+) missed")))
+    return {0, 0};
+  return {std::stoull(found[1]), std::stoull(found[2])};
+}
+
+TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
+  test::NetworkNamespace robot(1), panel(2);
+  for (const auto* machine : {&robot, &panel}) {
+    if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
+  }
+  test::LossyWire wire(robot.frames(), panel.frames());
+  const test::CellFile cell(crowded_cell());
+  const auto arguments = test::with(test::dds_arguments(test::own_dds()), {"--interface", "eth0"});
+  std::optional<ChildProcess> daemon, watch;
+  robot.run([&] { daemon.emplace(test::kDaemon, test::with({cell.path()}, arguments)); });
+  panel.run([&] { watch.emplace(test::kWatch, test::with({"--plain"}, arguments)); });
+  ASSERT_TRUE(eventually([&] { return watch->wrote("cycle "); }))
+      << daemon->output() << watch->output();
+  EXPECT_TRUE(daemon->wrote("interface eth0, datagrams of up to 1400 B")) << daemon->output();
+
+  wire.lose(0.1);
+  const std::uint64_t before = wire.frames();
+  EXPECT_TRUE(eventually([&] { return wire.frames() > before + 10'000; }));
+  wire.lose(0.0);
+  watch->signal(SIGTERM);
+  EXPECT_EQ(watch->wait(), 0);
+  const auto [came, missed] = came_and_missed(watch->output());
+  EXPECT_GT(came, missed) << watch->output();
+  RecordProperty("came", std::to_string(came));
+  RecordProperty("missed", std::to_string(missed));
+  robot.run([] { EXPECT_EQ(fragments_created(), 0u); });
+  EXPECT_EQ(wire.ip_fragments(), 0u);
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+}  // namespace
+}  // namespace clearance
