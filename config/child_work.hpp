@@ -21,10 +21,10 @@ struct ChildWork {
   std::string fault;
 };
 
-// Forks, runs `work` in the child and hands over what it returns. The child opens nothing and says
-// nothing: its standard output and error lead nowhere. `work` must not start threads or take locks
-// that other threads of this process may hold. Never throws. Under AddressSanitizer and
-// ThreadSanitizer, which map terabytes themselves, there is no limit on memory.
+// Forks, runs `work` in the child and hands over what it returns. The child says nothing: its
+// standard output and error lead nowhere. `work` must not start threads or take locks that other
+// threads of this process may hold. Never throws. Under AddressSanitizer and ThreadSanitizer, which
+// map terabytes themselves, there is no limit on memory.
 [[nodiscard]] ChildWork in_child(const std::function<std::string()>& work,
                                  const ChildLimits& limits = {});
 

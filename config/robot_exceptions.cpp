@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "config/utf8.hpp"
+
 namespace clearance {
 
 // An SRDF of another robot disables pairs that have nothing to do with this one, and leaves
@@ -15,7 +17,7 @@ UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
                      const UrdfRobot& robot, const std::filesystem::path& urdf_file) {
   UrdfFaults faults;
   const auto refuse = [&](int line, const std::string& text) {
-    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, text)});
+    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, printable(text))});
   };
   const std::string urdf = urdf_file.filename().string();
   if (srdf.robot != robot.name) {

@@ -17,6 +17,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "config/utf8.hpp"
+
 namespace clearance {
 namespace {
 
@@ -131,7 +133,7 @@ class XmlReader {
   }
 
   void add(int line, const std::string& text) {
-    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, text)});
+    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, printable(text))});
   }
 
   std::string file_;

@@ -75,7 +75,11 @@ bool is_cell(const std::filesystem::path& file) {
 }
 
 bool is_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf) {
-  const auto cell = robot_cell({.urdf = urdf, .srdf = srdf, .directory = urdf.parent_path()});
+  RobotCellOptions options;
+  options.urdf = urdf;
+  options.srdf = srdf;
+  options.directory = urdf.parent_path();
+  const auto cell = robot_cell(options);
   const auto* good = std::get_if<RobotCell>(&cell);
   if (good != nullptr) static_cast<void>(parse_cell(good->yaml, urdf));
   return good != nullptr;

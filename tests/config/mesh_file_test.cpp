@@ -153,6 +153,13 @@ TEST_F(MeshFile, AColladaAccessorThatLeavesItsArrayIsRefused) {
               HasSubstr("the accessor in line 6 reaches beyond the 24 numbers of 'pa'"));
 }
 
+TEST_F(MeshFile, BytesOfTheFileDoNotReachTheTerminal) {
+  std::string ply = box_mesh("AsciiPly").bytes;
+  ply.replace(ply.find("1.0 1.0 1.0"), 3, "\x1b[2J\xff");
+  write("mesh.ply", ply);
+  EXPECT_THAT(errors("file: mesh.ply"), HasSubstr("mesh.ply': '?[2J?' is no number; expected"));
+}
+
 TEST_F(MeshFile, AnAsciiStlThatIsCutOffIsRefused) {
   const std::string stl = box_mesh("AsciiStl").bytes;
   write("mesh.stl", stl);
