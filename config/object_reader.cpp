@@ -241,12 +241,15 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
   }
-  // Reported at the first object that is too many; the list is read all the same, for its mistakes.
+  // Reported at the first object that is too many. None is read: their shapes and pairs would take
+  // minutes and gigabytes for a cell that is refused.
   if (items.size() > kMaxObjects) {
+    list.names_known = false;
     diagnostics.add(
         items[kMaxObjects],
         fmt::format("found {} objects; expected at most {}, which is what a report can carry",
                     items.size(), kMaxObjects));
+    return list;
   }
   std::map<std::string, const YamlNode*> first;
   std::set<std::string> sources;

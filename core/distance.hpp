@@ -22,6 +22,7 @@ struct DistanceOptions {
   // be -infinity.
   bool depth = true;
 };
+static_assert(sizeof(DistanceOptions) == 16 && alignof(DistanceOptions) == 8);
 
 // noexcept, no heap, deterministic. Any state is accepted.
 [[nodiscard]] DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -25,6 +25,11 @@ struct PoseSample {
   bool has_twist = false;
 };
 
+// What a sample may be off unit length, and the largest number in it, m, m/s or rad/s: squares and
+// sums of these stay finite. What converts poses from elsewhere refuses the same.
+inline constexpr double kSampleUnitTolerance = 1e-3;
+inline constexpr double kLargestInSample = 1e9;
+
 // Why a sample was not used. Counted per object, named in the health topic.
 enum class Reject : std::uint8_t {
   kUnknownObject,  // no such id, or a fixed object

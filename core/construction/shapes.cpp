@@ -108,7 +108,7 @@ ShapeResult box(const Vec3& half_extents) {
   return polyhedron_from_vertices(vertices);
 }
 
-ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_high) {
+ShapeResult prism(std::span<const Vec2> base, double z_low, double z_high) {
   if (!std::isfinite(z_low) || !std::isfinite(z_high) || !(z_low < z_high)) {
     return ShapeError{"the prism's low end must be finite and below its high end"};
   }

@@ -9,9 +9,9 @@
 namespace clearance {
 namespace {
 
-// A unit quaternion's norm is within a thousandth of 1; here squared.
-constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
-constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
+// Of squared norms.
+constexpr double kLeastUnit = (1.0 - kSampleUnitTolerance) * (1.0 - kSampleUnitTolerance);
+constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTolerance);
 // A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
 // after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
@@ -22,7 +22,8 @@ constexpr std::int64_t kSilentNs = 1'000'000'000;
 constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 
 bool usable(const Vec3& v) noexcept {
-  return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
+  return std::abs(v.x()) <= kLargestInSample && std::abs(v.y()) <= kLargestInSample &&
+         std::abs(v.z()) <= kLargestInSample;
 }
 
 // All but the orientation.

@@ -337,5 +337,18 @@ TEST(CellMistakes, TooManyObjectsAndZonesAreRefused) {
   EXPECT_THAT(errors, testing::HasSubstr("found 257 zones; expected at most 256"));
 }
 
+// Shapes of 10,000 objects and their 50 million pairs would take most of a minute and 2 GB.
+TEST(CellMistakes, OfTooManyObjectsNoneIsRead) {
+  std::string objects = "objects:\n";
+  for (int i = 0; i < 10'000; ++i) {
+    objects += "  - {name: o" + std::to_string(i) + ", groups: [g], sphere: {radius: -1}}\n";
+  }
+  const std::string errors = errors_of(cell_text(objects + "pairs: [{between: [g, g]}]\n"));
+  EXPECT_EQ(
+      "cell.yaml:4101:5: found 10000 objects; expected at most 4096, which is what a report can "
+      "carry\n",
+      errors);
+}
+
 }  // namespace
 }  // namespace clearance
