@@ -80,12 +80,19 @@ inline std::vector<std::string> with(std::vector<std::string> first,
 // Sends the cell's simulated motion, a batch a call.
 class Poses {
  public:
-  Poses(Participant& participant, const Scene& scene)
-      : scene_(scene), writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)) {
+  Poses(Participant& participant, const Scene& scene, std::string_view source = "test")
+      : scene_(scene),
+        source_(source),
+        writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)) {
     poses_at(scene, 0.0, poses_);
     sample_ = make_batch(poses_.size());
   }
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
+
+  // Everything is farther on by this than the cell says, m.
+  void move_by(const Vec3& way) { moved_ = way; }
+  // Stamps are of a clock that is ahead by this.
+  void set_clock_ahead(std::int64_t ns) { clock_ahead_ns_ = ns; }
 
   // Everything that was sent, in order; numbers count from 1.
   [[nodiscard]] const std::vector<PoseBatch>& sent() const noexcept { return sent_; }
@@ -93,14 +100,15 @@ class Poses {
   void send(double t_s, bool with_twist = true) {
     poses_at(scene_, t_s, poses_);
     PoseBatch& batch = sent_.emplace_back();
-    batch.source = SourceName("test");
+    batch.source = source_;
     batch.sequence_number = sent_.size();
     batch.scene_revision = scene_.revision;
-    const std::int64_t now = SystemClock().realtime_ns();
+    const std::int64_t now = SystemClock().realtime_ns() + clock_ahead_ns_;
     for (const PoseAt& pose : poses_) {
       batch.samples.push_back({.object = pose.object,
                                .stamp_ns = now,
-                               .world_from_object = pose.world_from_object,
+                               .world_from_object = {moved_ + pose.world_from_object.position,
+                                                     pose.world_from_object.orientation},
                                .twist = pose.twist,
                                .has_twist = with_twist});
     }
@@ -110,9 +118,12 @@ class Poses {
 
  private:
   const Scene& scene_;
+  SourceName source_;
   dds_entity_t writer_;
   std::vector<PoseAt> poses_;
   std::vector<PoseBatch> sent_;
+  std::int64_t clock_ahead_ns_ = 0;
+  Vec3 moved_ = Vec3::Zero();
   Sample<clearance_msg_PoseBatch> sample_;
 };
 
