@@ -6,12 +6,47 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace clearance {
 namespace {
 
-constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
+constexpr std::size_t kMaxObjects = 4096;     // idl/clearance.idl
+constexpr std::size_t kMaxSourceName = 32;    // bytes; idl/clearance.idl
+constexpr std::size_t kMaxNamedSources = 15;  // of the 16 that are heard: one place for any other
+
+// A name that a batch can carry.
+std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagnostics) {
+  auto name = read_name(node, "a source's name", diagnostics);
+  if (!name || name->size() <= kMaxSourceName) return name;
+  diagnostics.add(node, fmt::format("found a source's name of {} bytes; expected at most {}",
+                                    name->size(), kMaxSourceName));
+  return std::nullopt;
+}
+
+// What is accepted of poses that arrive. A value that cannot be read is reported and stays as it
+// is.
+void read_input_limits(MapReader& map, const Quantities& quantities, ObjectDefaults& limits) {
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    limits.max_speed = quantities.speed(*speed, "the largest speed of any point of the object")
+                           .value_or(limits.max_speed);
+  }
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    limits.age_limit_ns =
+        quantities.milliseconds(*age, "the age limit", kPositive).value_or(limits.age_limit_ns);
+  }
+  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
+    limits.frozen_limit_ns = quantities.milliseconds(*frozen, "the frozen limit", kPositive)
+                                 .value_or(limits.frozen_limit_ns);
+  }
+  if (const YamlNode* jump = map.optional("may_jump")) {
+    limits.may_jump = read_flag(*jump, quantities.diagnostics()).value_or(limits.may_jump);
+  }
+  if (const YamlNode* source = map.optional("source")) {
+    limits.source = read_source(*source, quantities.diagnostics()).value_or(limits.source);
+  }
+}
 
 // One object of the list. What cannot be read is reported and left at its default, so that one run
 // reports every mistake of the file.
@@ -80,24 +115,22 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
       object.world_from_object = quantities_.pose(*pose).value_or(Pose{});
     }
     object.max_speed = 0.0;
-    forbid(map, "max_speed", "a fixed object; expected it of moving objects only");
-    forbid(map, "age_limit_ms", "a fixed object; expected it of moving objects only");
+    for (const char* key : {"max_speed", "age_limit_ms", "frozen_limit_ms", "may_jump", "source"}) {
+      forbid(map, key, "a fixed object; expected it of moving objects only");
+    }
     return;
   }
   forbid(map, "pose",
          "a moving object; expected it of fixed objects (fixed: true) or of parts: a moving "
          "object's pose "
          "arrives on the topic of poses");
-  object.max_speed = defaults_.max_speed;
-  object.age_limit_ns = defaults_.age_limit_ns;
-  if (const YamlNode* speed = map.optional("max_speed")) {
-    object.max_speed = quantities_.speed(*speed, "the largest speed of any point of the object")
-                           .value_or(defaults_.max_speed);
-  }
-  if (const YamlNode* age = map.optional("age_limit_ms")) {
-    object.age_limit_ns =
-        quantities_.milliseconds(*age, "the age limit", kPositive).value_or(defaults_.age_limit_ns);
-  }
+  ObjectDefaults own = defaults_;
+  read_input_limits(map, quantities_, own);
+  object.max_speed = own.max_speed;
+  object.age_limit_ns = own.age_limit_ns;
+  object.frozen_limit_ns = own.frozen_limit_ns;
+  object.may_jump = own.may_jump;
+  object.source = own.source;
 }
 
 // A group that cannot be read may be the one that a rule names, so names are no longer known then
@@ -193,14 +226,7 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
   if (const YamlNode* margin = map.optional("margin")) {
     defaults.margin = quantities.length(*margin, "the margin", kNotNegative).value_or(0.0);
   }
-  if (const YamlNode* speed = map.optional("max_speed")) {
-    defaults.max_speed =
-        quantities.speed(*speed, "the largest speed of any point of an object").value_or(kInfinity);
-  }
-  if (const YamlNode* age = map.optional("age_limit_ms")) {
-    defaults.age_limit_ns =
-        quantities.milliseconds(*age, "the age limit", kPositive).value_or(defaults.age_limit_ns);
-  }
+  read_input_limits(map, quantities, defaults);
   map.refuse_unknown_keys();
   return defaults;
 }
@@ -215,17 +241,27 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
   }
-  // Reported at the first object that is too many; the list is read all the same, for its mistakes.
+  // Reported at the first object that is too many. None is read: their shapes and pairs would take
+  // minutes and gigabytes for a cell that is refused.
   if (items.size() > kMaxObjects) {
+    list.names_known = false;
     diagnostics.add(
         items[kMaxObjects],
         fmt::format("found {} objects; expected at most {}, which is what a report can carry",
                     items.size(), kMaxObjects));
+    return list;
   }
   std::map<std::string, const YamlNode*> first;
+  std::set<std::string> sources;
   for (const YamlNode& item : items) {
     Object object = reader.read(item, list.names_known);
     const YamlNode& place = name_place(item);
+    if (!object.source.empty() && sources.insert(object.source).second &&
+        sources.size() == kMaxNamedSources + 1) {
+      diagnostics.add(place,
+                      fmt::format("found the source '{}' after {} others; expected at most {}",
+                                  object.source, kMaxNamedSources, kMaxNamedSources));
+    }
     if (!object.name.empty()) {
       if (const auto [same, is_new] = first.emplace(object.name, &place); !is_new) {
         diagnostics.add(

@@ -16,6 +16,9 @@ struct ObjectDefaults {
   double margin = 0.0;           // m
   double max_speed = kInfinity;  // m/s
   std::int64_t age_limit_ns = 20'000'000;
+  std::int64_t frozen_limit_ns = 0;  // none
+  bool may_jump = false;
+  std::string source;  // any
 };
 
 // Objects with what they were read from, so that later sections can report mistakes at their

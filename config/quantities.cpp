@@ -152,14 +152,13 @@ std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& 
 }
 
 // Vertices of the base of a prism.
-std::optional<Eigen::Vector2d> Quantities::lengths_2d(const YamlNode& node,
-                                                      const std::string& what) const {
+std::optional<Vec2> Quantities::lengths_2d(const YamlNode& node, const std::string& what) const {
   const std::string unit = word(units_.length);
   const auto values =
       numbers<2>(node, fmt::format("{} in {}", what, unit), fmt::format("a length in {}", unit),
                  within_cell({}, units_.length), diagnostics_);
   if (!values) return std::nullopt;
-  return Eigen::Vector2d(metres((*values)[0], units_.length), metres((*values)[1], units_.length));
+  return Vec2(metres((*values)[0], units_.length), metres((*values)[1], units_.length));
 }
 
 // A normal of any length but zero; the core normalises it.

@@ -63,8 +63,8 @@ class Quantities {
                                             const Range& range = {}) const;  // m
   [[nodiscard]] std::optional<Vec3> angles(const YamlNode& node,
                                            const std::string& what) const;  // rad
-  [[nodiscard]] std::optional<Eigen::Vector2d> lengths_2d(const YamlNode& node,
-                                                          const std::string& what) const;  // m
+  [[nodiscard]] std::optional<Vec2> lengths_2d(const YamlNode& node,
+                                               const std::string& what) const;  // m
   // Numbers without a unit, not all zero; not normalised.
   [[nodiscard]] std::optional<Vec3> direction(const YamlNode& node, const std::string& what) const;
 

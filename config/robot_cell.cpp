@@ -1,6 +1,6 @@
 // Links with collision shapes become objects; the pairs are all of one group with itself, less the
-// SRDF's disabled ones. The first thing that cannot be written is remembered and returned instead
-// of a cell with a gap.
+// SRDF's disabled ones, or, without an SRDF, less the neighbours. What cannot be written is
+// remembered and returned instead of a cell with a gap.
 #include "config/robot_cell.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include <set>
 #include <system_error>
 
+#include "config/robot_exceptions.hpp"
 #include "config/yaml_emitter.hpp"
 #include "core/pose.hpp"
 
@@ -39,37 +40,41 @@ Pose pose(const UrdfOrigin& origin) {
 // Emits one cell, section by section, into one YAML emitter.
 class RobotCellWriter {
  public:
-  RobotCellWriter(const RobotCellOptions& options, UrdfRobot robot,
-                  std::vector<SrdfDisabled> disabled)
+  RobotCellWriter(const RobotCellOptions& options, UrdfRobot robot, std::optional<Srdf> srdf)
       : options_(options),
         robot_(std::move(robot)),
-        disabled_(std::move(disabled)),
+        srdf_(std::move(srdf)),
         group_(options.group.empty() ? robot_.name : options.group) {}
 
-  std::variant<RobotCell, UrdfFault> write();
+  std::variant<RobotCell, UrdfFaults> write();
 
  private:
   void find_fixed_links();
-  bool watched(const std::string& link) const;
   void emit_head();
   void emit_object(const UrdfLink& link);
   void emit_shape(const UrdfCollision& collision);
   void emit_prism_around(const UrdfCylinder& cylinder);
   void emit_pairs();
   void emit_exceptions();
-  std::string mesh_path(const std::string& file);
+  std::string mesh_path(const UrdfMesh& mesh);
+  void fail(int line, const std::string& text);
   std::optional<std::filesystem::path> package_directory(const std::string& name) const;
 
   const RobotCellOptions& options_;
   UrdfRobot robot_;
-  std::vector<SrdfDisabled> disabled_;
+  std::optional<Srdf> srdf_;
   std::string group_;
+  LinkNames shaped_;                   // links with collision shapes
   std::map<std::string, Pose> fixed_;  // links that never move, in the world
   YAML::Emitter out_;
   std::vector<std::string> notes_;
   // Kept instead of thrown, as the emitter is in the middle of a document.
-  std::string fault_;  // the first thing that cannot be written
+  UrdfFaults faults_;
 };
+
+void RobotCellWriter::fail(int line, const std::string& text) {
+  faults_.push_back({line, fmt::format("{}:{}: {}", options_.urdf.string(), line, text)});
+}
 
 // The root and what fixed joints join to it. The URDF is a tree, so each round fixes what the last
 // reached.
@@ -108,21 +113,19 @@ std::optional<std::filesystem::path> RobotCellWriter::package_directory(
 }
 
 // Where the mesh is, relative to the cell.
-std::string RobotCellWriter::mesh_path(const std::string& file) {
+std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   // The two schemes that URDF files use; other texts are paths relative to the URDF.
   static const std::string kPackage = "package://", kFile = "file://";
+  const std::string& file = mesh.file;
   std::filesystem::path path;
   if (file.starts_with(kPackage)) {
     const std::size_t slash = file.find('/', kPackage.size());
     const std::string name = file.substr(kPackage.size(), slash - kPackage.size());
     const auto directory = package_directory(name);
     if (!directory || slash == std::string::npos) {
-      if (fault_.empty()) {
-        fault_ = fmt::format(
-            "{}:1: found the mesh '{}', and no directory for the package '{}'; expected --package "
-            "{}=DIRECTORY",
-            options_.urdf.string(), file, name, name);
-      }
+      fail(mesh.line, fmt::format("found the mesh '{}', and no directory for the package '{}'; "
+                                  "expected --package {}=DIRECTORY",
+                                  file, name, name));
       return file;
     }
     path = *directory / file.substr(slash + 1);
@@ -132,9 +135,8 @@ std::string RobotCellWriter::mesh_path(const std::string& file) {
     path = options_.urdf.parent_path() / file;  // an absolute path stays as it is
   }
   path = std::filesystem::absolute(path).lexically_normal();
-  if (std::error_code fault; !std::filesystem::is_regular_file(path, fault) && fault_.empty()) {
-    fault_ = fmt::format("{}:1: found the mesh '{}', and no file '{}'", options_.urdf.string(),
-                         file, path.string());
+  if (std::error_code fault; !std::filesystem::is_regular_file(path, fault)) {
+    fail(mesh.line, fmt::format("found the mesh '{}', and no file '{}'", file, path.string()));
   }
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
   return path.lexically_relative(directory).string();
@@ -168,7 +170,7 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   out_ << YAML::Value << YAML::Flow << YAML::BeginMap;
   if (mesh != nullptr) {
     out_ << YAML::Key << "file" << YAML::Value;
-    emit_text(out_, mesh_path(mesh->file));
+    emit_text(out_, mesh_path(*mesh));
     if (mesh->scale != Vec3::Ones()) {
       out_ << YAML::Key << "scale" << YAML::Value;
       emit(out_, mesh->scale);
@@ -217,13 +219,6 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::EndSeq << YAML::EndMap;
 }
 
-// Only links with collision shapes become objects.
-bool RobotCellWriter::watched(const std::string& link) const {
-  return std::any_of(robot_.links.begin(), robot_.links.end(), [&](const UrdfLink& candidate) {
-    return candidate.name == link && !candidate.collisions.empty();
-  });
-}
-
 // [A, B] under "between".
 void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b) {
   out << YAML::Key << "between" << YAML::Value << YAML::Flow << YAML::BeginSeq;
@@ -239,33 +234,22 @@ void RobotCellWriter::emit_pairs() {
   out_ << YAML::EndMap << YAML::EndSeq;
 }
 
-// The SRDF speaks of links without shapes too, and sometimes of a pair twice: neither is an
-// exception of ours.
+// Both kinds of exceptions stand in the cell with their reasons.
 void RobotCellWriter::emit_exceptions() {
-  std::set<std::pair<std::string, std::string>> seen;
-  std::vector<const SrdfDisabled*> useful;
-  for (const SrdfDisabled& entry : disabled_) {
-    // Two fixed objects make no pair, so an exception for them would be refused as useless.
-    const bool both_fixed = fixed_.contains(entry.link_a) && fixed_.contains(entry.link_b);
-    if (watched(entry.link_a) && watched(entry.link_b) && !both_fixed &&
-        entry.link_a != entry.link_b &&
-        seen.insert(std::minmax(entry.link_a, entry.link_b)).second) {
-      useful.push_back(&entry);
-    }
-  }
-  if (const std::size_t left_out = disabled_.size() - useful.size(); left_out > 0) {
-    notes_.push_back(fmt::format(
-        "{} disabled pairs left out: a link without collision shapes, named twice, or both fixed",
-        left_out));
-  }
-  if (useful.empty()) return;
-  out_ << YAML::Key << "allowed_collisions" << YAML::Value << YAML::Comment("from the SRDF")
+  LinkNames fixed_links;
+  for (const auto& [link, world_from_link] : fixed_) fixed_links.insert(link);
+  const std::vector<SrdfDisabled> exceptions =
+      srdf_ ? exceptions_of(*srdf_, shaped_, fixed_links, notes_)
+            : neighbours_of(robot_, shaped_, fixed_links, notes_);
+  if (exceptions.empty()) return;
+  out_ << YAML::Key << "allowed_collisions" << YAML::Value
+       << YAML::Comment(srdf_ ? "from the SRDF" : "without an SRDF: links that a joint joins")
        << YAML::BeginSeq;
-  for (const SrdfDisabled* entry : useful) {
+  for (const SrdfDisabled& entry : exceptions) {
     out_ << YAML::Flow << YAML::BeginMap;
-    emit_between(out_, entry->link_a, entry->link_b);
+    emit_between(out_, entry.link_a, entry.link_b);
     out_ << YAML::Key << "reason" << YAML::Value;
-    emit_text(out_, entry->reason);
+    emit_text(out_, entry.reason);
     out_ << YAML::EndMap;
   }
   out_ << YAML::EndSeq;
@@ -291,8 +275,12 @@ void RobotCellWriter::emit_head() {
 }
 
 // The fixed links first: objects and exceptions depend on them.
-std::variant<RobotCell, UrdfFault> RobotCellWriter::write() {
+std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
+  for (const UrdfLink& link : robot_.links) {
+    if (!link.collisions.empty()) shaped_.insert(link.name);
+  }
   find_fixed_links();
+  if (srdf_) faults_ = faults_of(*srdf_, options_.srdf, robot_, options_.urdf);
   // Frames such as tool0 have no shapes; the person should see that they are not watched.
   std::string without;
   out_ << YAML::BeginMap;
@@ -312,23 +300,28 @@ std::variant<RobotCell, UrdfFault> RobotCellWriter::write() {
   emit_pairs();
   emit_exceptions();
   out_ << YAML::EndMap << YAML::Newline;
-  if (!fault_.empty()) return UrdfFault{fault_};
+  if (!faults_.empty()) return faults_;
   return RobotCell{out_.c_str(), std::move(notes_)};
 }
 
 }  // namespace
 
-std::variant<RobotCell, UrdfFault> robot_cell(const RobotCellOptions& options) {
+// Both files are read even if the first is wrong, so that one run reports what is wrong with
+// either.
+std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options) {
   auto robot = read_urdf(options.urdf);
-  if (const auto* fault = std::get_if<UrdfFault>(&robot)) return *fault;
-  std::vector<SrdfDisabled> disabled;
+  std::optional<Srdf> srdf;
+  UrdfFaults faults;
   if (!options.srdf.empty()) {
-    auto srdf = read_srdf(options.srdf);
-    if (const auto* fault = std::get_if<UrdfFault>(&srdf)) return *fault;
-    disabled = std::get<std::vector<SrdfDisabled>>(std::move(srdf));
+    auto read = read_srdf(options.srdf);
+    if (auto* wrong = std::get_if<UrdfFaults>(&read)) faults = std::move(*wrong);
+    if (auto* good = std::get_if<Srdf>(&read)) srdf = std::move(*good);
   }
-  return RobotCellWriter(options, std::get<UrdfRobot>(std::move(robot)), std::move(disabled))
-      .write();
+  if (auto* wrong = std::get_if<UrdfFaults>(&robot)) {
+    faults.insert(faults.begin(), wrong->begin(), wrong->end());
+  }
+  if (!faults.empty()) return faults;
+  return RobotCellWriter(options, std::get<UrdfRobot>(std::move(robot)), std::move(srdf)).write();
 }
 
 }  // namespace clearance

@@ -14,7 +14,7 @@ namespace clearance {
 // What URDF and SRDF do not say.
 struct RobotCellOptions {
   std::filesystem::path urdf;
-  std::filesystem::path srdf;       // empty: no pair is disabled
+  std::filesystem::path srdf;       // empty: neighbours are left out
   std::filesystem::path directory;  // of the cell: mesh paths are written relative to it
   // package:// names and where they are. Others are looked for in the URDF's directory and those
   // above it: a directory of that name, or one within.
@@ -34,9 +34,11 @@ struct RobotCell {
 };
 
 // Each link that has collision shapes becomes an object of the link's name in the link's frame.
-// Every pair of them is watched except the SRDF's disabled ones, which are listed with their
-// reasons. A cylinder becomes a prism of 24 sides around it, at most 0.9 % of its radius farther
-// out: the cell is never smaller than the robot.
-[[nodiscard]] std::variant<RobotCell, UrdfFault> robot_cell(const RobotCellOptions& options);
+// Every pair of them is watched except the SRDF's disabled ones, or, without an SRDF, a link and
+// the next above it that has shapes; these are listed with their reasons. An SRDF with another
+// robot's name, or with links that the URDF does not have, is refused. A cylinder becomes a prism
+// of 24 sides around it, at most 0.9 % of its radius farther out: the cell is never smaller than
+// the robot.
+[[nodiscard]] std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options);
 
 }  // namespace clearance

@@ -33,6 +33,12 @@ struct Object {
   double max_speed = kInfinity;  // m/s, of any point of the object; infinity: not stated
   // An older pose makes the object's pairs stale; unused by fixed objects.
   std::int64_t age_limit_ns = 0;
+  // A pose that comes again, bit for bit, for longer than this is frozen; 0: it may, as of an
+  // object at rest.
+  std::int64_t frozen_limit_ns = 0;
+  bool may_jump = false;  // poses need not be such as the object can have reached: a simulation's
+  // Only poses of this source are used; empty: of the first that sends some, while it does.
+  std::string source;
 };
 
 // Two objects to be watched. first < second; every pair once.

@@ -19,6 +19,10 @@ namespace {
 const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
                                                 "polyhedron", "half_space", "mesh"};
 
+// What no mesh of a cell reaches beyond, unless the cell says so: one wrong number in a file, or a
+// file in another unit, makes a body of kilometres, of which every distance would be 0.
+constexpr double kMeshReach = 100.0;  // m
+
 // Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
@@ -143,7 +147,7 @@ std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
   const YamlNode* z_node = map.required("z");
   map.refuse_unknown_keys();
   if (base_node == nullptr || z_node == nullptr) return std::nullopt;
-  std::vector<Eigen::Vector2d> base;
+  std::vector<Vec2> base;
   const auto& vertices = read_list(*base_node, "vertices [x, y]", quantities_.diagnostics());
   for (const YamlNode& vertex : vertices) {
     if (const auto xy = quantities_.lengths_2d(vertex, "a vertex [x, y]")) base.push_back(*xy);
@@ -266,6 +270,13 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
   return vertices ? &*vertices : nullptr;
 }
 
+// How far from its own origin a mesh may reach along each axis, m.
+double ShapeReader::read_reach(const YamlNode* node) const {
+  if (node == nullptr) return kMeshReach;
+  return quantities_.length(*node, "the largest coordinate of the mesh", kPositive)
+      .value_or(kMeshReach);
+}
+
 // The hull of all vertices of a mesh, which contains the mesh.
 std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   Diagnostics& diagnostics = quantities_.diagnostics();
@@ -273,9 +284,11 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   const YamlNode* file_node = map.required("file");
   const YamlNode* scale_node = map.optional("scale");
   const YamlNode* unit_node = map.optional("unit");
+  const YamlNode* reach_node = map.optional("reach");
   map.refuse_unknown_keys();
   const std::size_t before = diagnostics.count();
   const Vec3 scale = read_scale(scale_node);
+  const double reach = read_reach(reach_node);
   LengthUnit unit = quantities_.units().length;
   if (unit_node != nullptr) unit = read_length_unit(*unit_node, diagnostics).value_or(unit);
   if (file_node == nullptr) return std::nullopt;
@@ -286,11 +299,14 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   // Checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
   const std::vector<Vec3> placed = scaled(*vertices, scale, unit);
   for (const Vec3& vertex : placed) {
-    if (!(vertex.cwiseAbs().maxCoeff() <= kMaxLength)) {
-      diagnostics.add(node,
-                      "found a vertex farther than 1000 km away; expected another unit or scale");
-      return std::nullopt;
-    }
+    const double farthest = vertex.cwiseAbs().maxCoeff();
+    if (farthest <= reach) continue;
+    diagnostics.add(
+        node, fmt::format("found a mesh with a vertex {:.4g} m from its origin along an axis; "
+                          "expected another unit or scale, or, where the body reaches farther than "
+                          "{:g} m, 'reach' beside 'file'",
+                          farthest, reach));
+    return std::nullopt;
   }
   return polyhedron_from_vertices(placed);
 }

@@ -48,6 +48,7 @@ class ShapeReader {
   // One inequality normal . x <= offset, in metres.
   std::optional<HalfSpace> read_row(const YamlNode& node) const;
   Vec3 read_scale(const YamlNode* node) const;
+  double read_reach(const YamlNode* node) const;
   // The vertices of a mesh file in its own unit; null after a diagnostic.
   const std::vector<Vec3>* load(const YamlNode& file_node, const std::string& file);
 

@@ -1,89 +1,101 @@
 // Reads the XML elements that a cell needs and ignores the others (visual, inertial, transmission).
-// The first mistake ends the reading by an exception that does not leave this file.
+// A mistake is remembered with its line and the reading goes on, so that one run finds all of them;
+// only XML that cannot be parsed ends it.
 #include "config/urdf.hpp"
 
 #include <fmt/format.h>
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <exception>
+#include <map>
 #include <set>
 #include <span>
 #include <string_view>
 #include <system_error>
+
+#include "config/utf8.hpp"
 
 namespace clearance {
 namespace {
 
 using tinyxml2::XMLElement;
 
-// Left through read_file() only.
-struct Refusal : std::exception {
-  explicit Refusal(std::string what) : text(std::move(what)) {}
-  std::string text;
-};
+// The children of this name, in order.
+std::vector<const XMLElement*> children(const XMLElement& element, const char* name) {
+  std::vector<const XMLElement*> found;
+  for (const XMLElement* at = element.FirstChildElement(name); at != nullptr;
+       at = at->NextSiblingElement(name)) {
+    found.push_back(at);
+  }
+  return found;
+}
 
-// An XML file with messages that name its lines. Throws Refusal at the first mistake: XML that is
-// wrong in one place rarely makes sense after it.
+// An XML file, and what is wrong with it. A value that cannot be read is reported and left at its
+// default.
 class XmlReader {
  public:
   explicit XmlReader(const std::filesystem::path& file) : file_(file.string()) {
-    if (document_.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS) {
-      throw Refusal(
-          fmt::format("{}:{}: not readable as XML: {}; expected URDF or SRDF, with xacro expanded",
-                      file_, std::max(1, document_.ErrorLineNum()), document_.ErrorName()));
+    if (document_.LoadFile(file_.c_str()) == tinyxml2::XML_SUCCESS) {
+      root_ = document_.FirstChildElement("robot");
+      if (root_ == nullptr) add(1, "found no <robot>; expected it as the root");
+    } else {
+      add(std::max(1, document_.ErrorLineNum()),
+          fmt::format("not readable as XML: {}; expected URDF or SRDF, with xacro expanded",
+                      document_.ErrorName()));
     }
   }
 
-  // The root element of this name; URDF and SRDF both have <robot>.
-  const XMLElement& root(const char* name) const {
-    const XMLElement* robot = document_.FirstChildElement(name);
-    if (robot == nullptr)
-      throw Refusal(fmt::format("{}:1: found no <{}>; expected it as the root", file_, name));
-    return *robot;
-  }
+  // <robot>, of URDF and SRDF; null after a fault.
+  const XMLElement* root() const { return root_; }
 
-  [[noreturn]] void refuse(const XMLElement& at, const std::string& text) const {
-    throw Refusal(fmt::format("{}:{}: {}", file_, at.GetLineNum(), text));
-  }
+  void report(const XMLElement& at, const std::string& text) { add(at.GetLineNum(), text); }
+
+  [[nodiscard]] UrdfFaults faults() const { return faults_; }
 
   // An attribute that must be there.
-  std::string attribute(const XMLElement& element, const char* name) const {
+  std::string attribute(const XMLElement& element, const char* name) {
     const char* value = element.Attribute(name);
-    if (value == nullptr) {
-      refuse(element, fmt::format("found <{}> without '{}'", element.Name(), name));
-    }
-    return value;
+    if (value != nullptr) return value;
+    report(element, fmt::format("found <{}> without '{}'", element.Name(), name));
+    return "";
   }
 
-  // A child element that must be there; the first one if there are more.
-  const XMLElement& child(const XMLElement& element, const char* name) const {
+  // A child element that must be there; the first one if there are more, null after a fault.
+  const XMLElement* child(const XMLElement& element, const char* name) {
     const XMLElement* found = element.FirstChildElement(name);
     if (found == nullptr) {
-      refuse(element, fmt::format("found <{}> without <{}>", element.Name(), name));
+      report(element, fmt::format("found <{}> without <{}>", element.Name(), name));
     }
-    return *found;
+    return found;
+  }
+
+  // The attribute of a child element, both of which must be there.
+  std::string attribute_of_child(const XMLElement& element, const char* child_name,
+                                 const char* name) {
+    const XMLElement* found = child(element, child_name);
+    return found == nullptr ? "" : attribute(*found, name);
   }
 
   // One finite number. URDF is in SI units.
-  double number(const XMLElement& element, const char* name) const {
+  double number(const XMLElement& element, const char* name) {
     double value = 0.0;
     numbers(element, name, std::span(&value, 1));
     return value;
   }
 
   // Three finite numbers.
-  Vec3 vector(const XMLElement& element, const char* name) const {
+  Vec3 vector(const XMLElement& element, const char* name) {
     std::array<double, 3> values{};
     numbers(element, name, values);
     return {values[0], values[1], values[2]};
   }
 
   // <origin xyz="..." rpy="..."/>: the element and both attributes are optional, zero by default.
-  UrdfOrigin origin(const XMLElement& element) const {
+  UrdfOrigin origin(const XMLElement& element) {
     UrdfOrigin origin;
     if (const XMLElement* found = element.FirstChildElement("origin")) {
       if (found->Attribute("xyz") != nullptr) origin.xyz = vector(*found, "xyz");
@@ -94,8 +106,12 @@ class XmlReader {
 
  private:
   // Exactly values.size() finite numbers, separated by blanks.
-  void numbers(const XMLElement& element, const char* name, std::span<double> values) const {
-    const std::string text = attribute(element, name);
+  void numbers(const XMLElement& element, const char* name, std::span<double> values) {
+    if (element.Attribute(name) == nullptr) {
+      static_cast<void>(attribute(element, name));
+      return;
+    }
+    const std::string text = element.Attribute(name);
     const char* at = text.data();
     const char* end = text.data() + text.size();
     const auto skip_blanks = [&] {
@@ -111,120 +127,153 @@ class XmlReader {
     }
     skip_blanks();
     if (!good || at != end) {
-      refuse(element, fmt::format("found {}=\"{}\"; expected {}{}", name, text, values.size(),
+      report(element, fmt::format("found {}=\"{}\"; expected {}{}", name, text, values.size(),
                                   values.size() == 1 ? " number" : " numbers"));
     }
   }
 
+  void add(int line, const std::string& text) {
+    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, printable(text))});
+  }
+
   std::string file_;
   tinyxml2::XMLDocument document_;
+  const XMLElement* root_ = nullptr;
+  UrdfFaults faults_;
 };
 
-// One collision shape with its place in the link. Visual geometry is not read.
-UrdfCollision read_collision(const XmlReader& xml, const XMLElement& element) {
+// One collision shape with its place in the link; its shape is unset after a fault. Visual geometry
+// is not read.
+UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
   UrdfCollision collision;
   collision.link_from_shape = xml.origin(element);
-  const XMLElement& geometry = xml.child(element, "geometry");
-  if (const XMLElement* mesh = geometry.FirstChildElement("mesh")) {
-    UrdfMesh shape{xml.attribute(*mesh, "filename")};
+  const XMLElement* geometry = xml.child(element, "geometry");
+  if (geometry == nullptr) return collision;
+  if (const XMLElement* mesh = geometry->FirstChildElement("mesh")) {
+    UrdfMesh shape{.file = xml.attribute(*mesh, "filename"), .line = mesh->GetLineNum()};
     if (mesh->Attribute("scale") != nullptr) shape.scale = xml.vector(*mesh, "scale");
     collision.shape = shape;
-  } else if (const XMLElement* box = geometry.FirstChildElement("box")) {
+  } else if (const XMLElement* box = geometry->FirstChildElement("box")) {
     collision.shape = UrdfBox{xml.vector(*box, "size")};
-  } else if (const XMLElement* cylinder = geometry.FirstChildElement("cylinder")) {
-    collision.shape =
-        UrdfCylinder{xml.number(*cylinder, "radius"), xml.number(*cylinder, "length")};
-  } else if (const XMLElement* sphere = geometry.FirstChildElement("sphere")) {
+  } else if (const XMLElement* cylinder = geometry->FirstChildElement("cylinder")) {
+    const double radius = xml.number(*cylinder, "radius");
+    collision.shape = UrdfCylinder{radius, xml.number(*cylinder, "length")};
+  } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
     collision.shape = UrdfSphere{xml.number(*sphere, "radius")};
   } else {
-    xml.refuse(geometry,
+    xml.report(*geometry,
                "found a geometry of an unknown kind; expected mesh, box, cylinder or sphere");
   }
   return collision;
 }
 
-// Links and joints; the joints must make a tree, in which every link has at most one parent.
-UrdfRobot read_robot(const std::filesystem::path& file) {
-  const XmlReader xml(file);
-  const XMLElement& root = xml.root("robot");
-  UrdfRobot robot;
-  robot.name = xml.attribute(root, "name");
-  std::set<std::string> names, children;
-  // A robot of frames only would give a cell that watches nothing.
+// A robot of frames only would give a cell that watches nothing.
+void read_links(XmlReader& xml, UrdfRobot& robot) {
+  std::set<std::string> names;
   bool any_shape = false;
-  for (const XMLElement* at = root.FirstChildElement("link"); at;
-       at = at->NextSiblingElement("link")) {
+  for (const XMLElement* at : children(*xml.root(), "link")) {
     UrdfLink link{xml.attribute(*at, "name"), {}};
-    if (!names.insert(link.name).second)
-      xml.refuse(*at, fmt::format("found the link '{}' again", link.name));
-    for (const XMLElement* part = at->FirstChildElement("collision"); part;
-         part = part->NextSiblingElement("collision")) {
+    if (!link.name.empty() && !names.insert(link.name).second)
+      xml.report(*at, fmt::format("found the link '{}' again", link.name));
+    for (const XMLElement* part : children(*at, "collision")) {
       link.collisions.push_back(read_collision(xml, *part));
     }
     any_shape = any_shape || !link.collisions.empty();
     robot.links.push_back(std::move(link));
   }
   if (!any_shape) {
-    xml.refuse(root, "found no link with a collision shape; expected a robot to keep apart");
+    xml.report(*xml.root(), "found no link with a collision shape; expected a robot to keep apart");
   }
-  for (const XMLElement* at = root.FirstChildElement("joint"); at;
-       at = at->NextSiblingElement("joint")) {
-    const UrdfJoint joint{xml.attribute(*at, "type"),
-                          xml.attribute(xml.child(*at, "parent"), "link"),
-                          xml.attribute(xml.child(*at, "child"), "link"), xml.origin(*at)};
+}
+
+// The joints so far are trees; whether this one would make its child an ancestor of itself.
+bool closes_loop(const UrdfJoint& joint, const std::map<std::string, std::string>& parents) {
+  std::string at = joint.parent;
+  for (auto found = parents.find(at); at != joint.child; found = parents.find(at)) {
+    if (found == parents.end()) return false;
+    at = found->second;
+  }
+  return true;
+}
+
+// The joints must make a tree, in which every link has at most one parent.
+void read_joints(XmlReader& xml, UrdfRobot& robot) {
+  std::set<std::string> names;
+  for (const UrdfLink& link : robot.links) names.insert(link.name);
+  std::map<std::string, std::string> parents;  // by child
+  for (const XMLElement* at : children(*xml.root(), "joint")) {
+    const UrdfJoint joint{xml.attribute(*at, "type"), xml.attribute_of_child(*at, "parent", "link"),
+                          xml.attribute_of_child(*at, "child", "link"), xml.origin(*at)};
+    bool known = true;
     for (const std::string& link : {joint.parent, joint.child}) {
-      if (!names.contains(link))
-        xml.refuse(*at, fmt::format("found a joint of the link '{}', which does not exist", link));
+      known = known && !link.empty();
+      if (link.empty() || names.contains(link)) continue;
+      known = false;
+      xml.report(*at, fmt::format("found a joint of the link '{}', which does not exist", link));
     }
-    if (!children.insert(joint.child).second) {
-      xml.refuse(
+    if (!known) continue;
+    if (parents.contains(joint.child)) {
+      xml.report(
           *at, fmt::format("found a second parent of the link '{}'; expected a tree", joint.child));
+    } else if (closes_loop(joint, parents)) {
+      xml.report(*at, fmt::format("found the link '{}' among its own parents; expected a tree",
+                                  joint.child));
+    } else {
+      parents[joint.child] = joint.parent;
+      robot.joints.push_back(joint);
     }
-    robot.joints.push_back(joint);
   }
-  return robot;
 }
 
 // Only pairs that are disabled one by one. Newer elements that change the default are refused:
 // leaving them out would watch, or not watch, other pairs than the file says.
-std::vector<SrdfDisabled> read_disabled(const std::filesystem::path& file) {
-  const XmlReader xml(file);
-  const XMLElement& root = xml.root("robot");
+void read_disabled(XmlReader& xml, Srdf& srdf) {
   for (const char* newer : {"disable_default_collisions", "enable_collisions"}) {
-    if (const XMLElement* found = root.FirstChildElement(newer)) {
-      xml.refuse(*found, fmt::format("found <{}>; expected <disable_collisions> only", newer));
+    for (const XMLElement* found : children(*xml.root(), newer)) {
+      xml.report(*found, fmt::format("found <{}>; expected <disable_collisions> only", newer));
     }
   }
-  std::vector<SrdfDisabled> disabled;
-  for (const XMLElement* at = root.FirstChildElement("disable_collisions"); at;
-       at = at->NextSiblingElement("disable_collisions")) {
+  for (const XMLElement* at : children(*xml.root(), "disable_collisions")) {
     // The reason is optional in an SRDF but required in a cell.
     const char* reason = at->Attribute("reason");
-    disabled.push_back({xml.attribute(*at, "link1"), xml.attribute(*at, "link2"),
-                        reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason});
+    const std::string link_a = xml.attribute(*at, "link1");
+    srdf.disabled.push_back({link_a, xml.attribute(*at, "link2"),
+                             reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason,
+                             at->GetLineNum()});
   }
-  return disabled;
 }
 
-// Turns the exception of the readers into a value.
-template <class Result, class Reader>
-std::variant<Result, UrdfFault> read_file(const std::filesystem::path& file, Reader reader) {
-  try {
-    return reader(file);
-  } catch (const Refusal& refusal) {
-    return UrdfFault{refusal.text};
-  }
+// The value, if nothing was wrong with the file; else all that was, by line.
+template <class Value>
+std::variant<Value, UrdfFaults> value_or_faults(Value value, const XmlReader& xml) {
+  UrdfFaults faults = xml.faults();
+  if (faults.empty()) return value;
+  std::ranges::stable_sort(faults, {}, &UrdfFault::line);
+  return faults;
 }
 
 }  // namespace
 
-// Neither function throws: both end in read_file().
-std::variant<UrdfRobot, UrdfFault> read_urdf(const std::filesystem::path& file) {
-  return read_file<UrdfRobot>(file, read_robot);
+std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file) {
+  XmlReader xml(file);
+  UrdfRobot robot;
+  if (xml.root() != nullptr) {
+    robot.name = xml.attribute(*xml.root(), "name");
+    read_links(xml, robot);
+    read_joints(xml, robot);
+  }
+  return value_or_faults(std::move(robot), xml);
 }
 
-std::variant<std::vector<SrdfDisabled>, UrdfFault> read_srdf(const std::filesystem::path& file) {
-  return read_file<std::vector<SrdfDisabled>>(file, read_disabled);
+std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file) {
+  XmlReader xml(file);
+  Srdf srdf;
+  if (xml.root() != nullptr) {
+    srdf.robot = xml.attribute(*xml.root(), "name");
+    srdf.line = xml.root()->GetLineNum();
+    read_disabled(xml, srdf);
+  }
+  return value_or_faults(std::move(srdf), xml);
 }
 
 }  // namespace clearance

@@ -15,6 +15,7 @@ namespace clearance {
 struct UrdfMesh {
   std::string file;  // as written: package://..., file://..., or a path
   Vec3 scale = Vec3::Ones();
+  int line = 0;  // of the URDF
 };
 struct UrdfBox {
   Vec3 size;  // edge lengths, m
@@ -60,19 +61,28 @@ struct UrdfRobot {
 // <disable_collisions link1="..." link2="..." reason="..."/>.
 struct SrdfDisabled {
   std::string link_a, link_b, reason;
+  int line = 0;
+};
+
+// <robot> of an SRDF, in the order of the file.
+struct Srdf {
+  std::string robot;  // its name
+  int line = 0;       // of the name
+  std::vector<SrdfDisabled> disabled;
 };
 
 // "FILE:LINE: what was found, what was expected".
 struct UrdfFault {
+  int line;
   std::string text;
 };
+using UrdfFaults = std::vector<UrdfFault>;  // at least one, by line
 
-// Plain URDF: xacro has to be expanded before. Checks that joints join links that exist, once each.
-[[nodiscard]] std::variant<UrdfRobot, UrdfFault> read_urdf(const std::filesystem::path& file);
+// Plain URDF: xacro has to be expanded before. Checks that joints join links that exist into trees.
+[[nodiscard]] std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file);
 
-// The <disable_collisions> of an SRDF, in its order. The newer <disable_default_collisions> and
+// The <disable_collisions> of an SRDF. The newer <disable_default_collisions> and
 // <enable_collisions> are refused, since ignoring them would watch the wrong pairs.
-[[nodiscard]] std::variant<std::vector<SrdfDisabled>, UrdfFault> read_srdf(
-    const std::filesystem::path& file);
+[[nodiscard]] std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file);
 
 }  // namespace clearance

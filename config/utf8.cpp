@@ -49,4 +49,15 @@ std::size_t end_of_utf8(std::string_view text) {
   return at;
 }
 
+std::string printable(std::string text) {
+  constexpr std::size_t kMost = 300;
+  if (text.size() > kMost) text.replace(kMost, std::string::npos, "...");
+  const bool is_utf8 = end_of_utf8(text) == text.size();
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F || (byte > 0x7F && !is_utf8)) c = '?';
+  }
+  return text;
+}
+
 }  // namespace clearance

@@ -44,7 +44,7 @@ struct Edge {
   Vec3 direction;  // unit
   // Row k: unit, in the plane of facet[k], across the edge into that facet; zero for a segment. By
   // columns: as vector registers read both at once.
-  Eigen::Matrix<double, 2, 3> inward;
+  alignas(16) Eigen::Matrix<double, 2, 3> inward;
   double begin;            // 0, or -infinity for a full line (the only edge without a first vertex)
   double end;              // length, m; infinity for a ray or a full line
   std::int32_t vertex[2];  // start, end; kNone where the edge does not end
@@ -142,5 +142,10 @@ struct ConvexPolyhedron {
     facet_limits.set(f.first_side, f.limits, i, 3, to.offset);
   }
 };
+static_assert(sizeof(std::vector<Facet>) == 3 * sizeof(void*),
+              "compiled with _GLIBCXX_DEBUG: the library has the containers without it");
+static_assert(sizeof(Facet) == 48 && sizeof(Edge) == 128 && alignof(Edge) == 16);
+static_assert(sizeof(Vertex) == 32 && sizeof(Ray) == 32 && sizeof(RecessionCone) == 112);
+static_assert(sizeof(ConvexPolyhedron) == 2048 && alignof(ConvexPolyhedron) == 8);
 
 }  // namespace clearance

@@ -14,14 +14,15 @@
 namespace clearance {
 
 struct DistanceOptions {
-  // m: where the spheres around both bodies certify as much, they are all that is asked. The status
-  // is kFarAway then, and the distance the lower bound.
+  // m: where the spheres around both bodies certify as much, the query ends there. The status is
+  // kFarAway then, and the distance the lower bound.
   double far_away = kInfinity;
   // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
   // Where they are not certified apart, the status is kDepthNotAsked then and the lower bound may
   // be -infinity.
   bool depth = true;
 };
+static_assert(sizeof(DistanceOptions) == 16 && alignof(DistanceOptions) == 8);
 
 // noexcept, no heap, deterministic. Any state is accepted.
 [[nodiscard]] DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -56,6 +56,7 @@ struct DistanceResult {
   DistancePath path = DistancePath::kWalk;
   std::uint16_t iterations = 0;
 };
+static_assert(sizeof(DistanceResult) == 104 && alignof(DistanceResult) == 8);
 
 // What of a body's boundary is active; kInside: nothing is. kUnknown: no hint.
 enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFacet, kInside, kUnknown = 255 };

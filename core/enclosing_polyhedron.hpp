@@ -20,6 +20,7 @@ struct PlacedShape {
   const ConvexPolyhedron* shape = nullptr;
   Pose frame_from_shape;
 };
+static_assert(sizeof(PlacedShape) == 128 && alignof(PlacedShape) == 64);
 
 struct EnclosingOptions {
   std::size_t facets = 32;  // at most; at least 6

@@ -27,6 +27,7 @@ struct HalfSpace {
   Vec3 normal;
   double offset;
 };
+static_assert(sizeof(HalfSpace) == 32 && alignof(HalfSpace) == 8);
 
 struct ShapeError {
   std::string
@@ -47,7 +48,7 @@ using ShapeResult = std::variant<ConvexPolyhedron, ShapeError>;
 [[nodiscard]] ShapeResult box(const Vec3& half_extents);
 
 // The base polygon (x, y; any order, its hull is taken) extruded along z from z_low to z_high.
-[[nodiscard]] ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_high);
+[[nodiscard]] ShapeResult prism(std::span<const Vec2> base, double z_low, double z_high);
 
 // A single point: with a radius, a sphere.
 [[nodiscard]] ShapeResult point(const Vec3& position, double radius);

@@ -9,6 +9,16 @@ namespace clearance {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+// Aligned as a double is: Eigen's own has an alignment that depends on how it is compiled.
+using Vec2 = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
+
+// What crosses the library's boundary lies in memory as the library was compiled. Every public
+// header holds its own types to that, so that a switch that would move them is an error when a user
+// is compiled, and not a wrong distance.
+static_assert(sizeof(Vec3) == 24 && alignof(Vec3) == 8 && sizeof(Vec2) == 16 && alignof(Vec2) == 8);
+static_assert(sizeof(Mat3) == 72 && alignof(Mat3) == 8);
+static_assert(!Mat3::IsRowMajor,
+              "compiled with EIGEN_DEFAULT_TO_ROW_MAJOR: the library stores matrices by columns");
 
 // v 2^exponent: exactly, short of over- and underflow.
 template <class Vec>

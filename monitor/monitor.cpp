@@ -80,9 +80,9 @@ Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
     : state_(std::make_unique<State>(scene, options)) {}
 Monitor::~Monitor() = default;
 
-const Report& Monitor::tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept {
+const Report& Monitor::tick(std::span<const PoseSample> samples, const TickTime& time) noexcept {
   State& s = *state_;
-  ingest(samples, now_ns, s.scene, s.inputs);
+  ingest(samples, time, s.scene, s.inputs);
   s.displace();
   Evaluation tick = s.evaluation(Budget(s.scene.budget));
   s.culling.cull(s.displaced.changed, s.scheduler.minimum_upper(), tick);
@@ -115,7 +115,11 @@ SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const TrackedObject& state = state_->inputs.objects[object];
-  return {.age_ns = state.age_ns, .stale = state.late};
+  return {.age_ns = state.age_ns,
+          .stale = state.late,
+          .contradicted = state.contradicted,
+          .source = state.source,
+          .other_source = state.other_source};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {
@@ -158,7 +162,8 @@ void Monitor::State::displace() noexcept {
 
 void Monitor::State::write_report(std::uint32_t queries) noexcept {
   report.cycle = inputs.cycle;
-  report.now_ns = inputs.now_ns;
+  report.now_ns = inputs.time.now_ns;
+  report.clock_offset_ns = inputs.time.clock_offset_ns;
   report.newest_pose_ns = displaced.newest_pose_ns;
   report.oldest_pose_ns = displaced.oldest_pose_ns;
   report.rejected = inputs.rejected;

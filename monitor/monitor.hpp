@@ -11,12 +11,16 @@
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/swept/swept_search.hpp"
+#include "monitor/tick_time.hpp"
 
 namespace clearance {
 
 struct InputAge {
-  std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
-  bool stale = false;        // older than the object's limit
+  std::int64_t age_ns = -1;   // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  bool stale = false;         // older than the object's limit, or contradicted
+  bool contradicted = false;  // by a pose that came since and that the object cannot have
+  // PoseSample::source of who sends it, and of the last other one that was refused for that.
+  std::uint32_t source = kNoSource, other_source = kNoSource;
 };
 
 struct MonitorOptions {
@@ -34,10 +38,9 @@ class Monitor {
 
   // One cycle: takes in the samples in the given order (refused ones are counted, never used),
   // moves the objects, carries every bound forward, evaluates what is due within the budget,
-  // updates zones. `now_ns` (CLOCK_REALTIME) must not decrease; if it does, the previous value is
-  // used. The report stays valid until the next tick. Allocates, throws and locks nothing; same
-  // inputs, same bits, with one worker or several.
-  const Report& tick(std::span<const PoseSample> samples, std::int64_t now_ns) noexcept;
+  // updates zones. The report stays valid until the next tick. Allocates, throws and locks nothing;
+  // same inputs, same bits, with one worker or several.
+  const Report& tick(std::span<const PoseSample> samples, const TickTime& time) noexcept;
 
   // Counts a sample that was refused before it came here (a batch made for another scene). In the
   // report from the next tick on; an object that the scene does not have counts in the totals only.

@@ -16,6 +16,12 @@ const char* name(Reject cause) noexcept {
       return "stamp in the future";
     case Reject::kWrongRevision:
       return "made for another scene";
+    case Reject::kOtherSource:
+      return "another source sends it";
+    case Reject::kTooFast:
+      return "faster than it moves";
+    case Reject::kFrozen:
+      return "frozen, but with a twist";
   }
   return "";
 }

@@ -12,13 +12,23 @@
 
 namespace clearance {
 
+inline constexpr std::size_t kMaxSources = 16;       // as in idl/clearance.idl
+inline constexpr std::size_t kMaxSourceLength = 32;  // characters
+inline constexpr std::uint32_t kNoSource = kMaxSources;
+
 struct PoseSample {
   std::uint32_t object = 0;   // index into Scene::objects
-  std::int64_t stamp_ns = 0;  // when the pose held, CLOCK_REALTIME
+  std::uint32_t source = 0;   // who sent it: below kMaxSources, the same for all that one sends
+  std::int64_t stamp_ns = 0;  // when the pose held, CLOCK_REALTIME of who sent it
   Pose world_from_object;     // as on the wire: neither finite nor of unit length until checked
   Twist twist;
   bool has_twist = false;
 };
+
+// What a sample may be off unit length, and the largest number in it, m, m/s or rad/s: squares and
+// sums of these stay finite. What converts poses from elsewhere refuses the same.
+inline constexpr double kSampleUnitTolerance = 1e-3;
+inline constexpr double kLargestInSample = 1e9;
 
 // Why a sample was not used. Counted per object, named in the health topic.
 enum class Reject : std::uint8_t {
@@ -28,12 +38,12 @@ enum class Reject : std::uint8_t {
   kBackwards,      // stamp before the one in use
   kFuture,         // stamp farther ahead of now than Scene::future_limit_ns
   kWrongRevision,  // made for another scene
+  kOtherSource,    // another source sends this object's poses
+  kTooFast,        // farther from the pose in use, or with a faster twist, than the object moves
+  kFrozen,         // the same pose again and again, with a twist that says that it moves
 };
-inline constexpr std::size_t kRejects = 6;
+inline constexpr std::size_t kRejects = 9;
 [[nodiscard]] const char* name(Reject cause) noexcept;
-
-inline constexpr std::size_t kMaxSources = 16;       // as in idl/clearance.idl
-inline constexpr std::size_t kMaxSourceLength = 32;  // characters
 
 // Who sent a batch. Fixed size: copied in the tick thread.
 class SourceName {

@@ -92,8 +92,9 @@ struct ZoneReport {
 };
 
 struct Report {
-  std::uint64_t cycle = 0;  // counts ticks from 1
-  std::int64_t now_ns = 0;  // the time the tick was told
+  std::uint64_t cycle = 0;           // counts ticks from 1
+  std::int64_t now_ns = 0;           // the time the tick was told
+  std::int64_t clock_offset_ns = 0;  // what CLOCK_REALTIME was ahead of it: TickTime
   // Stamps of the moving objects' poses in use; 0: none.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;

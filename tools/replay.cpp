@@ -86,11 +86,13 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
           ->needs(offline)
           ->excludes(compare)
           ->group(kOffline);
-  app.add_option("--tolerance", arguments.tolerance,
-                 "Largest accepted difference from a reference, m")
+  app.add_option(
+         "--tolerance", arguments.tolerance,
+         "How far off a reference may be, m: distances may differ by that much, and lie "
+         "outside of the bounds by that much. Without it, distances may differ by 1e-6, and "
+         "the bounds hold the reference as it is written, to half a unit of its last digit")
       ->needs(reference)
       ->check(number_from_zero())
-      ->capture_default_str()
       ->group(kOffline);
   app.add_option(
          "--expect-min-distance", arguments.expect_min_distance,

@@ -64,8 +64,8 @@ int write(const std::string& yaml, const std::string& output) {
 int make_robot_cell(RobotCellOptions options, const std::string& output) {
   options.directory = std::filesystem::absolute(output).parent_path();
   const auto result = robot_cell(options);
-  if (const auto* fault = std::get_if<UrdfFault>(&result)) {
-    print(stderr, "{}\n", fault->text);
+  if (const auto* faults = std::get_if<UrdfFaults>(&result)) {
+    for (const UrdfFault& fault : *faults) print(stderr, "{}\n", fault.text);
     return kFailed;
   }
   const RobotCell& cell = std::get<RobotCell>(result);
@@ -95,7 +95,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output,
                  "The cell file to write; mesh paths are relative to it")
       ->excludes(report);
-  app.add_option("--srdf", robot.srdf, "The robot's SRDF, which disables pairs, with reasons")
+  app.add_option("--srdf", robot.srdf,
+                 "The robot's SRDF, which disables pairs, with reasons; without it, links that a "
+                 "joint joins are left out")
       ->check(CLI::ExistingFile)
       ->needs(urdf);
   app.add_option("--package", arguments.packages,

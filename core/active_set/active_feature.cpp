@@ -17,8 +17,8 @@ bool within(std::int32_t index, std::size_t size) noexcept {
 }  // namespace
 
 std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p,
-                           double slack) noexcept {
-  double least = -slack;
+                           double tolerance) noexcept {
+  double least = -tolerance;
   std::int32_t beyond = kNone;
   for (std::int32_t i = 0; i < facet.limits; ++i) {
     const FacetLimit limit = body.limit_of(facet, i);
@@ -42,8 +42,8 @@ std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index, const
 
 void ActiveFeature::place_cold(const Vec3& other) noexcept {
   if (body_.vertices.empty()) return place_inside(body_.interior);
-  const Vec3 towards = direction_to_own(other - point_to_common(body_.interior));
-  place_at_vertex(body_.start.at(towards));
+  const Vec3 to_other = direction_to_own(other - point_to_common(body_.interior));
+  place_at_vertex(body_.start.at(to_other));
 }
 
 bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
@@ -59,8 +59,8 @@ bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
   if (hint.kind == FeatureKind::kFacet && within(hint.feature, body_.facets.size())) {
     const Facet& f = body_.facets[hint.feature];
     const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
-    const double slack = kOnFacet * (body_.bounding_radius + p.norm());
-    if (crossed_limit(body_, f, p, slack) != kNone) return false;
+    const double tolerance = kOnFacet * (body_.bounding_radius + p.norm());
+    if (crossed_limit(body_, f, p, tolerance) != kNone) return false;
     place(FeatureKind::kFacet, hint.feature, p);
     return true;
   }

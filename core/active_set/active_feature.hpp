@@ -18,9 +18,9 @@
 namespace clearance {
 
 // What limits a facet's polygon, of its Facet::limits, beyond whose line p lies farthest, by more
-// than `slack` (m); kNone: p lies within.
+// than `tolerance` (m); kNone: p lies within.
 [[nodiscard]] std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
-                                         const Vec3& p, double slack = 0.0) noexcept;
+                                         const Vec3& p, double tolerance = 0.0) noexcept;
 
 // Facets may be parallel to within rounding, and which of their planes a point lies on is
 // rounding's choice: from one of them to that whose polygon p is in.

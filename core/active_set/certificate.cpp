@@ -13,6 +13,7 @@ namespace {
 using direction_case::across;
 using direction_case::along;
 
+// As a unit vector; nothing that has no direction.
 void add_direction(Separators& list, const Vec3& v) noexcept {
   const double length = v.norm();
   if (length > 0.0 && std::isfinite(length)) list.add({v / length});
@@ -31,6 +32,8 @@ void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFe
   add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
+// m: how far the body reaches along `normal` (common frame), from its own origin. Of an unbounded
+// body, within that much of it; of a facet's own normal, its offset, which needs no search.
 double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                      double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
@@ -56,6 +59,8 @@ Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Separators list;
   const Vec3 between = b.common() - a.common();
   add_facets(list, a, b);
+  // `between` is at right angles to the active edges but for rounding. These are not at right
+  // angles to each other, so that the projection across the second brings some of the first back.
   Vec3 direct = between;
   if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
@@ -78,6 +83,7 @@ double separation(const Separator& s, const ActiveFeature& a, const ActiveFeatur
   }
   const double of_a = support_value(a, s.normal, s.facet_of_a, p.reach_a);
   const double of_b = support_value(b, -s.normal, s.facet_of_b, p.reach_b);
+  // The least n.x over B minus the greatest over A, each from its own frame's origin.
   const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }

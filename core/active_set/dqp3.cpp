@@ -84,8 +84,9 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
   while (outcome.iterations < kIterations) {
     ++outcome.iterations;
     if (!step(a, b, delta(a, b))) continue;
-    const SeparatingDirection direction = separating_direction(a, b);
-    outcome.towards = direction.vector;
+    const SeparatingDirection found = separating_direction(a, b);
+    const Vec3& direction = found.vector;
+    outcome.separating_direction = direction;
     const double distance2 = (b.common() - a.common()).squaredNorm();
     if (distance2 <= contact * contact) return ended(Dqp3End::kContact);
     if (distance2 < closest2) {
@@ -93,14 +94,16 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
     } else if (++without_gain > kStepsWithoutGain) {
       return ended(Dqp3End::kStalled);
     }
-    const Lambda of_a = lambda(a, outcome.towards), of_b = lambda(b, -outcome.towards);
+    const Lambda of_a = lambda(a, direction), of_b = lambda(b, -direction);
     const double best = std::max(of_a.derivative, of_b.derivative);
+    // Zero to rounding: degenerate, and neither sign of it is certified.
     if (best * best < kDerivativeError * kDerivativeError * distance2) {
-      if (leave_for_facet(a, outcome.towards) || leave_for_facet(b, -outcome.towards)) continue;
-      if (leave_for_inside(a, outcome.towards) || leave_for_inside(b, -outcome.towards)) continue;
+      if (leave_for_facet(a, direction) || leave_for_facet(b, -direction)) continue;
+      if (leave_for_inside(a, direction) || leave_for_inside(b, -direction)) continue;
       return ended(Dqp3End::kOptimal);
     }
-    if (best < 0.0) return ended(direction.exact ? Dqp3End::kProved : Dqp3End::kOptimal);
+    if (best < 0.0) return ended(found.exact ? Dqp3End::kCertified : Dqp3End::kOptimal);
+    // Of the two bodies the one whose release brings them closer faster.
     if (of_a.derivative >= of_b.derivative) {
       release(a, of_a);
     } else {

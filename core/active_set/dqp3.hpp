@@ -8,18 +8,18 @@
 namespace clearance {
 
 enum class Dqp3End : std::uint8_t {
-  kProved,  // every release would part the bodies, beyond rounding: that is the proof of optimality
-  kOptimal,  // no release brings the bodies closer, as far as rounding can tell
-  kContact,  // the two points coincide to within `contact`
-  kStalled,  // a release did not bring them closer: rounding decides from here on
-  kLimit,    // iterations used up
+  kCertified,  // every release would part the bodies, beyond rounding: KKT satisfied
+  kOptimal,    // no release brings the bodies closer, as far as rounding can tell
+  kContact,    // the two points coincide to within `contact`
+  kStalled,    // a release did not bring them closer: rounding decides from here on
+  kLimit,      // iterations used up
 };
 
 struct Dqp3Outcome {
   Dqp3End end = Dqp3End::kLimit;
   std::uint16_t iterations = 0;
-  Vec3 towards =
-      Vec3::Zero();  // from A to B, common frame, as long as the active features are apart
+  // From A to B, common frame, as long as the active features are apart (m).
+  Vec3 separating_direction = Vec3::Zero();
 };
 
 // Moves both sides from where they are to the closest points. Ends: between two releases the

@@ -9,7 +9,7 @@
 namespace clearance {
 
 struct Lambda {
-  // The directional derivative of the approach to the other point, at best: > 0 asks for release.
+  // The directional derivative of the approach to the other point, at best: > 0 means release.
   // Negative beyond rounding, it proves that the feature is the farthest of its body along
   // `direction`.
   double derivative = -kInfinity;

@@ -47,6 +47,7 @@ HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativeP
   return {(on_features + between) + pose.rotation_error * turned, (ulps * all(kUlp)) * size};
 }
 
+// The numbers of a DistanceResult: m, and points and normal in frame A.
 struct Answers {
   Lanes distance, lower, upper;
   Points normal, point_a, point_b;
@@ -91,6 +92,8 @@ HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
 // A result begins with twelve numbers, from `distance` to `point_on_b`.
 static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
 
+// Of all lanes, failed ones too: the query that such a pair is left to writes its result once more.
+// A lane without a pair writes to the spare result behind the last (BatchBlock::pair).
 HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
                       DistanceResult* results) {
   double* to[kWidth];
@@ -106,6 +109,7 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
   store_columns({{r.point_a.z, r.point_b.x, r.point_b.y, r.point_b.z}}, to, 8);
 }
 
+// One kind of features a block: the choice is made by the compiler, once for all lanes.
 template <FeaturePair kPair>
 HWY_INLINE Closest closest(const FeatureRows& at, const RelativePoses& pose) {
   if constexpr (kPair == FeaturePair::kVertexVertex) return vertex_vertex(at, pose);
@@ -135,10 +139,13 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
     add_radii(rows, r);
     write(r, block, first, round.results);
   }
+  // Certified or not: only what FailedLanes::lanes names is read. Closest features that are not
+  // certified have no neighbour that takes over, and go to distance() as they are.
   hn::Store(hn::IfThenElse(c.closest, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
   if constexpr (kPair == FeaturePair::kVertexVertex) {
     hn::Store(c.derivative, Tag(), &failed.derivative[first]);
   }
+  // A vertex is its own witness point: those rows never change.
   if constexpr (!at_vertex_of_a(kPair)) {
     store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
   }
@@ -156,6 +163,8 @@ std::size_t judge_list(const BatchRound& round, std::size_t count) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kPair)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
+    // Kept only where a lane has failed; else the next block writes over it. Hence the entry that
+    // BatchRound::failed has beyond the number of blocks.
     FailedLanes& failed = round.failed[count];
     std::size_t good = 0;
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {

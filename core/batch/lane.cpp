@@ -152,24 +152,28 @@ constexpr std::array<PutFeatures, kFeaturePairs> put_features_table(
 }
 constexpr auto kPutFeatures = put_features_table(std::make_index_sequence<kFeaturePairs>());
 
+// Bodies without facets have features with nothing beside them.
 bool point_or_segment(const ConvexPolyhedron& body) noexcept {
   return body.facets.empty() && !body.vertices.empty();
 }
 
+// Nothing lies beside the feature: beside a segment's ends, its edge does.
 bool bare(const ConvexPolyhedron& body, const Side& side) noexcept {
   return point_or_segment(body) && (side.kind == FeatureKind::kEdge || body.edges.empty());
 }
 
+// The rows from kBeyondPlain on say nothing of it. Vector code skips them in a block of such pairs.
 bool plain(const ConvexPolyhedron& body) noexcept {
   return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }
 
-// Zeros until then: nobody has read these rows.
+// These rows are not read in a plain block, so they have not been written so far.
 void stay_plain_no_longer(BatchBlock& block) noexcept {
   block.plain = false;
   for (std::size_t row = kBeyondPlain; row < kPointA; ++row) block.rows[row].fill(0.0);
 }
 
+// What a lane has by its bodies and its last witness points, whatever the features.
 void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
                 const ConvexPolyhedron& b, const TrackingState& state) noexcept {
   LaneWriter to(block, lane, 0);
@@ -194,29 +198,23 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 
 }  // namespace
 
-std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                         const TrackingState& state) noexcept {
-  if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return {};
-  if (!a.bounded() && !b.bounded()) return {};
-  const FeaturePair features = feature_pair(state);
-  switch (features) {
+bool fits_lane(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+               const TrackingState& state) noexcept {
+  if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return false;
+  if (!a.bounded() && !b.bounded()) return false;
+  // An edge of an unbounded body may have no ends: core/feature_walk leaves it undecided as well.
+  switch (feature_pair(state)) {
     case FeaturePair::kEdgeEdge:
-      if (!a.bounded() || !b.bounded()) return {};
-      break;
+      return a.bounded() && b.bounded();
     case FeaturePair::kEdgeFacet:
-      if (!a.bounded()) return {};
-      break;
+      return a.bounded();
     case FeaturePair::kFacetEdge:
-      if (!b.bounded()) return {};
-      break;
+      return b.bounded();
     case FeaturePair::kFacetFacet:
-      if (!few(repeats(a, state.a), kMostSidesOfTwo)) return {};
-      if (!few(repeats(b, state.b), kMostSidesOfTwo)) return {};
-      break;
+      return few(repeats(a, state.a), kMostSidesOfTwo) && few(repeats(b, state.b), kMostSidesOfTwo);
     default:
-      break;
+      return true;
   }
-  return features;
 }
 
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept {

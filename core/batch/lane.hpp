@@ -1,17 +1,14 @@
 // One pair's numbers in a block of a batch: written when the pair comes to new features.
 #pragma once
 
-#include <optional>
-
 #include "core/batch/block.hpp"
 
 namespace clearance {
 
-// The features of `state`; none where only distance() can judge them: penetrating bodies, two
-// unbounded bodies, an unbounded body's edge with an edge or facet, too many neighbours.
-[[nodiscard]] std::optional<FeaturePair> lane_features(const ConvexPolyhedron& a,
-                                                       const ConvexPolyhedron& b,
-                                                       const TrackingState& state) noexcept;
+// Whether lanes can judge the features of `state`. Only distance() can judge penetrating bodies,
+// two unbounded bodies, an unbounded body's edge with an edge or facet, too many neighbours.
+[[nodiscard]] bool fits_lane(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                             const TrackingState& state) noexcept;
 
 // Without tracked pairs, for those of one pair of features. no_pair: one past the last.
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept;

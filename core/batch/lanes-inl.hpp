@@ -19,6 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// As many doubles as a vector of this instruction set holds, at most those of a block's row.
 using Tag = hn::CappedTag<double, kBlockLanes>;
 using Lanes = hn::Vec<Tag>;
 using LaneMask = hn::Mask<Tag>;
@@ -27,6 +28,7 @@ inline constexpr std::size_t kWidth = hn::MaxLanes(Tag());
 
 HWY_INLINE Lanes all(double value) { return hn::Set(Tag(), value); }
 
+// A point, or a direction, of each lane.
 struct Points {
   HWY_INLINE Points() {}  // compiled for this instruction set, as a default would not be
   HWY_INLINE Points(Lanes at_x, Lanes at_y, Lanes at_z) : x(at_x), y(at_y), z(at_z) {}
@@ -55,6 +57,7 @@ HWY_INLINE Points operator*(Lanes s, const Points& a) {
 HWY_INLINE Points over(const Points& a, Lanes s) {
   return {hn::Div(a.x, s), hn::Div(a.y, s), hn::Div(a.z, s)};
 }
+// From x to z, as sum3() of core/numerics/vec4-inl.hpp: the order of sums is part of the result.
 HWY_INLINE Lanes dot(const Points& a, const Points& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
@@ -66,6 +69,7 @@ HWY_INLINE Points cross(const Points& a, const Points& b) {
 }
 
 HWY_INLINE Lanes load(const double* row) { return hn::Load(Tag(), row); }
+// Three rows of a block, from the first lane's number in the first of them.
 HWY_INLINE Points load_points(const double* rows) {
   return {load(rows), load(rows + kBlockLanes), load(rows + 2 * kBlockLanes)};
 }
@@ -130,6 +134,7 @@ HWY_INLINE Columns load_columns(const double* const* rows, std::size_t column) {
   return {{first_blocks(low02, high02), first_blocks(low13, high13), second_blocks(low02, high02),
            second_blocks(low13, high13)}};
 }
+// The same exchanges, as a transposition is its own inverse.
 HWY_INLINE void store_columns(const Columns& c, double* const* rows, std::size_t column) {
   const Lanes low02 = firsts(c.column[0], c.column[1]), low13 = seconds(c.column[0], c.column[1]);
   const Lanes high02 = firsts(c.column[2], c.column[3]);

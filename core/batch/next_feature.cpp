@@ -33,11 +33,14 @@ WalkStart along_edge(const ConvexPolyhedron& body, Side& side, std::int32_t i,
                      double derivative) noexcept {
   const EdgeUse& use = edge_of_vertex(body, side, i);
   const Edge& edge = body.edges[use.edge];
+  // `derivative` is g.e with |g| the distance and |e| = 1: how far along the edge's line the
+  // closest point is, m.
   const std::int32_t far = edge.vertex[1 - use.side];
   return derivative >= edge.end && far != kNone ? go(side, FeatureKind::kVertex, far)
                                                 : go(side, FeatureKind::kEdge, use.edge);
 }
 
+// To the facet beside it that approaches, or to the end that the closest point lies beyond.
 WalkStart leave_edge(const ConvexPolyhedron& body, Side& side, std::int32_t next) noexcept {
   const Edge& edge = body.edges[side.feature];
   return next < kNextEnd ? go(side, FeatureKind::kFacet, edge.facet[next - kNextBeside])
@@ -49,6 +52,8 @@ WalkStart from_edge_and_vertex(const Features& f, std::int32_t next) noexcept {
   return go(f.on_other, FeatureKind::kEdge, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
+// The edge of the vertex that approaches fastest leads to its far end; a side that the vertex lies
+// beyond, to that edge of the facet.
 WalkStart from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);
@@ -68,6 +73,7 @@ WalkStart to_facets_beside(const Features& f, std::int32_t next) noexcept {
   return {.transitions = 1, .parallel_transitions = 1};
 }
 
+// The ends come first (unless_beyond() of neighbours-inl.hpp), then the facets beside.
 WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
   if (next < kNextEnd) return to_facets_beside(f, next);
   if (next < kNextEndB) return leave_edge(f.owner, f.on_owner, next);

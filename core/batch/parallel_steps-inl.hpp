@@ -23,6 +23,8 @@ HWY_INLINE Lanes least_reach(const FeatureRows& at) {
   return hn::Min(reach(kUnboundedA, kReachA), reach(kUnboundedB, kReachB));
 }
 
+// m: what features that are parallel only to rounding may be nearer to each other than where the
+// witness points are, over the length of the smaller body.
 HWY_INLINE Lanes tilt_error(const FeatureRows& at, Lanes tilt) {
   return hn::Mul(hn::Mul(all(2.0), least_reach(at)), hn::Add(tilt, all(kTiltError)));
 }
@@ -33,6 +35,8 @@ struct Spans {
 };
 
 // From `from` to `to` along a line in the frame of the facet, A's or B's.
+// Line clipping against a convex polygon (Cyrus and Beck 1978): every side cuts off what lies on
+// its outer half-plane.
 template <bool kOfB>
 HWY_INLINE Spans within_sides(const FeatureRows& at, std::size_t row, const Points& start,
                               const Points& direction, Lanes from, Lanes to) {
@@ -48,6 +52,7 @@ HWY_INLINE Spans within_sides(const FeatureRows& at, std::size_t row, const Poin
     const LaneMask leaves = hn::And(hn::Lt(speed, zero), hn::Lt(meets, span.to));
     span.from = hn::IfThenElse(enters, meets, span.from);
     span.to = hn::IfThenElse(leaves, meets, span.to);
+    // Parallel to the side and outside: nothing is left.
     const LaneMask beside = hn::And(hn::Eq(speed, zero), hn::Lt(gap, zero));
     span.to = hn::IfThenElse(beside, span.from, span.to);
   }
@@ -95,6 +100,7 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   const Lanes tilt2 = dot(tilt, tilt);
   const Points mine = at.common_points(kPointB);
   const Points theirs = point_to_b(pose, at.common_points(kPointA));
+  // Halfway between the last witness points: they move no faster than the bodies do.
   const Points middle = mine + all(0.5) * (theirs - mine);
   const Lanes height = hn::Sub(dot(m, middle), offset_b);
   c.own_b = middle - height * m;
@@ -108,6 +114,7 @@ HWY_INLINE Closest facet_facet(const FeatureRows& at, const RelativePoses& pose)
   c.next = all(kNextUnknown);
   const Lanes size =
       hn::Add(hn::Add(at.common(kReachA), at.common(kReachB)), norm(pose.translation));
+  // As halfway_on_facet(): the last witness points may be far off the plane.
   const LaneMask on_facet = hn::Le(hn::Abs(height), hn::Mul(all(2.0), size));
   c.closest = hn::And(hn::And(hn::Gt(c.apart, all(0.0)), hn::Ge(within, all(0.0))),
                       hn::And(hn::Le(tilt2, all(kParallelTilt * kParallelTilt)), on_facet));

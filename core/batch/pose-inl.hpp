@@ -18,6 +18,7 @@ struct Quaternions {
   Lanes x, y, z, w;
 };
 
+// World from body, m; orientations as they came, of unit length or not.
 struct Poses {
   Points position;
   Quaternions orientation;
@@ -27,6 +28,8 @@ struct Rotations {
   Points x, y, z;  // rows
 };
 
+// B as seen from A, and what rounding can have done to it: as in RelativePose4 of
+// core/model/relative_pose-inl.hpp (of the rotation in the 2-norm, of the translation in m).
 struct RelativePoses {
   Rotations rotation;
   Points translation;
@@ -55,6 +58,7 @@ HWY_INLINE Points point_to_b(const RelativePoses& a_from_b, const Points& p) {
 static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == sizeof(Pose));
 static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
 
+// Of the bodies which[0], ..., which[kWidth - 1]: rows in memory, columns in vectors.
 HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
   const double* rows[kWidth];
   for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
@@ -81,13 +85,8 @@ HWY_INLINE Lanes square_of(const Quaternions& q) {
                  hn::Add(hn::Mul(q.y, q.y), hn::Mul(q.z, q.z)));
 }
 
-// 2 / |q|^2
-HWY_INLINE Lanes two_over_square(const Quaternions& q) {
-  const Lanes square = square_of(q);
-  const Lanes two = all(2.0), of_unit = hn::Mul(two, hn::Sub(two, square));
-  const LaneMask unit = hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
-  if (HWY_LIKELY(hn::AllTrue(Tag(), unit))) return of_unit;
-  return hn::IfThenElse(unit, of_unit, hn::Div(two, square));
+HWY_INLINE LaneMask nearly_unit(Lanes square) {
+  return hn::Le(hn::Abs(hn::Sub(square, all(1.0))), all(kNearlyUnit));
 }
 
 // But for a little at the limit, which is left to distance().
@@ -95,8 +94,17 @@ HWY_INLINE LaneMask are_unit(const Quaternions& q) {
   return hn::Le(hn::Abs(hn::Sub(square_of(q), all(1.0))), all(1.99 * kUnitTolerance));
 }
 
-HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
-  const Lanes s = two_over_square(q), one = all(1.0);
+// 2 / |q|^2 of what is nearly_unit(); of any length: two_over_any_square().
+HWY_INLINE Lanes two_over_square(Lanes square) {
+  return hn::Mul(all(2.0), hn::Sub(all(2.0), square));
+}
+HWY_INLINE Lanes two_over_any_square(Lanes square) {
+  return hn::IfThenElse(nearly_unit(square), two_over_square(square), hn::Div(all(2.0), square));
+}
+
+// R(q/|q|); s: 2 / |q|^2.
+HWY_INLINE Rotations rotation_matrices(const Quaternions& q, Lanes s) {
+  const Lanes one = all(1.0);
   const Lanes xx = hn::Mul(q.x, q.x), yy = hn::Mul(q.y, q.y), zz = hn::Mul(q.z, q.z);
   const Lanes xy = hn::Mul(q.x, q.y), xz = hn::Mul(q.x, q.z), yz = hn::Mul(q.y, q.z);
   const Lanes wx = hn::Mul(q.w, q.x), wy = hn::Mul(q.w, q.y), wz = hn::Mul(q.w, q.z);
@@ -109,11 +117,11 @@ HWY_INLINE Rotations rotation_matrices(const Quaternions& q) {
           {difference(xz, wy), sum(yz, wx), diagonal(xx, yy)}};
 }
 
-// R(q/|q|)^T v by two cross products.
-HWY_INLINE Points turn_back(const Quaternions& q, const Points& v) {
+// R(q/|q|)^T v by two cross products; s: 2 / |q|^2.
+HWY_INLINE Points turn_back(const Quaternions& q, Lanes s, const Points& v) {
   const Points u{q.x, q.y, q.z};
   const Points c = cross(u, v);
-  return v + two_over_square(q) * (cross(u, c) - q.w * c);
+  return v + s * (cross(u, c) - q.w * c);
 }
 
 HWY_INLINE LaneMask equal_up_to_sign(const Quaternions& a, const Quaternions& b) {
@@ -128,6 +136,7 @@ HWY_INLINE LaneMask multiple_of_half(Lanes v) {
   const Lanes twice = hn::Add(v, v);
   return hn::Eq(twice, hn::Round(twice));
 }
+// Of unit quaternions, as permutes_axes() of core/model/relative_pose-inl.hpp.
 HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
   return hn::And(hn::And(multiple_of_half(q.x), multiple_of_half(q.y)),
                  hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
@@ -157,13 +166,23 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
   const Quaternions& b = world_from_b.orientation;
   const Quaternions q = relative(a, b);
   const Points between = world_from_b.position - world_from_a.position;
-  const Lanes zero = all(0.0);
-  RelativePoses out{rotation_matrices(q), turn_back(a, between), all(kRotationError), zero};
+  const Lanes square_a = square_of(a), square_q = square_of(q);
+  Lanes over_a = two_over_square(square_a), over_q = two_over_square(square_q);
+  // |q| = |a||b|: where a and q are nearly of unit length, so is b.
+  const LaneMask unit = hn::And(nearly_unit(square_a), nearly_unit(square_q));
+  if (HWY_UNLIKELY(!hn::AllTrue(Tag(), unit))) {
+    over_a = two_over_any_square(square_a);
+    over_q = two_over_any_square(square_q);
+  }
+  RelativePoses out{rotation_matrices(q, over_q), turn_back(a, over_a, between),
+                    all(kRotationError), all(0.0)};
   const Lanes apart = norm(out.translation);
-  const LaneMask good =
-      hn::And(hn::And(are_unit(a), are_unit(b)), hn::Le(apart, all(0.5 * kLargestCoordinate)));
-  if (HWY_UNLIKELY(!hn::AllTrue(Tag(), good))) spoil(good, out);
+  const LaneMask near = hn::Le(apart, all(0.5 * kLargestCoordinate));
+  if (HWY_UNLIKELY(!hn::AllTrue(Tag(), hn::And(unit, near)))) {
+    spoil(hn::And(near, hn::And(are_unit(a), are_unit(b))), out);
+  }
   out.translation_error = hn::Mul(all(kTranslationError), apart);
+  // As may_be_exact() there: moving orientations nearly never pass.
   const LaneMask may_be_exact = hn::Or(multiple_of_half(a.w), multiple_of_half(q.z));
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), may_be_exact))) set_exactness(a, b, apart, out);
   return out;

@@ -17,7 +17,8 @@ class Residence {
   // Of features that vector code does not judge: nearly unlimited.
   static constexpr std::uint16_t kNotAtAll = 0xffff;
 
-  // The pair was asked in round `now`, which wraps around: did it come to other features?
+  // After the query of round `now`, a counter that wraps around. `changed`: it ended at other
+  // features.
   void add(std::uint32_t now, bool changed) noexcept {
     const auto stay =
         static_cast<std::int32_t>(std::min<std::uint32_t>(now - since_, kLongest)) * kFraction;

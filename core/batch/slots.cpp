@@ -6,6 +6,8 @@
 
 namespace clearance {
 
+// Blocks for all pairs, with the holes that close_holes() leaves and a block that is not full for
+// each pair of features. A round that opens more holes makes append() close them all.
 BatchSlots::BatchSlots(BatchPairs& of)
     : of_(of),
       slots_(of.pairs.size()),
@@ -28,7 +30,9 @@ void BatchSlots::clear() noexcept {
   for (std::size_t i = blocks_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
 
-void BatchSlots::enter(std::uint32_t pair, FeaturePair features) noexcept {
+// Into a hole if there is one: vectors stay full, and nothing has to be moved afterwards.
+void BatchSlots::enter(std::uint32_t pair) noexcept {
+  const FeaturePair features = feature_pair(of_.states[pair]);
   std::vector<Slot>& holes = settled_[static_cast<std::size_t>(features)].holes;
   Slot slot;
   while (slot.block == kNowhere && !holes.empty()) {
@@ -39,6 +43,8 @@ void BatchSlots::enter(std::uint32_t pair, FeaturePair features) noexcept {
   fill(pair);
 }
 
+// The lane stays where it is, without a pair, until another pair enters it or close_holes() moves
+// the last pair there.
 void BatchSlots::leave(std::uint32_t pair) noexcept {
   const Slot slot = slots_[pair];
   BatchBlock& from = blocks_[slot.block];
@@ -82,6 +88,7 @@ BatchSlots::Slot BatchSlots::append(FeaturePair features) noexcept {
   return {blocks.back(), blocks_[blocks.back()].lanes++};
 }
 
+// By the last pair of the same features, so that the end is what gets shorter.
 void BatchSlots::close_holes(std::size_t most) noexcept {
   for (std::size_t features = 0; features < kFeaturePairs; ++features) {
     Settled& of = settled_[features];
@@ -98,7 +105,7 @@ void BatchSlots::close_holes(std::size_t most) noexcept {
   }
 }
 
-// Gives up lanes at the end that nobody is in.
+// Gives up lanes at the end that hold no pair.
 void BatchSlots::close_last(Settled& of) noexcept {
   while (!of.blocks.empty()) {
     const BatchBlock& end = blocks_[of.blocks.back()];

@@ -29,6 +29,8 @@ struct BatchPairs {
 };
 
 // Gives a pair a lane in a block of its features, numbers of its features included.
+// A pair has one lane or none. Lanes of the same features fill blocks one after another: all blocks
+// but the last are full, but for holes. Memory is taken once, by the constructor.
 class BatchSlots {
  public:
   struct Slot {
@@ -51,8 +53,8 @@ class BatchSlots {
     return settled_[static_cast<std::size_t>(features)].blocks;
   }
 
-  // The pair has none: these are its state's features.
-  void enter(std::uint32_t pair, FeaturePair features) noexcept;
+  // The pair has none and fits_lane().
+  void enter(std::uint32_t pair) noexcept;
   // Takes the points of its last query along, to its state.
   void leave(std::uint32_t pair) noexcept;
   // Moves pairs into lanes that others have left; a few of those stay, for what comes next.

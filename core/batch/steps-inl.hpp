@@ -35,6 +35,7 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   c.point_b = point_to_a(pose, c.own_b);
   const Points g = c.point_b - c.point_a;
   c.apart = c.certified = norm(g);
+  // g is as long as the vertices are apart, and so are the errors of its products with unit edges.
   const Lanes error = all(kDerivativeError) * c.apart;
   c.normal = over(g, c.apart);
   const Extreme on_a = Beside<false>{at, kDirectionsOfA}.greatest(g);
@@ -57,6 +58,7 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   line.find_separation();
   const Lanes begin = at.lanes(6), end = at.lanes(7);
   const LaneMask within = hn::And(hn::Gt(line.s, begin), hn::Lt(line.s, end));
+  // Rare, and a square root: only where a lane of the vector needs it (kSlender).
   const LaneMask slender = hn::Lt(line.length, all(kSlender) * hn::Abs(line.s));
   Lanes of_separation = line.length;
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), slender))) {
@@ -103,6 +105,8 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Extreme away =
       Beside<!kIsB>{at, kDirectionsAtFacet}.least(plane.frame.opposite().direction_to_own(plane.n));
   const Lanes error = all(kDerivativeError);
+  // In the order of the scalar step: below the plane nothing is decided, beyond a side that side
+  // takes over, and only above the facet an edge that descends does.
   const LaneMask above = hn::Gt(c.apart, all(0.0)), inside = hn::Ge(within.derivative, all(0.0));
   c.closest = hn::And(hn::And(above, inside), hn::Gt(away.derivative, error));
   const Lanes down =
@@ -134,6 +138,7 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const auto beside = [](LaneMask leave, const Extreme& side, double step) HWY_ATTR {
     return hn::IfThenElseZero(leave, hn::Mul(all(step), after(side.which)));
   };
+  // Nearly parallel edges are left to distance(), which has parallel_edges() for them.
   const LaneMask crossing = hn::Gt(lines.sine2, all(kCrossingSine2));
   c.next = next_if(hn::Or(leave_a, leave_b),
                    hn::Add(beside(leave_a, on_a, 1.0), beside(leave_b, on_b, kNextBesideB)));

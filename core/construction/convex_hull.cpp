@@ -7,13 +7,13 @@
 namespace clearance::exact {
 namespace {
 
-constexpr int kNobody = -1;
+constexpr int kNoIndex = -1;
 
 struct Triangle {
   HullTriangle link;
   FilteredPlane plane;
-  int first_conflict = kNobody;  // head of the list of points that remember this triangle
-  int seen_in_round = kNobody;   // the insertion for which `seen` holds
+  int first_conflict = kNoIndex;  // head of the list of points that remember this triangle
+  int seen_in_round = kNoIndex;   // the insertion for which `seen` holds
   bool seen = false;
   bool alive = true;
 };
@@ -37,15 +37,15 @@ class HullBuilder {
  public:
   explicit HullBuilder(const PointSet& points)
       : points_(points),
-        next_conflict_(static_cast<std::size_t>(points.size()), kNobody),
-        sees_(static_cast<std::size_t>(points.size()), kNobody),
-        triangle_from_(static_cast<std::size_t>(points.size()), kNobody) {}
+        next_conflict_(static_cast<std::size_t>(points.size()), kNoIndex),
+        sees_(static_cast<std::size_t>(points.size()), kNoIndex),
+        triangle_from_(static_cast<std::size_t>(points.size()), kNoIndex) {}
 
   std::vector<HullTriangle> build() {
     const std::vector<int> order = shuffled(points_.size());
     if (!make_simplex(order)) return {};
     for (const int point : order) {
-      if (sees_[at(point)] != kNobody) insert(point);
+      if (sees_[at(point)] != kNoIndex) insert(point);
     }
     return finished();
   }
@@ -53,7 +53,7 @@ class HullBuilder {
  private:
   // The first four points of the order that span space.
   bool make_simplex(const std::vector<int>& order) {
-    std::array<int, 4> vertex{order.empty() ? 0 : order[0], kNobody, kNobody, kNobody};
+    std::array<int, 4> vertex{order.empty() ? 0 : order[0], kNoIndex, kNoIndex, kNoIndex};
     int found = order.empty() ? 0 : 1;
     Integer4 plane;
     for (const int point : order) {
@@ -108,9 +108,10 @@ class HullBuilder {
     return slot;
   }
 
+  // Puts the point into the list of the first candidate that it sees; into none: it is in the hull.
   template <typename Candidates>
   void remember_one_seen(int point, const Candidates& candidates) {
-    sees_[at(point)] = kNobody;
+    sees_[at(point)] = kNoIndex;
     for (const int t : candidates) {
       Triangle& triangle = triangles_[at(t)];
       if (triangle.plane.side(points_, point) <= 0) continue;
@@ -121,6 +122,7 @@ class HullBuilder {
     }
   }
 
+  // Each plane is evaluated once an insertion: a triangle is met from up to three sides.
   bool is_seen(int t, int point) {
     Triangle& triangle = triangles_[at(t)];
     if (triangle.seen_in_round != point) {
@@ -138,14 +140,14 @@ class HullBuilder {
     // there.
     for (const int gone : going_) {
       int other = triangles_[at(gone)].first_conflict;
-      while (other != kNobody) {
+      while (other != kNoIndex) {
         const int next = next_conflict_[at(other)];
         if (other != point) remember_one_seen(other, coming_);
         other = next;
       }
-      triangles_[at(gone)].first_conflict = kNobody;
+      triangles_[at(gone)].first_conflict = kNoIndex;
     }
-    sees_[at(point)] = kNobody;
+    sees_[at(point)] = kNoIndex;
     free_.insert(free_.end(), going_.begin(), going_.end());
   }
 
@@ -176,7 +178,8 @@ class HullBuilder {
   void fill_horizon(int point) {
     coming_.clear();
     for (const HorizonEdge& edge : horizon_) {
-      const int fresh = add_triangle({edge.from, edge.to, point}, {edge.beyond, kNobody, kNobody});
+      const int fresh =
+          add_triangle({edge.from, edge.to, point}, {edge.beyond, kNoIndex, kNoIndex});
       coming_.push_back(fresh);
       triangle_from_[at(edge.from)] = fresh;
       HullTriangle& beyond = triangles_[at(edge.beyond)].link;
@@ -193,8 +196,9 @@ class HullBuilder {
     }
   }
 
+  // The triangles that are left, numbered without gaps.
   std::vector<HullTriangle> finished() const {
-    std::vector<int> number(triangles_.size(), kNobody);
+    std::vector<int> number(triangles_.size(), kNoIndex);
     int count = 0;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       if (triangles_[t].alive) number[t] = count++;
@@ -212,7 +216,7 @@ class HullBuilder {
   const PointSet& points_;
   std::vector<Triangle> triangles_;
   std::vector<int> next_conflict_;  // a point: the next one in its triangle's list
-  std::vector<int> sees_;  // a point: the triangle whose list it is in; kNobody: in the hull
+  std::vector<int> sees_;  // a point: the triangle whose list it is in; kNoIndex: in the hull
   std::vector<int>
       triangle_from_;      // a horizon vertex: the new triangle whose horizon edge starts there
   std::vector<int> free_;  // slots of triangles that are gone

@@ -94,6 +94,7 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
         }
         edge = next_on_boundary(triangles, face, edge);
       } while (edge.triangle != start.triangle || edge.side != start.side);
+      // Of true vertices no three of a face lie in one line.
       result.plane = plane_through(points.exact(result.vertex[0]), points.exact(result.vertex[1]),
                                    points.exact(result.vertex[2]));
       reduce(result.plane);

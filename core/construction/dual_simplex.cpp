@@ -37,6 +37,7 @@ DepthConstraint bound(std::size_t variable, int sign, const Integer& limit) {
   return result;
 }
 
+// The determinant of the 3 x 3 matrix without that row and column.
 Integer minor(const std::array<const Integer4*, 4>& m, std::size_t row, std::size_t column) {
   std::array<std::size_t, 3> r{}, c{};
   for (std::size_t i = 0, k = 0, l = 0; i < 4; ++i) {
@@ -54,6 +55,8 @@ Integer minor(const std::array<const Integer4*, 4>& m, std::size_t row, std::siz
 
 }  // namespace
 
+// By cofactors: A^-1 = adjugate / determinant, the determinant made positive, so that signs of
+// products with the adjugate are those with the inverse.
 void DepthBasis::invert(const std::vector<DepthConstraint>& constraints) {
   std::array<const Integer4*, 4> m{};
   for (std::size_t i = 0; i < 4; ++i) m[i] = &constraints[at(member[i])].a;
@@ -110,6 +113,8 @@ Integer DepthProgramme::ample_box() const {
 
 void DepthProgramme::solve(const Integer& box) {
   constraints_.resize(at(rows_));
+  // The start is a corner of the box at t = 1, with all of the objective on the last bound: dual
+  // feasible, whatever the rows are.
   for (std::size_t i = 0; i < 3; ++i) {
     basis_.member[i] = static_cast<int>(constraints_.size());
     constraints_.push_back(bound(i, 1, free_[i] ? box : Integer(0)));

@@ -11,6 +11,7 @@
 namespace clearance {
 namespace {
 
+// A round takes half of the facets that are left (next_cuts): twelve are enough for thousands.
 constexpr int kMostRounds = 12;
 
 // The bodies' hull: a body is the hull of spheres of these radii around its anchors.
@@ -67,6 +68,7 @@ class Outline {
   }
 
   static void around(const Sphere& sphere, std::vector<Vec3>& points) {
+    // The 26 directions to a cube's faces, edges and corners.
     for (int x = -1; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) {
         for (int z = -1; z <= 1; ++z) {

@@ -36,6 +36,7 @@ std::vector<Integer4> dual_points(const std::vector<Integer4>& planes, const Int
   for (const Integer4& plane : planes) {
     Integer4 point;
     for (std::size_t i = 0; i < 3; ++i) point[i] = centre[3] * plane[i];
+    // d - n.c, positive: the centre is strictly inside.
     point[3] = centre[3] * plane[3] - dot(head(plane), head(centre));
     reduce(point);
     points.push_back(std::move(point));
@@ -173,6 +174,7 @@ Solid parallel_planes(const std::vector<Integer4>& planes, const Integer4& centr
   Solid solid;
   solid.interior = centre;
   const Integer3 up = head(planes[0]);
+  // Of each sense of the normal only the nearest plane is a facet.
   std::array<int, 2> tightest{kNone, kNone};  // by side
   for (std::size_t row = 0; row < planes.size(); ++row) {
     int& best = tightest[sgn(dot(up, head(planes[row]))) > 0 ? 0 : 1];
@@ -223,6 +225,8 @@ std::variant<Solid, ShapeError> intersection_of(std::span<const HalfSpace> rows)
   if (span.rank == 1) return parallel_planes(planes, centre);
   std::vector<Integer4> dual = dual_points(planes, centre);
   if (span.rank == 2) {
+    // All normals lie in one plane, and so would the dual points. Two caps across the lines, at
+    // equal distances from the centre, give their hull a volume.
     const Integer3& l = span.direction;
     dual.push_back({l[0], l[1], l[2], 1});
     dual.push_back({-l[0], -l[1], -l[2], 1});

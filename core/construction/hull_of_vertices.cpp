@@ -110,10 +110,12 @@ std::variant<Solid, ShapeError> hull_of(std::span<const Vec3> points) {
     for (std::size_t i = 0; i < face.vertex.size(); ++i) {
       const int from = face.vertex[i];
       const int to = face.vertex[(i + 1) % face.vertex.size()];
+      // Each edge belongs to two faces, which run along it in opposite directions.
       if (from > to) continue;
       solid.edges.push_back({node[at(from)], node[at(to)], static_cast<int>(f), face.neighbor[i]});
     }
   }
+  // Four affinely independent points of the hull, and so their mean is strictly inside.
   solid.interior = inner_point(points, relative, faces);
   return solid;
 }

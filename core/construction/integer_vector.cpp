@@ -8,6 +8,8 @@
 namespace clearance::exact {
 
 Integer4 integer_multiple(const std::array<double, 4>& values) {
+  // A double is an integer of 53 bits times a power of two, so that all four become integers by the
+  // least of those powers. Exact for subnormal numbers as well.
   constexpr int kMantissaBits = 53;
   std::array<std::int64_t, 4> mantissa{};
   std::array<int, 4> exponent{};

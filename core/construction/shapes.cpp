@@ -59,6 +59,8 @@ struct SegmentLine {
   exact::Rounded length;
 };
 
+// The exact line between two points, its direction and length each rounded once: with weights w of
+// the homogeneous points, the length is |d| / w = |d|^2 / sqrt(|d|^2 w^2).
 SegmentLine line_from(const Vec3& start, const Vec3& end) {
   const exact::Integer4 a = exact::integer_multiple({start.x(), start.y(), start.z(), 1.0});
   const exact::Integer4 b = exact::integer_multiple({end.x(), end.y(), end.z(), 1.0});
@@ -106,7 +108,7 @@ ShapeResult box(const Vec3& half_extents) {
   return polyhedron_from_vertices(vertices);
 }
 
-ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_high) {
+ShapeResult prism(std::span<const Vec2> base, double z_low, double z_high) {
   if (!std::isfinite(z_low) || !std::isfinite(z_high) || !(z_low < z_high)) {
     return ShapeError{"the prism's low end must be finite and below its high end"};
   }
@@ -124,6 +126,7 @@ ShapeResult prism(std::span<const Eigen::Vector2d> base, double z_low, double z_
       }
     }
   }
+  // Points inside the base and repeated ones are no fault: the hull leaves them out.
   ShapeResult made = polyhedron_from_vertices(vertices);
   if (std::holds_alternative<ShapeError>(made)) {
     return ShapeError{"the prism's base has no area, or the prism is thinner than 1e-12 m"};
@@ -140,6 +143,7 @@ ShapeResult point(const Vec3& position, double radius) {
   body.vertices.push_back({position, 0, 0});
   body.anchors.push_back(position);
   body.interior = position;
+  // Rounded up: a norm is off by 2.5 ulps.
   body.bounding_radius = position.norm() * (1.0 + 0x1p-50);
   body.radius = radius;
   add_query_tables(body);

@@ -97,6 +97,7 @@ class Assembler {
     result.vertex[1] = edge.full_line ? kNone : edge.end;
     result.facet[0] = edge.left;
     result.facet[1] = edge.right;
+    // In the planes of the facets, at right angles to the edge.
     result.inward.row(0) = unit_cross(left, direction);
     result.inward.row(1) = unit_cross(direction, right);
     body_.edges.push_back(result);
@@ -159,6 +160,8 @@ class Assembler {
     }
   }
 
+  // Where two sides meet at so sharp an angle that a point past the corner is beyond neither of
+  // them by more than rounding, the facet is limited there once more: across the first side's end.
   void add_sharp_corners(Facet& facet) {
     facet.limits = facet.sides;
     const auto use_of = [&](std::int32_t i) {

@@ -216,22 +216,22 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
   }
 }
 
-// A vertex that is far out along `towards`; a body without vertices is one facet, or none for a
+// A vertex that is far out along `direction`; a body without vertices is one facet, or none for a
 // walk.
-HWY_INLINE void start(const ConvexPolyhedron& body, Vec4 towards, Side& side) {
+HWY_INLINE void start(const ConvexPolyhedron& body, Vec4 direction, Side& side) {
   if (body.vertices.empty()) {
     to_facet(side, 0);
   } else {
-    to_vertex(side, body.start.at(vec3(towards)));
+    to_vertex(side, body.start.at(vec3(direction)));
   }
 }
 
 // Where there are no features from the last query.
 HWY_INLINE void begin(TrackedPair& pair) {
   if (exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b)) return;
-  const Vec4 towards = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
-  start(pair.a, towards, pair.on_a);
-  start(pair.b, -direction_to_b(pair.a_from_b, towards), pair.on_b);
+  const Vec4 a_to_b = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
+  start(pair.a, a_to_b, pair.on_a);
+  start(pair.b, -direction_to_b(pair.a_from_b, a_to_b), pair.on_b);
 }
 
 // The certificate of features that are closest: their distance bounds that of the bodies from

@@ -6,6 +6,8 @@ namespace {
 using Points = std::array<WideVec, 4>;
 using Weights = std::array<DoubleDouble, 4>;
 
+// Barycentric coordinates of the origin's projection on the affine hull of one to four points, the
+// others' staying 0. False: the points are affinely dependent, and a smaller subset has the point.
 bool vertex_weights(const Points&, const std::array<int, 4>& at, Weights& w) noexcept {
   w[at[0]] = 1.0;
   return true;
@@ -35,6 +37,7 @@ bool triangle_weights(const Points& p, const std::array<int, 4>& at, Weights& w)
 
 bool tetrahedron_weights(const Points& p, const std::array<int, 4>& at, Weights& w) noexcept {
   const WideVec &a = p[at[0]], &b = p[at[1]], &c = p[at[2]], &d = p[at[3]];
+  // Signed volumes that the origin makes with each face, over the whole (each six times too large).
   const DoubleDouble volume = dot(b - a, cross(c - a, d - a));
   if (volume.high == 0.0) return false;
   w[at[0]] = dot(b, cross(c, d)) / volume;
@@ -58,6 +61,9 @@ bool non_negative(const Weights& w) noexcept {
 }  // namespace
 
 ClosestPoint closest_to_origin(const Points& points, std::size_t size) noexcept {
+  // All 15 subsets, and the closest of those whose projection lies within. Johnson's recursion
+  // decides by signs of determinants which subset it is; where rounding turns one of them, it ends
+  // at none or the wrong one, while the least of lengths is off by rounding at most.
   ClosestPoint best;
   best.length2 = std::numeric_limits<double>::infinity();
   for (unsigned subset = 1; subset < (1u << size); ++subset) {

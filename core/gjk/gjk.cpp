@@ -11,6 +11,7 @@
 namespace clearance {
 namespace {
 
+// Bounds that are wider than promised then say so by the status kIterationLimit.
 constexpr int kRounds = 64;
 
 // A point of the Minkowski difference B - A, and where it comes from.
@@ -21,6 +22,8 @@ struct DifferenceVertex {
   WideVec difference;
 };
 
+// B - A by its support points, placed in twice the precision: simplices are slender where bodies
+// nearly touch, and differences of their vertices would be left with few digits.
 class WideMinkowskiDifference {
  public:
   WideMinkowskiDifference(const ActiveFeature& a, const ActiveFeature& b,
@@ -67,6 +70,7 @@ class WideMinkowskiDifference {
   const Precision& p_;
 };
 
+// The vertices whose hull has the point closest to the origin, four at most.
 class Simplex {
  public:
   // False when it is there already: no progress is possible.
@@ -131,6 +135,8 @@ void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r, const 
 
 void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& r) noexcept {
+  // The point of the simplex bounds the distance from above, its direction's support values from
+  // below: each round's n is the normal at that point (Gilbert, Johnson and Keerthi 1988).
   const WideMinkowskiDifference body(a, b, a_from_b, p);
   Simplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.

@@ -44,6 +44,7 @@ double inner_radius(const ConvexPolyhedron& body) {
   return std::max(0.0, nearest - kRoundings * body.bounding_radius - body.position_error);
 }
 
+// Of each facet its sides, and across the ends of those that meet the next one at a sharp corner.
 void add_facet_limits(ConvexPolyhedron& body) {
   body.facet_limits.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
@@ -61,6 +62,7 @@ void add_facet_limits(ConvexPolyhedron& body) {
   }
 }
 
+// Normals and offsets by component, as the facet scans of core/penetration read them.
 void add_planes(ConvexPolyhedron& body) {
   const auto count = static_cast<std::int32_t>(body.facets.size());
   body.planes.resize(body.facets.size());
@@ -72,6 +74,8 @@ void add_planes(ConvexPolyhedron& body) {
   }
 }
 
+// Rays and an orthonormal basis of the lineality space (Gram and Schmidt). A line that has more
+// than half of it across those before it is a new direction; what rounding leaves of others is not.
 void sort_rays(const ConvexPolyhedron& body, RecessionCone& out) {
   for (const Ray& ray : body.rays) {
     if (!ray.is_line) {

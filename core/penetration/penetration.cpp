@@ -36,6 +36,7 @@ bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const Tracking
       e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
   const double sine2 = n.squaredNorm();
   if (!(sine2 > kCrossingSine2)) return false;
+  // The sign that leads out of A: the facets beside the edge lie on the inner side.
   const double inwards = (e.inward * n).sum(), sine = std::sqrt(sine2);
   out = {n / (inwards > 0.0 ? -sine : sine), kNone, kNone, state.a.feature, state.b.feature};
   return true;
@@ -88,6 +89,8 @@ void measure_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
     conclude_penetrating(a, b, a_from_b, found, state, result);
     return;
   }
+  // Neither apart nor certainly overlapping: both the distance's bounds and the depth's hold, and
+  // so do the better ones of them.
   if (-found.upper > result.lower) {
     result.lower = -found.upper;
     result.normal = found.normal;

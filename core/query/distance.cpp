@@ -19,8 +19,8 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   return result;
 }
 
-// What walk() leaves to others has a relative pose and a pair of its own, so that those of walk()
-// can be kept in registers.
+// What by_walk() leaves to others has a relative pose and a pair of its own, so that those of
+// by_walk() can be kept in registers.
 inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
                                                     const ConvexPolyhedron& b,
                                                     const Pose& world_from_a,
@@ -37,7 +37,7 @@ inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
 }
 
 // From no features, from parallel ones, or of bodies that penetrated each other. `start`: as of
-// walk().
+// by_walk().
 template <class... Start>
 HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
@@ -79,9 +79,9 @@ inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexPolyhedron&
 // begins at the beginning 1 ns. So does a query that begins at no feature if it comes by here:
 // distance() looks at the state first.
 template <class... Start>
-HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                               const Pose& world_from_a, const Pose& world_from_b,
-                               TrackingState& state, Start... start) {
+HWY_INLINE DistanceResult by_walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                  const Pose& world_from_a, const Pose& world_from_b,
+                                  TrackingState& state, Start... start) {
   if (HWY_UNLIKELY(!is_straight(state) || !can_be_walked(a, b, state))) {
     if constexpr (sizeof...(start) == 0) {
       return tracked_from_others(a, b, world_from_a, world_from_b, state);
@@ -102,12 +102,12 @@ HWY_INLINE DistanceResult walk(const ConvexPolyhedron& a, const ConvexPolyhedron
 DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                 const Pose& world_from_a, const Pose& world_from_b,
                                 TrackingState& state) {
-  return walk(a, b, world_from_a, world_from_b, state);
+  return by_walk(a, b, world_from_a, world_from_b, state);
 }
 DistanceResult continued_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                   const Pose& world_from_a, const Pose& world_from_b,
                                   TrackingState& state, WalkStart start) {
-  return walk(a, b, world_from_a, world_from_b, state, start);
+  return by_walk(a, b, world_from_a, world_from_b, state, start);
 }
 
 }  // namespace clearance::HWY_NAMESPACE

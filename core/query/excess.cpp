@@ -17,6 +17,8 @@
 namespace clearance {
 namespace {
 
+// The bound is within 2 % of a distance that some point of the model has, or 400 splits are made:
+// each costs one distance query a body.
 constexpr double kCloseEnough = 0.98;
 constexpr int kMostSplits = 400;
 
@@ -56,6 +58,7 @@ class Search {
     for (const Facet& facet : model.facets) fan(model, facet, centre);
   }
 
+  // Best first: the tetrahedron whose bound is the largest is split, as no other one can lower it.
   double run() {
     int splits = 0;
     while (splits++ < kMostSplits && reached_ < kCloseEnough * open_.top().open) {

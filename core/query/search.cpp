@@ -32,6 +32,7 @@ struct Bounds {
   }
 };
 
+// Tries the separating directions in their order, until the bounds are as near as they can be.
 void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
                    const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
@@ -83,8 +84,11 @@ double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const Relati
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
 }
 
+// Of the polyhedra, without radii: DQP3, its certificate, and GJK where that is too wide.
 DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
                              const RelativePose& a_from_b) noexcept {
+  // Any two points bound the distance from above, and with it where on an unbounded body the
+  // closest points can lie.
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.tight);
@@ -93,9 +97,9 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
   bounds.upper = (b.common() - a.common()).norm();
   const Precision p = precision(a.body(), b.body(), a_from_b, std::min(first, bounds.upper));
   bounds.beyond = beyond_reach(a, b, a_from_b, p);
-  if (outcome.end == Dqp3End::kProved && (a.body().bounded() || b.body().bounded())) {
-    const double apart = outcome.towards.norm();
-    const Vec3 n = outcome.towards / apart;
+  if (outcome.end == Dqp3End::kCertified && (a.body().bounded() || b.body().bounded())) {
+    const double apart = outcome.separating_direction.norm();
+    const Vec3 n = outcome.separating_direction / apart;
     bounds.raise(certified_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
@@ -123,6 +127,7 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   side_a.place_near(state.a, side_b, apart);
   side_b.place_near(state.b, side_a, apart);
   DistanceResult result = core_distance(side_a, side_b, a_from_b);
+  // Whatever came of it: the next query starts here.
   state = {side_a.tracked(), side_b.tracked()};
   if (result.lower > 0.0) return result;
   if (depth) {

@@ -1,5 +1,5 @@
-// distance() for a batch: it may have taken a pair's first transition itself, and asks so often
-// that finding the machine's vectors counts, which is done once for many queries.
+// distance() for a batch: it may have taken a pair's first transition itself, and makes so many
+// queries that finding the machine's vectors counts, which is done once for many queries.
 #pragma once
 
 #include "core/distance_result.hpp"

@@ -8,6 +8,24 @@
 #include "monitor/app/print.hpp"
 
 namespace clearance {
+namespace {
+
+// Every output needs its folder.
+bool has_folder(const char* program, const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!file.has_parent_path() || std::filesystem::exists(file.parent_path(), unknown)) return true;
+  print(stderr, "{}: cannot create {}: there is no folder {}\n", program, file.string(),
+        file.parent_path().string());
+  return false;
+}
+
+// Also what a dangling link names.
+bool is_taken(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::exists(std::filesystem::symlink_status(file, unknown));
+}
+
+}  // namespace
 
 // An output that does not exist yet equals no input.
 bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
@@ -26,14 +44,29 @@ bool output_is_not_an_input(const char* program, const std::filesystem::path& ou
 // races.
 bool can_create(const char* program, const std::filesystem::path& file, bool force) {
   std::error_code unknown;
-  if (file.has_parent_path() && !std::filesystem::exists(file.parent_path(), unknown)) {
-    print(stderr, "{}: cannot create {}: there is no folder {}\n", program, file.string(),
-          file.parent_path().string());
-    return false;
-  }
+  if (!has_folder(program, file)) return false;
   if (force || file.empty() || !std::filesystem::exists(file, unknown)) return true;
   print(stderr, "{}: {} exists; --force overwrites it\n", program, file.string());
   return false;
+}
+
+// A program that is started again after a crash, with the same arguments, finds the file of the run
+// before.
+std::optional<std::filesystem::path> free_name(const char* program,
+                                               const std::filesystem::path& file, bool force) {
+  if (!has_folder(program, file)) return std::nullopt;
+  if (file.empty() || !is_taken(file)) return file;
+  std::error_code unknown;
+  if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
+    print(stderr, "{}: {} is no regular file; expected one\n", program, file.string());
+    return std::nullopt;
+  }
+  std::filesystem::path free = file;
+  for (int number = 2; !force && is_taken(free); ++number) {
+    free.replace_filename(
+        fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()));
+  }
+  return free;
 }
 
 // Devices and pipes (/dev/stdout) are left alone.

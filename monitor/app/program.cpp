@@ -2,15 +2,29 @@
 #include "monitor/app/program.hpp"
 
 #include <cstdio>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "monitor/app/print.hpp"
+#include "monitor/app/printable.hpp"
 #include "monitor/build_info/build_info.hpp"
 
 namespace clearance {
+namespace {
+
+// What CLI11 has to say, through print().
+int say(const CLI::App& app, const CLI::Error& error) {
+  std::ostringstream out, err;
+  const int status = app.exit(error, out, err);
+  print(stdout, "{}", out.str());
+  print(stderr, "{}", err.str());
+  return status;
+}
+
+}  // namespace
 
 // StopSignal blocks the signals before anything else starts a thread.
 int run_program(const char* name, const std::function<int(StopSignal&)>& body,
@@ -19,7 +33,7 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body,
   try {
     return body(stop);
   } catch (const std::exception& error) {
-    print(stderr, "{}: {}\n", name, error.what());
+    print(stderr, "{}: {}\n", name, printable(error.what()));
     return exit_code_of ? exit_code_of(error) : kFailed;
   }
 }
@@ -33,10 +47,10 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
     // A mistyped option is often why something else is missing.
     const std::vector<std::string> unknown = app.remaining(true);
     if (!unknown.empty()) print(stderr, "{}\n", CLI::ExtrasError("", unknown).what());
-    app.exit(error);
+    say(app, error);
     return kUsage;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
+    return say(app, error) == 0 ? kOk : kUsage;
   }
   return std::nullopt;
 }
@@ -45,7 +59,7 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
 std::optional<Scene> scene_or_errors(CellResult cell) {
   if (Scene* const scene = std::get_if<Scene>(&cell)) return std::move(*scene);
   const auto& errors = std::get<std::vector<CellError>>(cell);
-  for (const CellError& error : errors) print(stderr, "{}\n", error.text);
+  for (const CellError& error : errors) print(stderr, "{}\n", printable(error.text));
   print(stderr, "{} error{}\n", errors.size(), errors.size() == 1 ? "" : "s");
   return std::nullopt;
 }

@@ -2,9 +2,11 @@
 // where a program must end at once.
 #include "monitor/app/stop_signal.hpp"
 
+#include <poll.h>
 #include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <ctime>
 
@@ -15,8 +17,16 @@ namespace {
 int status_at_the_end = 0;
 const char* words_at_the_end = "";
 
-// Only async-signal-safe calls: write and _exit.
+// wait() has taken a signal off the pending ones.
+std::atomic<bool> a_signal_came{false};
+
+// How long the last words may wait for their reader.
+constexpr int kLastWordsMs = 200;
+
+// Only async-signal-safe calls: poll, write and _exit.
 extern "C" void end_now(int) {
+  pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+  if (poll(&writable, 1, kLastWordsMs) <= 0) _exit(status_at_the_end);
   [[maybe_unused]] const auto written =
       write(STDERR_FILENO, words_at_the_end, std::strlen(words_at_the_end));
   _exit(status_at_the_end);
@@ -29,8 +39,10 @@ StopSignal::StopSignal() {
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  // Whoever reads our output may leave first: then a write fails, that is all.
+  // Whoever reads our output may leave first, and a file may get too large: then a write fails,
+  // that is all.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 // A signal that is pending is delivered when the mask is restored.
@@ -47,7 +59,14 @@ void StopSignal::end_with(int status, const char* last_words) {
 bool StopSignal::wait(std::int64_t timeout_ms) {
   const timespec timeout{.tv_sec = timeout_ms / 1000, .tv_nsec = timeout_ms % 1000 * 1'000'000};
   if (!came_) came_ = sigtimedwait(&signals_, nullptr, &timeout) > 0;
+  if (came_) a_signal_came = true;
   return came_;
+}
+
+bool stop_is_asked_for() noexcept {
+  sigset_t pending;
+  sigpending(&pending);
+  return a_signal_came || sigismember(&pending, SIGINT) == 1 || sigismember(&pending, SIGTERM) == 1;
 }
 
 }  // namespace clearance

@@ -26,4 +26,7 @@ class StopSignal {
   bool came_ = false;
 };
 
+// True: SIGINT or SIGTERM has come, whether or not wait() has been asked since.
+[[nodiscard]] bool stop_is_asked_for() noexcept;
+
 }  // namespace clearance

@@ -14,7 +14,7 @@
 
 namespace clearance {
 
-// One row. The quaternion is as written: the tick refuses those that are not unit.
+// One row. The quaternion is as written: who uses it refuses those that are not unit.
 struct CsvPose {
   std::int64_t t_ns = 0;
   std::string object;

@@ -45,9 +45,10 @@ MonitorOptions monitor_options(const DaemonOptions& options) {
 }
 
 std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
-                                          const PoseReader& poses) {
+                                          const PoseReader& poses, RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
-  return std::make_unique<Recording>(options.record_file, options.record_over, scene, poses);
+  return std::make_unique<Recording>(options.record_file, options.record_over, scene, poses,
+                                     health);
 }
 
 }  // namespace
@@ -59,8 +60,8 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       participant_(prepare_threads(options)),
       poses_(scene, participant_),
       publish_queue_(scene, {.reports = kQueuedReports}),
-      reports_(scene, participant_, publish_queue_, poses_),
-      recording_(open_recording(scene, options, poses_)) {
+      reports_(scene, participant_, publish_queue_, poses_, recording_health_),
+      recording_(open_recording(scene, options, poses_, recording_health_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * PoseReader::samples_a_batch(scene),
                              .monitor = monitor_options(options)};
@@ -69,8 +70,8 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
   loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
 }
 
-// The loop ticks in its own thread; this one waits for signals. Afterwards the queues are emptied,
-// so that the last report is published and recorded.
+// The loop ticks in its own thread; this one waits for signals and watches the recording.
+// Afterwards the queues are emptied, so that the last report is published and recorded.
 void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
   spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
@@ -82,6 +83,7 @@ void Daemon::run(StopSignal& signal) {
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
+    if (recording_) recording_->watch();
   }
   stop_ = true;
   ticking.join();
@@ -109,5 +111,6 @@ std::string Daemon::summary() const {
 }
 
 bool Daemon::recording_complete() const noexcept { return !recording_ || recording_->complete(); }
+bool Daemon::recording_hangs() const noexcept { return recording_ && recording_->hangs(); }
 
 }  // namespace clearance

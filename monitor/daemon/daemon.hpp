@@ -49,6 +49,9 @@ class Daemon {
   [[nodiscard]] std::string summary() const;
   // After run(): nothing was to be recorded, or all of it is in the file.
   [[nodiscard]] bool recording_complete() const noexcept;
+  // After run(): the disk took nothing any more, so that the thread that records waits for it
+  // still. Then the program can only be ended without the end of this object.
+  [[nodiscard]] bool recording_hangs() const noexcept;
 
  private:
   void tick_thread(std::atomic<bool>& done);
@@ -58,6 +61,7 @@ class Daemon {
   Participant participant_;
   PoseReader poses_;
   ReportQueue publish_queue_;
+  RecordingHealth recording_health_;
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
   SystemClock clock_;

@@ -1,6 +1,9 @@
 // clearanced: reads a cell, then publishes its distances at a fixed rate until it is told to stop.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
+
+#include <spdlog/spdlog.h>
 
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"
@@ -20,7 +23,8 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined, or another daemon publishes this cell already
-  5  the recording could not be made, or is incomplete
+  5  the recording could not be begun (no folder, no permission, no regular file), or is incomplete at the end
+     (deleted, moved or changed under way, a disk that is full or too slow). Nothing else depends on it: ticks go on
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80)";
@@ -39,7 +43,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
   arguments.dds.add_to(app);
   app.add_option("--record", arguments.daemon.record_file,
-                 "Record inputs and reports to this MCAP file");
+                 "Record inputs and reports to this MCAP file, or, when it exists, to NAME-2.mcap "
+                 "and so on");
   add_force(app, arguments.daemon.record_over);
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
@@ -70,7 +75,11 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   route_dds_log();
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
-  print(stdout, "{}", daemon.summary());
+  write_text(stdout, daemon.summary(), Patience::kBrief);
+  if (daemon.recording_hangs()) {
+    drain_log();
+    std::_Exit(kIncomplete);
+  }
   if (daemon.gave_way()) return kDdsFailed;
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
@@ -92,8 +101,13 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!scene) return kBadCell;
   if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {arguments.cell}))
     return kUsage;
-  if (!can_create("clearanced", arguments.daemon.record_file, arguments.daemon.record_over)) {
-    return kIncomplete;
+  const auto record_file =
+      free_name("clearanced", arguments.daemon.record_file, arguments.daemon.record_over);
+  if (!record_file) return kIncomplete;
+  if (*record_file != arguments.daemon.record_file) {
+    spdlog::warn("{} exists: recording to {}", arguments.daemon.record_file.string(),
+                 record_file->string());
+    arguments.daemon.record_file = *record_file;
   }
   return run_daemon(*scene, arguments, signal);
 }

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "monitor/dds/health.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -16,6 +17,11 @@ namespace {
 // How much a disk may stall: a second at 1 kHz for a cell of usual size, less for a huge one.
 constexpr std::size_t kMostSlots = 1024, kFewestSlots = 64;
 constexpr std::size_t kQueueBytes = std::size_t{64} << 20;
+
+// How long the disk may take nothing at the end.
+constexpr int kDiskPatienceMs = 2000;
+// Between two lines of the log about a slow disk.
+constexpr std::int64_t kLogEveryNs = 1'000'000'000;
 
 // As many slots as fit into the memory that a queue may use.
 std::size_t slots(std::size_t bytes_a_slot) {
@@ -34,13 +40,15 @@ ReportQueueOptions queue_options(const Scene& scene) {
 
 // The file and its catalogue are written before the first tick, so that errors come at the start.
 Recording::Recording(const std::filesystem::path& file, bool over, const Scene& scene,
-                     const PoseReader& poses)
+                     const PoseReader& poses, RecordingHealth& health)
     : scene_(scene),
       file_(file.string()),
       poses_(poses),
+      health_(health),
       queue_(scene, queue_options(scene)),
       recorder_(file, scene, SystemClock().realtime_ns(), over) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
+  health_.begin(file_);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -50,10 +58,29 @@ Recording::~Recording() { finish(); }
 void Recording::finish() {
   if (!thread_.joinable()) return;
   queue_.close();
-  thread_.join();
+  wait_for_the_disk();
+  hangs_ = !ended_;
+  if (hangs_) {
+    thread_.detach();
+    spdlog::error("recording: the disk takes nothing, {} is left unfinished", file_);
+  } else {
+    thread_.join();
+  }
+  watch();
+  complete_ = !hangs_ && !health_.failed() && missing() == 0;
 }
 
-// Empties the queue until it is closed. What a report used is in the queue before the report is.
+// Until the thread has ended, or has handed nothing to the disk for as long as that may take.
+void Recording::wait_for_the_disk() const {
+  std::uint64_t steps = steps_;
+  for (int waited_ms = 0; !ended_ && waited_ms < kDiskPatienceMs; ++waited_ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (steps_ != steps) waited_ms = 0;
+    steps = steps_;
+  }
+}
+
+// Empties the queue until it is closed.
 void Recording::run() {
   name_thread("record");
   // A file can wait: no priority over the rest of the machine.
@@ -61,43 +88,75 @@ void Recording::run() {
   for (bool closed = false; !closed;) {
     queue_.wait();
     closed = queue_.closed();  // asked before the last look, so that nothing is left behind
-    while (const QueuedReport* queued = queue_.reports().front()) {
-      // What this report used is in the queue already; what later ones used may be as well.
-      while (const PoseBatch* batch = queue_.inputs().front()) {
-        recorder_.poses(*batch);
-        queue_.inputs().pop();
-      }
-      recorder_.report(queued->report, queued->sources());
-      queue_.reports().pop();
-    }
-    while (const LoopStatistics* statistics = queue_.statistics().front()) {
-      recorder_.health(*make_health(scene_, *statistics, poses_, queue_.dropped_reports()));
-      queue_.statistics().pop();
-      log_trouble();
-    }
+    record_all();
   }
-  complete_ = recorder_.close() && queue_.dropped_reports() + queue_.dropped_inputs() == 0;
-  log_trouble();
+  recorder_.close();
+  count(0);
+  ended_ = true;
 }
 
-// Each new trouble once: at a tick rate the log would be flooded.
-void Recording::log_trouble() {
-  if (!recorder_.ok() && !std::exchange(error_logged_, true)) {
-    spdlog::error("recording stopped: {}", recorder_.error());
+// What a report used is in the queue before the report is; what later ones used may be as well.
+void Recording::record_all() {
+  while (const QueuedReport* queued = queue_.reports().front()) {
+    while (const PoseBatch* batch = queue_.inputs().front()) {
+      recorder_.poses(*batch);
+      queue_.inputs().pop();
+      count(1);
+    }
+    recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
+    queue_.reports().pop();
+    count(1);
+  }
+  while (const LoopStatistics* statistics = queue_.statistics().front()) {
+    recorder_.health(*make_health(scene_, *statistics, poses_, queue_.dropped_reports(), health_));
+    queue_.statistics().pop();
+    recorder_.check();
+    count(0);
+  }
+}
+
+// After every message that the recorder was given: `messages` of them, reports or batches, are
+// missing if it has failed.
+void Recording::count(std::uint64_t messages) {
+  ++steps_;
+  if (recorder_.ok()) return;
+  if (!health_.failed()) health_.fail(recorder_.error());
+  unwritten_ += messages;
+}
+
+// What found the queue full, and what came after the file had failed.
+std::uint64_t Recording::missing() const noexcept {
+  return queue_.dropped_reports() + queue_.dropped_inputs() + unwritten_;
+}
+
+// A failure once; a slow disk once a second, for as long as it loses something.
+void Recording::watch() {
+  health_.set_missing(missing());
+  if (health_.failed()) {
+    if (!std::exchange(failure_logged_, true))
+      spdlog::error("recording stopped: {}", health_.state());
+    return;
   }
   const std::uint64_t dropped = queue_.dropped_reports() + queue_.dropped_inputs();
-  if (dropped > dropped_logged_) {
-    spdlog::error("recording: the disk is too slow, {} reports and {} batches are missing so far",
-                  queue_.dropped_reports(), queue_.dropped_inputs());
-    dropped_logged_ = dropped;
-  }
+  const std::int64_t now_ns = SystemClock().monotonic_ns();
+  if (dropped == dropped_logged_ || now_ns - logged_ns_ < kLogEveryNs) return;
+  spdlog::error("recording: the disk is too slow, {} reports and {} batches are missing so far",
+                queue_.dropped_reports(), queue_.dropped_inputs());
+  dropped_logged_ = dropped;
+  logged_ns_ = now_ns;
 }
 
-// On stdout, at the end of a run.
+// On stdout, at the end of a run. Of a thread that still waits nothing more can be known.
 std::string Recording::summary() const {
-  return fmt::format("recorded {} messages, {:.1f} MB, in {}{}\n", recorder_.messages(),
-                     1e-6 * static_cast<double>(recorder_.bytes()), file_,
-                     complete_ ? "" : ": INCOMPLETE, the log says why");
+  if (complete_) {
+    return fmt::format("recorded {} messages, {:.1f} MB, in {}\n", recorder_.messages(),
+                       1e-6 * static_cast<double>(recorder_.bytes()), file_);
+  }
+  const std::string why = hangs_             ? "the disk takes nothing"
+                          : health_.failed() ? health_.state()
+                                             : "the disk was too slow";
+  return fmt::format("recording INCOMPLETE in {}: {}; {} reports and batches are missing\n", file_,
+                     why, missing());
 }
 
 }  // namespace clearance

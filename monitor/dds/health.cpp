@@ -31,6 +31,8 @@ void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
   out.wakeup_max_us = kUsPerNs * static_cast<double>(statistics.wakeup.max_ns());
   out.tick_second_max_us = kUsPerNs * static_cast<double>(statistics.tick_second_max_ns);
   out.wakeup_second_max_us = kUsPerNs * static_cast<double>(statistics.wakeup_second_max_ns);
+  out.clock_steps = statistics.clock_steps;
+  out.clock_offset_ns = statistics.clock_offset_ns;
   out.overruns = statistics.overruns;
   out.skipped_cycles = statistics.skipped_cycles;
 }
@@ -74,6 +76,11 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
   }
 }
 
+// Of a source by its number; nothing for none. The sample begins as zeros.
+void copy_name(const LoopStatistics& statistics, std::uint32_t source, char* out) {
+  if (source < kMaxSources) statistics.sources[source].view().copy(out, kMaxSourceLength);
+}
+
 // Ages of the moving objects; fixed ones have none.
 void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
   reserve_sequence(out.inputs,
@@ -83,8 +90,12 @@ void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance
     clearance_msg_InputAge& entry = out.inputs._buffer[out.inputs._length++];
     entry.object = object;
     entry.name = dds_string_dup(scene.objects[object].name.c_str());
-    entry.age_ns = statistics.ages[object].age_ns;
-    entry.stale = statistics.ages[object].stale || entry.age_ns < 0;
+    const InputAge& age = statistics.ages[object];
+    entry.age_ns = age.age_ns;
+    entry.stale = age.stale || entry.age_ns < 0;
+    entry.contradicted = age.contradicted;
+    copy_name(statistics, age.source, entry.source);
+    copy_name(statistics, age.other_source, entry.other_source);
   }
 }
 
@@ -107,6 +118,17 @@ void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& de
   }
 }
 
+// Why the object's pairs are stale.
+void log_stale(const clearance_msg_InputAge& input) {
+  if (input.contradicted) {
+    spdlog::warn("poses of {} contradict its last one or the cell: its pairs are stale",
+                 input.name);
+  } else {
+    spdlog::warn("no pose of {} for {} ms: its pairs are stale", input.name,
+                 input.age_ns / 1'000'000);
+  }
+}
+
 // One line for what grew, naming by how much.
 void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
   if (now > before)
@@ -118,10 +140,13 @@ void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
 
 // A new sample each time: its strings differ in length from second to second.
 Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
-                                         const PoseReader& poses, std::uint64_t dropped_reports) {
+                                         const PoseReader& poses, std::uint64_t dropped_reports,
+                                         const RecordingHealth& recording) {
   Sample<clearance_msg_Health> sample;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
+  sample->recording = dds_string_dup(recording.state().c_str());
+  sample->recording_missing = recording.missing();
   sample->undecodable_samples = poses.undecodable();
   fill_loop(statistics, *sample);
   fill_rejections(scene, statistics, poses, *sample);
@@ -131,7 +156,20 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
 }
 
 // No object has been seen at the start, so no object is late.
-HealthLog::HealthLog(const Scene& scene) : stale_(scene.objects.size()) {}
+HealthLog::HealthLog(const Scene& scene)
+    : stale_(scene.objects.size()), other_source_(scene.objects.size()) {}
+
+// The offset tells by how much, all steps together.
+void HealthLog::log_clock(const clearance_msg_Health& health) {
+  if (health.clock_steps > clock_steps_) {
+    spdlog::warn(
+        "this machine's clock was stepped by {:+.3f} s: ages go on by a clock that was not, and "
+        "poses of other machines are late or refused until their clocks agree with it",
+        1e-9 * static_cast<double>(health.clock_offset_ns - clock_offset_ns_));
+  }
+  clock_steps_ = health.clock_steps;
+  clock_offset_ns_ = health.clock_offset_ns;
+}
 
 // Refusals, then late inputs, then the totals. The limit on lines is for a cell that loses
 // all its objects at once.
@@ -152,17 +190,23 @@ void HealthLog::update(const clearance_msg_Health& health) {
     const bool stale = input.stale && input.age_ns >= 0;
     if (stale != stale_[input.object] && lines++ < kLinesAtOnce) {
       if (stale) {
-        spdlog::warn("no pose of {} for {} ms: its pairs are stale", input.name,
-                     input.age_ns / 1'000'000);
+        log_stale(input);
       } else {
         spdlog::info("poses of {} are back", input.name);
       }
     }
     stale_[input.object] = stale;
+    std::string& other = other_source_[input.object];
+    if (other != input.other_source && lines++ < kLinesAtOnce) {
+      spdlog::warn("{} is sent by '{}' and by '{}': poses of the latter are not used", input.name,
+                   input.source, input.other_source);
+    }
+    other = input.other_source;
   }
   if (lines > kLinesAtOnce) {
     spdlog::warn("{} more refusals and late inputs left out", lines - kLinesAtOnce);
   }
+  log_clock(health);
   log_growth("batches lost", health.lost_batches, lost_);
   log_growth("samples that cannot be decoded", health.undecodable_samples, undecodable_);
   log_growth("reports of other daemons", health.foreign_reports, foreign_);

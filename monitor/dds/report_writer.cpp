@@ -75,10 +75,11 @@ std::int64_t lease_ns(double rate_hz) noexcept {
 
 // The catalogue is latched: clients that come later get it as well.
 ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
-                           const PoseReader& poses)
+                           const PoseReader& poses, const RecordingHealth& recording)
     : scene_(scene),
       queue_(queue),
       poses_(poses),
+      recording_(recording),
       identity_(make_identity()),
       distances_(
           make_writer(participant, scene, TopicKind::kDistances,
@@ -174,8 +175,8 @@ void ReportWriter::write_zones(const Report& report) {
 
 // Failed writes count as dropped: the client got neither.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
-  auto sample =
-      make_health(scene_, statistics, poses_, queue_.dropped_reports() + failed_writes_.load());
+  auto sample = make_health(scene_, statistics, poses_,
+                            queue_.dropped_reports() + failed_writes_.load(), recording_);
   sample->daemon = identity_.id;
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();

@@ -27,7 +27,7 @@ class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.
   ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
-               const PoseReader& poses);
+               const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
   // After the last tick: writes what is queued.
@@ -51,6 +51,7 @@ class ReportWriter {
   const Scene& scene_;
   ReportQueue& queue_;
   const PoseReader& poses_;
+  const RecordingHealth& recording_;
   DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   OtherDaemons others_;

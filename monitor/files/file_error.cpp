@@ -12,22 +12,25 @@ namespace {
 // Has to be called before anything else changes errno.
 std::string system_reason() { return std::system_category().message(errno); }
 
-}  // namespace
-
-std::string cannot_read(const std::filesystem::path& file) {
+// What is wrong with a file that is there and is none of the usual kind; otherwise what errno says.
+std::string reason_for(const std::filesystem::path& file) {
   std::string reason = system_reason();
   std::error_code unknown;
   const std::filesystem::file_status status = std::filesystem::status(file, unknown);
-  if (std::filesystem::is_directory(status)) {
-    reason = "it is a directory; expected a file";
-  } else if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    reason = "it is no regular file; expected one";
-  }
-  return fmt::format("cannot read {}: {}", file.string(), reason);
+  if (std::filesystem::is_directory(status)) return "it is a directory; expected a file";
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    return "it is no regular file; expected one";
+  return reason;
+}
+
+}  // namespace
+
+std::string cannot_read(const std::filesystem::path& file) {
+  return fmt::format("cannot read {}: {}", file.string(), reason_for(file));
 }
 
 std::string cannot_create(const std::filesystem::path& file) {
-  return fmt::format("cannot create {}: {}", file.string(), system_reason());
+  return fmt::format("cannot create {}: {}", file.string(), reason_for(file));
 }
 
 std::string cannot_write(const std::filesystem::path& file) {

@@ -11,7 +11,7 @@ namespace clearance {
 // "cannot read FILE: reason". Directories and special files are named as such, whatever errno says.
 [[nodiscard]] std::string cannot_read(const std::filesystem::path& file);
 
-// "cannot create FILE: reason"
+// "cannot create FILE: reason", with the same kinds named.
 [[nodiscard]] std::string cannot_create(const std::filesystem::path& file);
 
 // "cannot write to FILE: reason"

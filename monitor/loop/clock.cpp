@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kNsPerS = 1'000'000'000;
 
-// Cannot fail for these two clocks.
+// Cannot fail for these clocks.
 std::int64_t read(clockid_t clock) noexcept {
   timespec time{};
   clock_gettime(clock, &time);
@@ -20,6 +20,7 @@ std::int64_t read(clockid_t clock) noexcept {
 
 std::int64_t SystemClock::realtime_ns() noexcept { return read(CLOCK_REALTIME); }
 std::int64_t SystemClock::monotonic_ns() noexcept { return read(CLOCK_MONOTONIC); }
+std::int64_t SystemClock::steady_ns() noexcept { return read(CLOCK_BOOTTIME); }
 
 // Absolute, so that time spent before the call does not add up; a signal does not end it early.
 void SystemClock::sleep_until(std::int64_t monotonic_ns) noexcept {

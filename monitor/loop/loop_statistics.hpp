@@ -24,6 +24,8 @@ struct MinimumSeen {
 struct LoopStatistics {
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
+  std::uint64_t clock_steps = 0;        // of CLOCK_REALTIME, and
+  std::int64_t clock_offset_ns = 0;     // what all of them come to: TickTime
   Histogram tick;                       // from waking up to the report handed over
   Histogram wakeup;                     // how late the tick thread woke
   std::int64_t tick_second_max_ns = 0;  // since the statistics before
@@ -34,6 +36,7 @@ struct LoopStatistics {
   std::vector<std::array<std::uint64_t, kRejects>> rejected;  // one an object, by cause
   std::array<std::uint64_t, kRejects> rejected_total{};       // those of unknown ids as well
   std::vector<InputAge> ages;                                 // one an object
+  std::array<SourceName, kMaxSources> sources;                // by number: InputAge::source
 };
 
 }  // namespace clearance

@@ -35,13 +35,14 @@ class ReportSink {
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 
-// Realtime for stamps that other machines compare, monotonic for deadlines that no clock adjustment
-// moves.
+// Realtime for stamps that other machines compare; two that nobody can step: monotonic for
+// deadlines, and steady, which goes on while the machine sleeps, for ages.
 class Clock {
  public:
   virtual ~Clock() = default;
   virtual std::int64_t realtime_ns() noexcept = 0;   // stamps: CLOCK_REALTIME
   virtual std::int64_t monotonic_ns() noexcept = 0;  // deadlines: CLOCK_MONOTONIC
+  virtual std::int64_t steady_ns() noexcept = 0;     // ages: CLOCK_BOOTTIME
   virtual void sleep_until(std::int64_t monotonic_ns) noexcept = 0;
 };
 
@@ -50,6 +51,7 @@ class SystemClock final : public Clock {
  public:
   std::int64_t realtime_ns() noexcept override;
   std::int64_t monotonic_ns() noexcept override;
+  std::int64_t steady_ns() noexcept override;
   void sleep_until(std::int64_t monotonic_ns) noexcept override;
 };
 

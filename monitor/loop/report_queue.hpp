@@ -20,6 +20,7 @@ struct QueuedReport {
   Report report;
   std::array<SourceUse, kMaxSources> sources_used;
   std::size_t source_count = 0;
+  std::int64_t handed_over_ns = 0;  // when the tick did so; CLOCK_REALTIME
 
   [[nodiscard]] std::span<const SourceUse> sources() const noexcept {
     return std::span(sources_used).first(source_count);

@@ -12,6 +12,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
                    Clock& clock, const TickLoopOptions& options)
     : scene_(scene),
       monitor_(scene, options.monitor),
+      sources_(scene),
       source_(source),
       sinks_(std::move(sinks)),
       clock_(clock),
@@ -61,9 +62,10 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 // One tick, and its report to every sink.
 void TickLoop::tick_once() noexcept {
   take_in();
-  const Report& report = monitor_.tick(samples_, clock_.realtime_ns());
+  const Report& report = monitor_.tick(samples_, time_.read(clock_));
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
+  statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
@@ -92,7 +94,12 @@ void TickLoop::use(const PoseBatch& batch) noexcept {
     }
     return;
   }
-  samples_.insert(samples_.end(), batch.samples.begin(), batch.samples.end());
+  if (batch.samples.empty()) return;
+  const std::uint32_t source = sources_.of(batch.source);
+  for (const PoseSample& sample : batch.samples) {
+    samples_.push_back(sample);
+    samples_.back().source = source;
+  }
 }
 
 // The last batch of each source goes into the report, which is what makes a replay exact.
@@ -119,6 +126,8 @@ void TickLoop::hand_over_statistics() noexcept {
     statistics_.rejected[object] = monitor_.rejected(object);
     statistics_.ages[object] = monitor_.input_age(object);
   }
+  for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = sources_.name(i);
+  statistics_.clock_steps = time_.steps();
   for (ReportSink* sink : sinks_) sink->statistics(statistics_);
   statistics_.tick_second_max_ns = 0;
   statistics_.wakeup_second_max_ns = 0;

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "monitor/loop/ports.hpp"
+#include "monitor/loop/steady_time.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/source_numbers.hpp"
 
 namespace clearance {
 
@@ -47,6 +49,8 @@ class TickLoop {
 
   const Scene& scene_;
   Monitor monitor_;
+  SourceNumbers sources_;
+  SteadyTime time_;
   PoseSource& source_;
   std::vector<ReportSink*> sinks_;
   Clock& clock_;

@@ -3,6 +3,8 @@
 #include "monitor/mcap/writer.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -82,13 +84,8 @@ void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_
 // Magic and header go to the file at once: a file that is only this long is a valid beginning.
 McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOptions& options)
     : file_(file), options_(options) {
-  // O_EXCL decides in one step whether the file exists; a check before could be overtaken.
-  const int existing = options.overwrite ? O_TRUNC : O_EXCL;
-  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644);
-  if (descriptor_ < 0) {
-    fail(cannot_create(file_));
-    return;
-  }
+  open();
+  if (!ok()) return;
   put_out(std::as_bytes(std::span(kMcapMagic)));
   out_.clear();
   const std::size_t record = out_.begin_record(McapKind::kHeader);
@@ -96,6 +93,18 @@ McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOption
   out_.put_text("clearance " CLEARANCE_VERSION);
   out_.end_record(record);
   put_out(out_.view());
+}
+
+// O_EXCL decides in one step whether the file exists; a check before could be overtaken. With
+// O_NONBLOCK, a pipe that has no reader is refused instead of waited for; regular files do not heed
+// it. With O_APPEND, a file that somebody else cut off stays too short, which check() sees.
+void McapWriter::open() {
+  const int existing = options_.overwrite ? O_TRUNC : O_EXCL;
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+  descriptor_ = ::open(file_.c_str(), kFlags | existing, 0644);
+  struct stat status {};
+  const bool opened = descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0;
+  if (!opened || !S_ISREG(status.st_mode)) fail(cannot_create(file_));
 }
 
 // Errors of closing are lost here; callers who care call close().
@@ -110,6 +119,7 @@ void McapWriter::fail(const std::string& what) {
 // After an error nothing more is written.
 void McapWriter::put_out(std::span<const std::byte> bytes) {
   crc_ = mcap_crc(crc_, bytes);
+  check();
   while (ok() && !bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0) {
@@ -119,6 +129,26 @@ void McapWriter::put_out(std::span<const std::byte> bytes) {
     offset_ += static_cast<std::uint64_t>(written);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+// A file that somebody moved away still grows, but is no longer where it is looked for.
+bool McapWriter::check() {
+  if (!ok() || descriptor_ < 0) return ok();
+  struct stat here {
+  }, there{};
+  const auto happened = [this](const char* what) {
+    fail(fmt::format("{} was {} while it was being written", file_.string(), what));
+  };
+  if (::fstat(descriptor_, &here) != 0) {
+    fail(cannot_write(file_));
+  } else if (here.st_nlink == 0) {
+    happened("deleted");
+  } else if (static_cast<std::uint64_t>(here.st_size) != offset_) {
+    happened("changed by another program");
+  } else if (::stat(file_.c_str(), &there) == 0 ? there.st_ino != here.st_ino : errno == ENOENT) {
+    happened("moved or replaced");
+  }
+  return ok();
 }
 
 // Definitions stand in the chunk in front of the messages that use them, and again in the summary:
@@ -295,6 +325,7 @@ bool McapWriter::close() {
   put_out(out_.view());
   write_summary();
   put_out(std::as_bytes(std::span(kMcapMagic)));
+  check();
   if (::close(descriptor_) != 0) fail(cannot_write(file_));
   descriptor_ = -1;
   return ok();

@@ -26,7 +26,8 @@ struct McapWriterOptions {
 };
 
 // Errors are kept: after the first one nothing more is written, and error() says what happened to
-// which file. The same calls give the same bytes.
+// which file. Whatever is no regular file (a pipe, a device) is refused, so that no write waits for
+// a reader. The same calls give the same bytes.
 class McapWriter {
  public:
   McapWriter(const std::filesystem::path& file, const McapWriterOptions& options = {});
@@ -55,6 +56,11 @@ class McapWriter {
   // Ends the chunk and hands it to the operating system.
   void flush();
 
+  // Whether the file is still there under its name with all that was handed over; when it is not
+  // (deleted, moved away, cut off by somebody else), that is the error. Also asked before and after
+  // everything that is written.
+  bool check();
+
   // Writes the summary and closes the file; true when everything is in it.
   bool close();
 
@@ -71,6 +77,7 @@ class McapWriter {
   };
 
   void fail(const std::string& what);
+  void open();
   // To the file, through the checksum.
   void put_out(std::span<const std::byte> bytes);
   void write_message_indexes(McapChunkIndex& index);

@@ -68,7 +68,7 @@ void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs&
     TrackedObject& object = objects[i];
     const bool was_late = object.late;
     const double might_have_moved = object.may_have_moved;
-    advance(scene.objects[i], inputs.now_ns, object);
+    advance(scene.objects[i], inputs.time.now_ns, object);
     const bool changes =
         object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
     if (changes && inputs.cycle > 1) displaced.changed.push_back(i);

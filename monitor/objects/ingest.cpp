@@ -1,30 +1,57 @@
 #include "monitor/objects/ingest.hpp"
 
-#include <algorithm>
+#include <optional>
+
+#include "monitor/source_numbers.hpp"
 
 namespace clearance {
+namespace {
+
+// Why not, if the sample is not taken.
+std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+  const Object& object = scene.objects[sample.object];
+  TrackedObject& state = inputs.objects[sample.object];
+  const std::int64_t stamp_ns = inputs.sources[sample.source].in_tick_time(
+      sample.stamp_ns, inputs.time,
+      {.future_ns = scene.future_limit_ns, .age_ns = object.age_limit_ns});
+  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
+  const auto cause = refusal(object, sample, stamp_ns, limits, state);
+  if (!cause) accept(object, sample, stamp_ns, inputs.time.now_ns, state);
+  return cause;
+}
+
+// For a tick that cannot know how much time has passed.
+void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
+  for (SourceClock& source : inputs.sources) source.forget();
+  for (TrackedObject& object : inputs.objects) {
+    if (object.seen) forget_age(time.now_ns, object);
+  }
+}
+
+}  // namespace
 
 Inputs initial_inputs(const Scene& scene) {
   Inputs inputs;
-  for (const Object& object : scene.objects) inputs.objects.push_back(initial_state(object));
+  SourceNumbers numbers(scene);
+  for (const Object& object : scene.objects) {
+    TrackedObject& state = inputs.objects.emplace_back(initial_state(object));
+    state.source_is_stated = !object.source.empty();
+    if (state.source_is_stated) state.source = numbers.of(SourceName(object.source));
+  }
   return inputs;
 }
 
-void ingest(std::span<const PoseSample> samples, std::int64_t now_ns, const Scene& scene,
+void ingest(std::span<const PoseSample> samples, const TickTime& time, const Scene& scene,
             Inputs& inputs) noexcept {
   ++inputs.cycle;
-  inputs.now_ns = std::max(inputs.now_ns, now_ns);
+  if (time.now_ns < inputs.time.now_ns) forget_ages(time, inputs);
+  inputs.time = time;
   for (const PoseSample& sample : samples) {
-    if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed) {
+    if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
+        sample.source >= kMaxSources) {
       refuse(sample.object, Reject::kUnknownObject, inputs);
-      continue;
-    }
-    TrackedObject& object = inputs.objects[sample.object];
-    const auto cause = refusal(sample, object, inputs.now_ns, scene.future_limit_ns);
-    if (cause) {
+    } else if (const auto cause = take(sample, scene, inputs)) {
       refuse(sample.object, *cause, inputs);
-    } else {
-      accept(scene.objects[sample.object], sample, object);
     }
   }
 }

@@ -2,37 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "monitor/motion/directed_rounding.hpp"
+#include "monitor/objects/elapsed.hpp"
 
 namespace clearance {
 namespace {
 
-// A unit quaternion's norm is within a thousandth of 1; here squared.
-constexpr double kLeastUnit = 0.999 * 0.999, kMostUnit = 1.001 * 1.001;
-constexpr double kLargest = 1e9;  // m, m/s, rad/s; squares and sums of these stay finite
+// Of squared norms.
+constexpr double kLeastUnit = (1.0 - kSampleUnitTolerance) * (1.0 - kSampleUnitTolerance);
+constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTolerance);
 // A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
 // after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
 
+// A source that has sent no pose of an object for this long no longer owns it.
+constexpr std::int64_t kSilentNs = 1'000'000'000;
+// As good as any time: a hundred years.
+constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
+
 bool usable(const Vec3& v) noexcept {
-  return std::abs(v.x()) <= kLargest && std::abs(v.y()) <= kLargest && std::abs(v.z()) <= kLargest;
+  return std::abs(v.x()) <= kLargestInSample && std::abs(v.y()) <= kLargestInSample &&
+         std::abs(v.z()) <= kLargestInSample;
 }
 
 // All but the orientation.
 bool usable(const PoseSample& sample) noexcept {
   return usable(sample.world_from_object.position) &&
          (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
-}
-
-// later - earlier for any two stamps; what does not fit becomes the largest.
-std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
-  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  if (later <= earlier) return 0;
-  const std::uint64_t apart =
-      static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
-  return static_cast<std::int64_t>(apart < kMost ? apart : kMost);
 }
 
 // Mean velocity that leads from one pose to the next. The shorter way round is taken.
@@ -59,10 +56,47 @@ bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
+// No pose, whoever sends it.
+std::optional<Reject> malformed(const PoseSample& sample) noexcept {
+  if (!usable(sample)) return Reject::kNonFinite;
+  const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
+  const double squared = orientation.squaredNorm();
+  if (squared >= kLeastUnit && squared <= kMostUnit) return std::nullopt;
+  return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
+}
+
+// An object belongs to the source that the cell names, else to the first one that sends its poses,
+// until that one has been silent for long enough.
+bool belongs_to_another(const Object& object, const PoseSample& sample, std::int64_t now_ns,
+                        const TrackedObject& state) noexcept {
+  if (sample.source == state.source || state.source == kNoSource) return false;
+  return state.source_is_stated ||
+         elapsed(state.taken_ns, now_ns) <= std::max(object.age_limit_ns, kSilentNs);
+}
+
+// What is against the pose of a well-formed sample, given the one in use.
+std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
+                                    std::int64_t stamp_ns, TrackedObject& state) noexcept {
+  if (object.may_jump) return std::nullopt;
+  if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
+  const Pose pose = as_queries_take_it(sample.world_from_object);
+  const bool same = state.seen && same_pose(pose, state.pose);
+  state.repetition.add(same, stamp_ns, sample, object, state.landmarks);
+  if (same) {
+    return state.repetition.frozen(object) ? std::optional(Reject::kFrozen) : std::nullopt;
+  }
+  const std::int64_t passed_ns = elapsed(state.stamp_ns, stamp_ns);
+  if (state.seen && !can_reach(object, state.landmarks, state.pose, pose, passed_ns)) {
+    return Reject::kTooFast;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-TrackedObject initial_state(const Object& object) noexcept {
+TrackedObject initial_state(const Object& object) {
   TrackedObject state;
+  state.landmarks = Landmarks(object);
   if (!object.fixed) return state;
   state.seen = state.seen_last_tick = true;
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
@@ -72,21 +106,23 @@ TrackedObject initial_state(const Object& object) noexcept {
   return state;
 }
 
-std::optional<Reject> refusal(const PoseSample& sample, const TrackedObject& state,
-                              std::int64_t now_ns, std::int64_t future_limit_ns) noexcept {
-  if (!usable(sample)) return Reject::kNonFinite;
-  const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
-  const double squared = orientation.squaredNorm();
-  if (!(squared >= kLeastUnit && squared <= kMostUnit)) {
-    return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
+std::optional<Reject> refusal(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+                              const SampleLimits& limits, TrackedObject& state) noexcept {
+  if (const auto cause = malformed(sample)) return cause;
+  if (belongs_to_another(object, sample, limits.now_ns, state)) {
+    state.other_source = sample.source;
+    return Reject::kOtherSource;
   }
-  if (elapsed(now_ns, sample.stamp_ns) > future_limit_ns) return Reject::kFuture;
-  if (state.seen && sample.stamp_ns < state.stamp_ns) return Reject::kBackwards;
-  return std::nullopt;
+  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
+  if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
+  const auto cause = contradiction(object, sample, stamp_ns, state);
+  state.contradicted = cause.has_value();
+  return cause;
 }
 
-void accept(const Object& object, const PoseSample& sample, TrackedObject& state) noexcept {
-  const std::int64_t apart_ns = elapsed(state.stamp_ns, sample.stamp_ns);
+void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+            std::int64_t now_ns, TrackedObject& state) noexcept {
+  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
   if (sample.has_twist) {
     state.twist = sample.twist;
     state.twist_known = true;
@@ -99,8 +135,15 @@ void accept(const Object& object, const PoseSample& sample, TrackedObject& state
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
   state.pose = as_queries_take_it(sample.world_from_object);
-  state.stamp_ns = sample.stamp_ns;
+  state.stamp_ns = stamp_ns;
+  state.source = sample.source;
+  state.taken_ns = now_ns;
   state.seen = true;
+}
+
+void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
+  state.stamp_ns = less(now_ns, kForgottenNs);
+  state.taken_ns = now_ns;
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
@@ -118,7 +161,7 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
-  state.late = state.age_ns > object.age_limit_ns;
+  state.late = state.contradicted || state.age_ns > object.age_limit_ns;
   const double age_s = static_cast<double>(state.age_ns) * 1e-9;
   state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
   state.unseen_since =

@@ -10,6 +10,7 @@
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
 #include "monitor/motion/relative_displacement.hpp"
+#include "monitor/objects/plausibility.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {
@@ -41,13 +42,24 @@ struct TrackedObject {
 
   // As sent, but for an orientation that is off unit length by more than 5e-7.
   Pose pose;
-  std::int64_t stamp_ns = 0;
+  std::int64_t stamp_ns = 0;  // in the tick's time
   // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
   // after a gap longer than twice the age limit: over that a difference says nothing about now.
   Twist twist;
   bool twist_known = false;
   Motion motion;  // since the last tick; none when first seen
   std::array<std::uint64_t, kRejects> rejected{};
+
+  // Who sends its poses, and when the last of them was taken, in the tick's time.
+  std::uint32_t source = kNoSource;
+  bool source_is_stated = false;  // by the cell: nobody takes over
+  std::int64_t taken_ns = 0;
+  std::uint32_t other_source = kNoSource;  // the last that was refused since it is not that one
+  // What came last contradicts the pose in use or the cell: where the object is, only the pose
+  // before that and its speed tell.
+  bool contradicted = false;
+  Repetition repetition;
+  Landmarks landmarks;
 
   Pose pose_last_tick;
   Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now
@@ -74,16 +86,26 @@ struct TrackedObject {
 };
 
 // Before any input: a fixed object stands where the scene says.
-[[nodiscard]] TrackedObject initial_state(const Object& object) noexcept;
+[[nodiscard]] TrackedObject initial_state(const Object& object);
 
-// Why this sample must not be used, if so. `object` is a moving one and the one that the sample
-// names.
-[[nodiscard]] std::optional<Reject> refusal(const PoseSample& sample, const TrackedObject& state,
-                                            std::int64_t now_ns,
-                                            std::int64_t future_limit_ns) noexcept;
+// The time of a tick and what it allows.
+struct SampleLimits {
+  std::int64_t now_ns = 0;
+  std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
+};
+
+// Why this sample must not be used, if so; notes what that says of the object. `object` is a moving
+// one and the one that the sample names; `stamp_ns` is the sample's, in the tick's time.
+[[nodiscard]] std::optional<Reject> refusal(const Object& object, const PoseSample& sample,
+                                            std::int64_t stamp_ns, const SampleLimits& limits,
+                                            TrackedObject& state) noexcept;
 
 // Takes an unrefused sample into use.
-void accept(const Object& object, const PoseSample& sample, TrackedObject& state) noexcept;
+void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+            std::int64_t now_ns, TrackedObject& state) noexcept;
+
+// Nobody can say how old the pose in use is: it is late until the next one comes.
+void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;

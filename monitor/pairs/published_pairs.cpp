@@ -1,6 +1,7 @@
 #include "monitor/pairs/published_pairs.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "config/refresh_share.hpp"
 #include "monitor/pairs/evaluate_pairs.hpp"
@@ -10,6 +11,9 @@ namespace {
 
 // Enough for vector code to fill its lanes, few enough for workers to share: about 10 us.
 constexpr std::size_t kGroup = 256;
+
+// No pose: a query of it ends before it begins.
+const Pose kNowhere{.position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
 
 bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
   return table.part_pairs_of(pair) == 1;
@@ -63,7 +67,9 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
 
 void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
-    world_from_body_[i] = evaluation.parts[body_parts_[i]].world_from_part;
+    const PosedPart& part = evaluation.parts[body_parts_[i]];
+    const bool known = evaluation.objects[part.object].known();
+    world_from_body_[i] = known ? part.world_from_part : kNowhere;
   }
   const auto one = [this, &evaluation](std::uint32_t i) noexcept {
     evaluate_group(groups_[i], evaluation);
@@ -77,7 +83,7 @@ void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept
   clearance::evaluate(known_, pool, evaluation);
 }
 
-// Also those that are not known, to no use: which they are differs from tick to tick.
+// A pair that is not known has a body without a pose, which costs as good as nothing.
 void PublishedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
   group.known = 0;

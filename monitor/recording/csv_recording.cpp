@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string_view>
 
@@ -52,6 +53,21 @@ class Ids {
   std::map<std::string, std::uint32_t> ids_;
 };
 
+// Why the daemon would refuse this pose, as the end of a sentence; empty: it would not.
+std::string fault_of(const Pose& pose) {
+  const double farthest = pose.position.cwiseAbs().maxCoeff();
+  if (!(farthest <= kLargestInSample)) {
+    return fmt::format("has a coordinate of {:g} m; expected at most {:g} m", farthest,
+                       kLargestInSample);
+  }
+  const double length = pose.orientation.norm();
+  if (!(std::abs(length - 1.0) <= kSampleUnitTolerance)) {
+    return fmt::format("has a quaternion (qw, qx, qy, qz) of length {:.6g}; expected 1 within {:g}",
+                       length, kSampleUnitTolerance);
+  }
+  return "";
+}
+
 // Whether to stop in front of this row, from 0.
 bool stops_at(std::size_t row, const std::function<bool()>& stop) {
   constexpr std::size_t kRowsBetween = 1024;
@@ -72,6 +88,10 @@ void check(const std::filesystem::path& csv, Ids& ids, const std::function<bool(
     if (!ids.know(pose.object)) {
       result.error = log.located(fmt::format("the cell has no object '{}'{}", pose.object,
                                              did_you_mean(pose.object, ids.names())));
+      return;
+    }
+    if (const std::string fault = fault_of(pose.world_from_object); !fault.empty()) {
+      result.error = log.located(fault);
       return;
     }
     if (result.rows++ == 0) result.first_ns = pose.t_ns;

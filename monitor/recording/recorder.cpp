@@ -42,10 +42,11 @@ void Recorder::poses(const PoseBatch& batch) {
 }
 
 // Inputs stand in front of the report that they led to, in the order of use.
-void Recorder::report(const Report& report, std::span<const SourceUse> sources) {
+void Recorder::report(const Report& report, std::span<const SourceUse> sources,
+                      std::int64_t publish_ns) {
   last_ns_ = report.now_ns;
   write_used(sources, report.now_ns);
-  to_wire(report, sources, 0, *distances_);
+  to_wire(report, sources, publish_ns, *distances_);
   writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
   write_zones(report);
 }

@@ -17,7 +17,7 @@ namespace clearance {
 
 // Called from one thread, never the tick's: it converts, allocates and writes to disk. What it is
 // given is in the file at most 200 ms later, so that is what a crash can cost. After an error (a
-// full disk) nothing more is written and error() says why.
+// full disk, a file that was deleted) nothing more is written and error() says why.
 class Recorder {
  public:
   // Writes the catalogue. `overwrite` false: an existing file is an error.
@@ -27,10 +27,15 @@ class Recorder {
   // A batch that a tick used, in the order of use; written in front of that tick's report.
   void poses(const PoseBatch& batch);
 
-  // The report of a tick and what it used, which poses() has been given before.
-  void report(const Report& report, std::span<const SourceUse> sources);
+  // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
+  // it was handed over; 0 where it was not published.
+  void report(const Report& report, std::span<const SourceUse> sources,
+              std::int64_t publish_ns = 0);
 
   void health(const clearance_msg_Health& health);
+
+  // As McapWriter::check: to be asked now and then while nothing is written.
+  bool check() { return writer_.check(); }
 
   // True when everything is in the file.
   bool close();

@@ -41,6 +41,8 @@ class RecordingWriter {
 
   // What was written so far survives a crash.
   void flush() { mcap_.flush(); }
+  // As McapWriter::check.
+  bool check() { return mcap_.check(); }
   bool close() { return mcap_.close(); }
   [[nodiscard]] bool ok() const noexcept { return mcap_.ok(); }
   [[nodiscard]] const std::string& error() const noexcept { return mcap_.error(); }

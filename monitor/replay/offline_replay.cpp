@@ -146,7 +146,7 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
     result_.stopped = options_.stop && options_.stop();
     if (result_.stopped) return;
     begin_tick(input);
-    const Report& report = monitor_->tick(input.samples, input.now_ns);
+    const Report& report = monitor_->tick(input.samples, input.time);
     end_tick(input, report, on_tick);
     show_progress();
   }
@@ -171,13 +171,13 @@ void Replay::judge_the_whole() {
 // Cycle numbers of the daemon and of the replay differ by what the recording lacks in front and in
 // between.
 void Replay::begin_tick(const TickInput& input) {
-  if (result_.ticks++ == 0) result_.first_ns = input.now_ns;
-  result_.last_ns = input.now_ns;
+  if (result_.ticks++ == 0) result_.first_ns = input.time.now_ns;
+  result_.last_ns = input.time.now_ns;
   if (input.restart) {
     restarted_ = true;
     monitor_ = std::make_unique<Monitor>(scene_);
     result_.notes.push_back(fmt::format("the daemon was started anew {:f} s after the first tick",
-                                        seconds(input.now_ns)));
+                                        seconds(input.time.now_ns)));
   }
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;
@@ -205,7 +205,7 @@ void Replay::begin_tick(const TickInput& input) {
 // only the ticks of the window.
 void Replay::end_tick(const TickInput& input, const Report& report,
                       const std::function<void(const ReplayedTick&)>& on_tick) {
-  const std::int64_t after_ns = input.now_ns - result_.first_ns;
+  const std::int64_t after_ns = input.time.now_ns - result_.first_ns;
   const bool in_window =
       after_ns >= whole_ns(options_.start_s) && after_ns <= whole_ns(options_.end_s);
   for (const std::string& what : expectations_.check(report, *monitor_, in_window)) {

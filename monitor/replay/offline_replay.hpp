@@ -48,10 +48,12 @@ struct OfflineReplayOptions {
   std::vector<std::string> expect_no_zone = {};
 
   // Distances that something else computed (monitor/replay/reference_check.hpp): every one of a
-  // pair and tick of the replay is met within the tolerance, m, and lies within the bounds. A pair
-  // that a tick left out does not meet it: let the scene evaluate all, with a budget for that.
+  // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
+  // not meet it: let the scene evaluate all, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
-  double tolerance = 1e-6;
+  // How far off a reference may be, m: distances and bounds may differ by that much. Not stated:
+  // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
+  std::optional<double> tolerance = {};
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
   std::function<bool()> stop = {};  // asked before every tick: true ends the replay there

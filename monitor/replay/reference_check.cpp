@@ -61,8 +61,10 @@ std::string precise(double value) { return metres(value, 12); }
 
 // The whole table is read in front, so that a mistake in it is known before the replay runs.
 ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
-                               double tolerance)
-    : scene_(scene), tolerance_(tolerance) {
+                               std::optional<double> tolerance)
+    : scene_(scene),
+      tolerance_(tolerance.value_or(kReferenceTolerance)),
+      bounds_tolerance_(tolerance.value_or(0.0)) {
   const PairIds ids = pair_ids(scene);
   CsvTable table(file, kColumns);
   Value value;
@@ -109,9 +111,9 @@ void ReferenceCheck::compare(const Value& value, const PairReport& ours,
                                  name(ours.status), precise(ours.distance), reference,
                                  precise(tolerance_)));
   }
-  // Without the tolerance: bounds are true for every correct reference.
-  const bool within = seen_by(value.distance, ours.lower) <= value.distance + value.rounding &&
-                      seen_by(value.distance, ours.upper) >= value.distance - value.rounding;
+  const double slack = value.rounding + bounds_tolerance_;
+  const bool within = seen_by(value.distance, ours.lower) <= value.distance + slack &&
+                      seen_by(value.distance, ours.upper) >= value.distance - slack;
   if (!within && totals_.outside++ == 0) {
     broken.push_back(fmt::format("{}: bounds {} to {}{}: outside", who, precise(ours.lower),
                                  precise(ours.upper), reference));

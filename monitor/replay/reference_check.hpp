@@ -17,12 +17,18 @@
 
 namespace clearance {
 
-// Judges each value twice: the distance within a tolerance, and the bounds with the rounding of the
-// reference only.
+// The largest difference of a distance from its reference where no tolerance is stated.
+inline constexpr double kReferenceTolerance = 1e-6;  // m
+
+// Judges each value twice: our distance, and our bounds. A tolerance says how far off the reference
+// itself may be: it is allowed for in both. Without one, distances may differ by
+// kReferenceTolerance, and bounds have to hold the reference up to the rounding of its digits,
+// since they hold every exact distance.
 class ReferenceCheck {
  public:
   // Reads the whole table; what is wrong with it is in error(). The scene must outlive this.
-  ReferenceCheck(const Scene& scene, const std::filesystem::path& file, double tolerance);
+  ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
+                 std::optional<double> tolerance = std::nullopt);
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
@@ -44,7 +50,8 @@ class ReferenceCheck {
   void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
 
   const Scene& scene_;
-  double tolerance_;
+  double tolerance_;         // of the distance
+  double bounds_tolerance_;  // of the bounds, beside the rounding of the reference
   std::string error_;
   std::vector<Value> values_;
   std::size_t next_ = 0;

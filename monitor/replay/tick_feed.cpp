@@ -19,6 +19,7 @@ TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
                    const RecordingOutline& outline)
     : reader_(file),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
+      sources_(scene),
       by_report_(outline.has_reports) {}
 
 // Recordings with reports are replayed tick by tick as the daemon ran; others have a tick wherever
@@ -79,7 +80,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   reports_waiting_.pop_front();
   const clearance_msg_Distances& report = *current_.report;
   tick.recorded = &report;
-  tick.now_ns = report.now_ns;
+  tick.time = {report.now_ns, report.clock_offset_ns};
   // A daemon that was started again counts from 1.
   tick.restart = last_cycle_ != 0 && report.cycle <= last_cycle_;
   last_cycle_ = report.cycle;
@@ -143,12 +144,21 @@ void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSam
     const std::size_t here = place++;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       if (here >= until[i] || !(waiting.batch.source == sources[i].source)) continue;
-      samples.insert(samples.end(), waiting.batch.samples.begin(), waiting.batch.samples.end());
-      ++batches_;
+      add(waiting.batch, samples);
       return true;
     }
     return false;
   });
+}
+
+void TickFeed::add(const PoseBatch& batch, std::vector<PoseSample>& samples) {
+  ++batches_;
+  if (batch.samples.empty()) return;
+  const std::uint32_t source = sources_.of(batch.source);
+  for (const PoseSample& sample : batch.samples) {
+    samples.push_back(sample);
+    samples.back().source = source;
+  }
 }
 
 // What no report has named in time, the daemon did not use.
@@ -163,19 +173,18 @@ bool TickFeed::next_by_time(TickInput& tick) {
   while (batches_waiting_.empty()) {
     if (!read_one()) return false;
   }
-  tick.now_ns = batches_waiting_.front().log_ns;
-  while (read_to_ns_ == tick.now_ns && read_one()) {
+  tick.time.now_ns = batches_waiting_.front().log_ns;
+  while (read_to_ns_ == tick.time.now_ns && read_one()) {
   }
-  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns == tick.now_ns) {
+  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns == tick.time.now_ns) {
     const PoseBatch& batch = batches_waiting_.front().batch;
-    tick.samples.insert(tick.samples.end(), batch.samples.begin(), batch.samples.end());
+    add(batch, tick.samples);
     const auto use = std::ranges::find(tick.sources, batch.source, &SourceUse::source);
     if (use != tick.sources.end()) {
       use->sequence_number = batch.sequence_number;
     } else if (tick.sources.size() < kMaxSources) {
       tick.sources.push_back({batch.source, batch.sequence_number});
     }
-    ++batches_;
     batches_waiting_.pop_front();
   }
   return true;

@@ -19,13 +19,15 @@
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
+#include "monitor/source_numbers.hpp"
+#include "monitor/tick_time.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
 // What Monitor::tick gets, and the report that the daemon made of it.
 struct TickInput {
-  std::int64_t now_ns = 0;
+  TickTime time;
   std::vector<PoseSample> samples;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
@@ -73,10 +75,12 @@ class TickFeed {
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
   void take_used(std::span<const SourceUse> sources, std::vector<PoseSample>& samples);
+  void add(const PoseBatch& batch, std::vector<PoseSample>& samples);
   void forget_unused(std::int64_t log_ns);
 
   RecordingReader reader_;
   ObjectMap objects_;
+  SourceNumbers sources_;
   bool by_report_;
   CdrDecoder decoder_;
   Sample<clearance_msg_PoseBatch> wire_batch_;

@@ -80,6 +80,7 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
              clearance_msg_Distances& out) noexcept {
   out.cycle = report.cycle;
   out.now_ns = report.now_ns;
+  out.clock_offset_ns = report.clock_offset_ns;
   out.newest_pose_ns = report.newest_pose_ns;
   out.oldest_pose_ns = report.oldest_pose_ns;
   out.publish_ns = publish_ns;

@@ -144,6 +144,12 @@ const Mistake kMistakes[] = {
      "found a quaternion of length 2.0"},
     {"NegativeMargin", with_shape("sphere: {radius: 1}, margin: @-1"),
      "found the number -1; expected the margin in m, from 0 to 1000000"},
+    {"SourceOfAFixedObject", with_shape("sphere: {radius: 1}", ", fixed: true, source: @arm"),
+     "found 'source' of a fixed object"},
+    {"LongSource", with_shape("sphere: {radius: 1}, source: @a_name_of_more_than_thirty_two_bytes"),
+     "found a source's name of 36 bytes; expected at most 32"},
+    {"ZeroFrozenLimit", with_shape("sphere: {radius: 1}, frozen_limit_ms: @0"),
+     "found the number 0; expected the frozen limit in ms, more than 0 and at most 86400000"},
     {"ZeroAgeLimit", with_shape("sphere: {radius: 1}, age_limit_ms: @0"),
      "found the number 0; expected the age limit in ms, more than 0 and at most 86400000"},
     {"FractionalBudget", "budget: @1.5\n" + kBoxes,
@@ -329,6 +335,19 @@ TEST(CellMistakes, TooManyObjectsAndZonesAreRefused) {
       errors_of(cell_text(objects + "pairs: [{between: [o0, g]}]\n" + zones));
   EXPECT_THAT(errors, testing::HasSubstr("found 4097 objects; expected at most 4096"));
   EXPECT_THAT(errors, testing::HasSubstr("found 257 zones; expected at most 256"));
+}
+
+// Shapes of 10,000 objects and their 50 million pairs would take most of a minute and 2 GB.
+TEST(CellMistakes, OfTooManyObjectsNoneIsRead) {
+  std::string objects = "objects:\n";
+  for (int i = 0; i < 10'000; ++i) {
+    objects += "  - {name: o" + std::to_string(i) + ", groups: [g], sphere: {radius: -1}}\n";
+  }
+  const std::string errors = errors_of(cell_text(objects + "pairs: [{between: [g, g]}]\n"));
+  EXPECT_EQ(
+      "cell.yaml:4101:5: found 10000 objects; expected at most 4096, which is what a report can "
+      "carry\n",
+      errors);
 }
 
 }  // namespace

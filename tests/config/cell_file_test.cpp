@@ -39,11 +39,12 @@ TEST(CellFile, EverySettingArrives) {
       "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nrefresh_s: 3\n"
       "future_limit_ms: 2.5\n"
       "dds: {domain: 42, partition: cell_7, topics: {poses: a/poses, zones: b_zones}}\n"
-      "defaults: {margin: 4, max_speed: 1500, age_limit_ms: 12}\n"
+      "defaults: {margin: 4, max_speed: 1500, age_limit_ms: 12, source: arm}\n"
       "objects:\n"
       "  - {name: left, box: {size: [100, 200, 300]}}\n"
-      "  - {name: right, margin: 7, max_speed: 900, age_limit_ms: 1, sphere: {radius: 50, centre: "
-      "[1, 2, 3]}}\n"
+      "  - {name: right, margin: 7, max_speed: 900, age_limit_ms: 1, frozen_limit_ms: 400, "
+      "may_jump: true, source: "
+      "tracker, sphere: {radius: 50, centre: [1, 2, 3]}}\n"
       "  - name: table\n"
       "    fixed: true\n"
       "    pose: {xyz: [1000, 0, -500], rpy: [0, 0, 90]}\n"
@@ -64,6 +65,12 @@ TEST(CellFile, EverySettingArrives) {
   EXPECT_EQ(scene.objects[1].margin, 0.007);
   EXPECT_EQ(scene.objects[1].max_speed, 0.9);
   EXPECT_EQ(scene.objects[1].age_limit_ns, 1'000'000);
+  EXPECT_EQ(scene.objects[0].frozen_limit_ns, 0);
+  EXPECT_EQ(scene.objects[1].frozen_limit_ns, 400'000'000);
+  EXPECT_FALSE(scene.objects[0].may_jump);
+  EXPECT_TRUE(scene.objects[1].may_jump);
+  EXPECT_EQ(scene.objects[0].source, "arm");
+  EXPECT_EQ(scene.objects[1].source, "tracker");
   EXPECT_EQ(scene.objects[1].parts[0].shape.radius, 0.05);
   EXPECT_EQ(scene.objects[2].world_from_object.position, Vec3(1.0, 0.0, -0.5));
   EXPECT_EQ(scene.objects[2].parts[0].object_from_part.position, Vec3(0.3, 0.0, 0.0));

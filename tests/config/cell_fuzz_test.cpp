@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/config/cells.hpp"
+#include "tests/shared/mutation.hpp"
 
 namespace clearance {
 namespace {
@@ -50,36 +51,6 @@ void expect_located(const std::vector<CellError>& errors, const std::string& tex
   }
 }
 
-std::string mutated(std::string text, std::mt19937& random) {
-  const std::string spice = "{}[]:,-#&*!|>'\"%@`\n\t 019.eE~xn?";
-  const auto any = [&](std::size_t size) {
-    return std::uniform_int_distribution<std::size_t>(0, size)(random);
-  };
-  const std::size_t edits = 1 + any(3);
-  for (std::size_t i = 0; i < edits; ++i) {
-    const std::size_t at = any(text.size() - 1);
-    const std::size_t length = std::min(1 + any(12), text.size() - at);
-    switch (any(4)) {
-      case 0:
-        text.erase(at, length);
-        break;
-      case 1:
-        text.insert(at, 1, spice[any(spice.size() - 1)]);
-        break;
-      case 2:
-        text[at] = spice[any(spice.size() - 1)];
-        break;
-      case 3:
-        text.insert(any(text.size() - 1), text.substr(at, length));
-        break;
-      default:
-        text[at] = static_cast<char>(any(255));
-    }
-    if (text.empty()) text = "x";
-  }
-  return text;
-}
-
 TEST(CellFuzz, EveryDamagedCellIsReadOrRefusedWithAPlace) {
   const std::string whole = shipped_text("mcintyre.yaml");
   ASSERT_FALSE(whole.empty());
@@ -87,7 +58,7 @@ TEST(CellFuzz, EveryDamagedCellIsReadOrRefusedWithAPlace) {
   for (std::uint32_t seed = 0; seed < 800; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    const std::string text = mutated(whole, random);
+    const std::string text = test::mutated(whole, random);
     const CellResult result = parse_cell(text, "cell.yaml");
     if (const auto* scene = std::get_if<Scene>(&result)) {
       ASSERT_NO_FATAL_FAILURE(expect_sound(*scene));

@@ -11,6 +11,7 @@
 #include <limits>
 #include <string>
 
+#include "tests/config/box_meshes.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -131,6 +132,61 @@ TEST_F(MeshFile, VerticesThatAreNotFiniteAreRefused) {
   std::memcpy(bytes.data() + 84 + 12, &nan, 4);
   write("nan.stl", bytes);
   EXPECT_THAT(errors("file: nan.stl"), HasSubstr("a vertex is not finite"));
+}
+
+TEST_F(MeshFile, AFaceThatNamesAVertexThatIsNotThereIsRefused) {
+  write("index.ply",
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+        "0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 70000\n");
+  EXPECT_THAT(errors("file: index.ply"),
+              HasSubstr("index.ply': a face names vertex 70000 of 4; expected"));
+}
+
+// 200 numbers are announced for an array of 24.
+TEST_F(MeshFile, AColladaAccessorThatLeavesItsArrayIsRefused) {
+  std::string dae = box_mesh("Collada").bytes;
+  dae.replace(dae.find("count=\"8\" stride"), 9, "count=\"67\"");
+  dae.replace(dae.find("<p> 0 0"), 5, "<p> 66");
+  write("mesh.dae", dae);
+  EXPECT_THAT(errors("file: mesh.dae"),
+              HasSubstr("the accessor in line 6 reaches beyond the 24 numbers of 'pa'"));
+}
+
+TEST_F(MeshFile, BytesOfTheFileDoNotReachTheTerminal) {
+  std::string ply = box_mesh("AsciiPly").bytes;
+  ply.replace(ply.find("1.0 1.0 1.0"), 3, "\x1b[2J\xff");
+  write("mesh.ply", ply);
+  EXPECT_THAT(errors("file: mesh.ply"), HasSubstr("mesh.ply': '?[2J?' is no number; expected"));
+}
+
+TEST_F(MeshFile, AnAsciiStlThatIsCutOffIsRefused) {
+  const std::string stl = box_mesh("AsciiStl").bytes;
+  write("mesh.stl", stl);
+  EXPECT_EQ("", errors("file: mesh.stl"));
+  write("mesh.stl", stl.substr(0, stl.rfind(" facet normal")));
+  EXPECT_THAT(
+      errors("file: mesh.stl"),
+      HasSubstr("its length is not that of its triangles, and its last line not 'endsolid'"));
+}
+
+TEST_F(MeshFile, ABodyOfKilometresIsRefusedUnlessTheCellSaysSo) {
+  write("far.obj", "v 0 0 0\nv 3600 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  EXPECT_THAT(errors("file: far.obj"),
+              HasSubstr("found a mesh with a vertex 3600 m from its origin along an axis; expected "
+                        "another unit or scale, or, where the body reaches farther than 100 m, "
+                        "'reach' beside 'file'"));
+  EXPECT_EQ("", errors("file: far.obj, unit: mm"));
+  EXPECT_EQ("", errors("file: far.obj, reach: 4000"));
+  EXPECT_THAT(errors("file: far.obj, unit: mm, reach: 3"), HasSubstr("farther than 3 m"));
+}
+
+TEST_F(MeshFile, OtherFormatsAreRefusedWithTheListOfThese) {
+  write("mesh.gltf", "{}");
+  EXPECT_THAT(errors("file: mesh.gltf"),
+              HasSubstr("its format is none of stl, obj, ply, dae; expected"));
+  write("MESH.OBJ", kTetrahedronObj);
+  EXPECT_EQ("", errors("file: MESH.OBJ"));
 }
 
 TEST_F(MeshFile, AnUnknownUnitOrAScaleOfZeroIsRefused) {

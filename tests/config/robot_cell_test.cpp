@@ -63,8 +63,8 @@ class RobotCellFile : public testing::Test {
 
   RobotCell cell() {
     auto result = robot_cell(options_);
-    if (const auto* fault = std::get_if<UrdfFault>(&result)) {
-      ADD_FAILURE() << fault->text;
+    if (const auto* faults = std::get_if<UrdfFaults>(&result)) {
+      ADD_FAILURE() << faults->front().text;
       return {};
     }
     return std::get<RobotCell>(std::move(result));
@@ -72,10 +72,14 @@ class RobotCellFile : public testing::Test {
 
   Scene scene() { return scene_of(cell().yaml, root_ / "cells" / "little.yaml"); }
 
+  // All faults, a line each.
   std::string fault() {
     const auto result = robot_cell(options_);
-    const auto* found = std::get_if<UrdfFault>(&result);
-    return found == nullptr ? "" : found->text;
+    std::string lines;
+    if (const auto* faults = std::get_if<UrdfFaults>(&result)) {
+      for (const UrdfFault& fault : *faults) lines += fault.text + "\n";
+    }
+    return lines;
   }
 
   test::ScratchFolder root_;
@@ -104,8 +108,11 @@ TEST_F(RobotCellFile, DisabledPairsAreAllowedWithTheirReasons) {
 }
 
 TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
-  EXPECT_THAT(cell().notes,
-              ElementsAre(HasSubstr("left out: frame"), HasSubstr("2 disabled pairs left out")));
+  EXPECT_THAT(
+      cell().notes,
+      ElementsAre(
+          HasSubstr("left out: frame"),
+          "2 disabled pairs left out: 1 named twice, 1 with a link without collision shapes"));
 }
 
 TEST_F(RobotCellFile, ACylinderIsNeverSmallerThanItIs) {
@@ -159,6 +166,88 @@ TEST_F(RobotCellFile, FaultsNameFileAndLine) {
   EXPECT_THAT(with("</robot>", ""), HasSubstr("not readable as XML"));
   write("little_description/urdf/little.urdf", "<robot name=\"little\"><link name=\"l\"/></robot>");
   EXPECT_THAT(fault(), HasSubstr("little.urdf:1: found no link with a collision shape"));
+}
+
+TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
+  std::string text = kUrdf;
+  for (const auto& [found, replacement] : {std::pair("0.4 0.4 0.1", "0.4 0.4"),
+                                           {"radius=\"0.1\"", "radius=\"wide\""},
+                                           {"<sphere radius=\"0.12\"/>", "<cone/>"},
+                                           {"child link=\"frame\"", "child link=\"farm\""}}) {
+    text.replace(text.find(found), std::string(found).size(), replacement);
+  }
+  write("little_description/urdf/little.urdf", text);
+  write("little_description/urdf/little.srdf",
+        "<robot name=\"little\">\n  <enable_collisions/>\n  <disable_collisions link1=\"foot\"/>\n"
+        "</robot>\n");
+  const std::string urdf = options_.urdf.string(), srdf = options_.srdf.string();
+  EXPECT_EQ(
+      urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers\n" +  //
+          urdf + ":7: found radius=\"wide\"; expected 1 number\n" + urdf +
+          ":9: found a geometry of an unknown kind; expected mesh, box, cylinder or sphere\n" +
+          urdf + ":15: found a joint of the link 'farm', which does not exist\n" + srdf +
+          ":2: found <enable_collisions>; expected <disable_collisions> only\n" + srdf +
+          ":3: found <disable_collisions> without 'link2'\n",
+      fault());
+}
+
+TEST_F(RobotCellFile, EveryMeshThatIsMissingIsReportedWithItsLine) {
+  std::string text = kUrdf;
+  text.replace(text.find("<box size=\"0.4 0.4 0.1\"/>"), 25, "<mesh filename=\"foot.stl\"/>");
+  text.replace(text.find("head.obj"), 8, "nose.obj");
+  write("little_description/urdf/little.urdf", text);
+  const std::string fault = this->fault();
+  EXPECT_THAT(fault, HasSubstr("little.urdf:3: found the mesh 'foot.stl', and no file '"));
+  EXPECT_THAT(fault, HasSubstr("little.urdf:11: found the mesh 'package://little_description/"
+                               "nose.obj', and no file '"));
+}
+
+TEST_F(RobotCellFile, JointsThatMakeALoopAreRefused) {
+  std::string text = kUrdf;
+  text.replace(text.find("</robot>"), 0,
+               "<joint name=\"d\" type=\"fixed\"><parent link=\"frame\"/><child "
+               "link=\"foot\"/></joint>\n");
+  write("little_description/urdf/little.urdf", text);
+  EXPECT_THAT(fault(), HasSubstr("little.urdf:16: found the link 'foot' among its own parents"));
+}
+
+TEST_F(RobotCellFile, TheSrdfOfAnotherRobotIsRefused) {
+  write("little_description/urdf/little.srdf",
+        "<robot name=\"large\">\n"
+        "  <disable_collisions link1=\"foot\" link2=\"mast\" reason=\"Adjacent\"/>\n"
+        "  <disable_collisions link1=\"foot\" link2=\"boom\" reason=\"Never\"/>\n"
+        "  <disable_collisions link1=\"boom\" link2=\"hook\" reason=\"Adjacent\"/>\n"
+        "</robot>\n");
+  const std::string srdf = options_.srdf.string();
+  EXPECT_EQ(srdf + ":1: found the robot 'large'; expected 'little', as little.urdf calls it\n" +
+                srdf + ":3: found the link 'boom'; expected one of the links of little.urdf\n" +
+                srdf + ":4: found the link 'hook'; expected one of the links of little.urdf\n",
+            fault());
+}
+
+TEST_F(RobotCellFile, WithoutAnSrdfNeighboursAreLeftOutAndNamed) {
+  options_.srdf.clear();
+  EXPECT_THAT(cell().notes,
+              ElementsAre(HasSubstr("left out: frame"),
+                          "no SRDF: neighbours are left out, and every other pair of links is "
+                          "watched: foot - mast, mast - head"));
+  const Scene scene = this->scene();
+  ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
+  EXPECT_EQ(scene.pairs[0].first, 0u);
+  EXPECT_EQ(scene.pairs[0].second, 2u);
+  EXPECT_THAT(scene.yaml, HasSubstr("reason: \"Adjacent in the URDF\""));
+}
+
+// The mast turns in a bearing that has no shape of its own.
+TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
+  options_.srdf.clear();
+  std::string text = kUrdf;
+  text.replace(text.find("<parent link=\"mast\"/>"), 21, "<parent link=\"bearing\"/>");
+  text.replace(text.find("</robot>"), 0,
+               "<link name=\"bearing\"/><joint name=\"d\" type=\"fixed\"><parent "
+               "link=\"mast\"/><child link=\"bearing\"/></joint>\n");
+  write("little_description/urdf/little.urdf", text);
+  EXPECT_THAT(cell().notes.back(), HasSubstr("watched: foot - mast, mast - head"));
 }
 
 TEST_F(RobotCellFile, NewerSrdfIsRefusedRatherThanMisread) {

@@ -45,8 +45,10 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   return {"floor", half_space(Vec3::UnitZ(), 0.0), object_from_part};
 }
 
+// Most tests put it where they like.
 [[nodiscard]] inline Object moving(std::string name, std::vector<Part> parts) {
   Object object;
+  object.may_jump = true;
   object.name = std::move(name);
   object.parts = std::move(parts);
   object.age_limit_ns = 20 * kTick;

@@ -1,6 +1,7 @@
 #include "tests/shared/child_process.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,7 +14,24 @@
 
 namespace clearance::test {
 
-ChildProcess::ChildProcess(const std::string& program, std::vector<std::string> arguments) {
+namespace {
+
+void set_up(const ChildOptions& options, int output) {
+  unsetenv("CYCLONEDDS_URI");
+  for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
+  if (options.most_file_bytes) {
+    const rlimit limit{*options.most_file_bytes, *options.most_file_bytes};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+  dup2(options.out < 0 ? output : options.out, STDOUT_FILENO);
+  dup2(options.err < 0 ? output : options.err, STDERR_FILENO);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::string& program, std::vector<std::string> arguments,
+                           const ChildOptions& options) {
   char name[] = "/tmp/clearance-test-XXXXXX";
   const int output = mkstemp(name);
   output_file_ = name;
@@ -22,11 +40,7 @@ ChildProcess::ChildProcess(const std::string& program, std::vector<std::string> 
   argv.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {
-    unsetenv("CYCLONEDDS_URI");
-    const int nothing = open("/dev/null", O_RDONLY);
-    dup2(nothing, STDIN_FILENO);
-    dup2(output, STDOUT_FILENO);
-    dup2(output, STDERR_FILENO);
+    set_up(options, output);
     execv(program.c_str(), argv.data());
     std::perror(program.c_str());
     _exit(127);

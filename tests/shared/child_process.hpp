@@ -4,16 +4,25 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
 
 namespace clearance::test {
 
+// What is not as usual.
+struct ChildOptions {
+  int out = -1, err = -1;  // descriptors for the two output streams; -1: the file that is kept
+  std::vector<std::pair<std::string, std::string>> environment = {};  // added
+  std::optional<std::size_t> most_file_bytes = {};  // that a file may get: a disk that is full
+};
+
 class ChildProcess {
  public:
   // Starts at once. `program` is a path; both output streams go to one file.
-  ChildProcess(const std::string& program, std::vector<std::string> arguments);
+  ChildProcess(const std::string& program, std::vector<std::string> arguments,
+               const ChildOptions& options = {});
   ~ChildProcess();  // kills it if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

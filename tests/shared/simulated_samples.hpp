@@ -14,7 +14,11 @@ namespace clearance {
   poses_at(scene, t_s, poses);
   std::vector<PoseSample> samples;
   for (const PoseAt& at : poses) {
-    samples.push_back({at.object, now_ns, at.world_from_object, at.twist, true});
+    samples.push_back({.object = at.object,
+                       .stamp_ns = now_ns,
+                       .world_from_object = at.world_from_object,
+                       .twist = at.twist,
+                       .has_twist = true});
   }
   return samples;
 }

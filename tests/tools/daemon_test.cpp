@@ -7,7 +7,6 @@
 
 #include "monitor/build_info/build_info.hpp"
 #include "monitor/monitor.hpp"
-#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {
@@ -276,42 +275,6 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   ChildProcess interface(test::kDaemon, {cell.path(), "--interface", "nosuch0"});
   EXPECT_EQ(interface.wait(), 4);
   EXPECT_TRUE(interface.wrote("domain")) << interface.output();
-}
-
-TEST(Daemon, RecordsWhatAnOfflineReplayGivesAgain) {
-  const test::CellFile cell(test::small_cell("small"));
-  const std::string file = cell.path() + ".mcap";
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "300"}, dds));
-  ChildProcess daemon(test::kDaemon,
-                      test::with({cell.path(), "--record", file, "--ticks", "150"}, dds));
-  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
-  EXPECT_TRUE(daemon.wrote("recorded ")) << daemon.output();
-  ChildProcess replay(test::kReplay, {"--offline", file, "--compare"});
-  EXPECT_EQ(replay.wait(), 0) << replay.output();
-  EXPECT_TRUE(replay.wrote("150 reports compared")) << replay.output();
-  std::remove(file.c_str());
-}
-
-TEST(DaemonCommand, NeverOverwritesARecording) {
-  const test::CellFile cell(test::small_cell("small"));
-  const test::ScratchFolder folder;
-  test::write_text(folder / "old", "precious");
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess daemon(test::kDaemon,
-                      test::with({cell.path(), "--record", (folder / "old").string()}, dds));
-  EXPECT_EQ(daemon.wait(), 5);
-  EXPECT_TRUE(daemon.wrote("exists; --force overwrites it")) << daemon.output();
-  EXPECT_EQ("precious", test::read_text(folder / "old"));
-}
-
-TEST(DaemonCommand, NeverRecordsOverItsCell) {
-  const test::CellFile cell(test::small_cell("small"));
-  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", cell.path(), "--force"},
-                                                test::dds_arguments(test::own_dds())));
-  EXPECT_EQ(daemon.wait(), 2);
-  EXPECT_TRUE(daemon.wrote("is a file that is read")) << daemon.output();
-  EXPECT_EQ(cell.scene().name, "small");
 }
 
 }  // namespace

@@ -213,6 +213,15 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_THAT(output, HasSubstr("cell.yaml:1:1"));
 }
 
+TEST_F(RecordReplay, RecorderSaysThatItsFileWasDeleted) {
+  ChildProcess recorder(kRecord, with({"-o", path("run.mcap")}, dds_arguments(own_dds())));
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder / "run.mcap"); }));
+  std::filesystem::remove(folder / "run.mcap");
+  EXPECT_EQ(1, recorder.wait());
+  EXPECT_TRUE(recorder.wrote("run.mcap was deleted while it was being written"))
+      << recorder.output();
+}
+
 TEST_F(RecordReplay, NeverWritesOverAFileThatItReads) {
   ASSERT_EQ(0, record_log()) << output;
   write_text(folder / "reference.csv", "precious");

@@ -45,6 +45,41 @@ TEST_F(SceneProgram, WritesACellThatIsGood) {
   EXPECT_TRUE(std::filesystem::exists(file("cell.yaml")));
 }
 
+// Three balls in a row on two joints.
+std::string chain_urdf() {
+  std::string urdf = "<robot name=\"chain\">\n";
+  for (const char* link : {"a", "b", "c"}) {
+    urdf += std::string("<link name=\"") + link +
+            "\"><collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n";
+  }
+  return urdf +
+         "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
+         "<joint name=\"k\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
+         "</robot>\n";
+}
+
+TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  EXPECT_EQ(run({"--from-urdf", file("chain.urdf"), "-o", file("cell.yaml")}), 0) << output_;
+  EXPECT_NE(output_.find("note: no SRDF: neighbours are left out, and every other pair of links is "
+                         "watched: a - b, b - c"),
+            std::string::npos)
+      << output_;
+  EXPECT_NE(output_.find("1 pair"), std::string::npos) << output_;
+}
+
+TEST_F(SceneProgram, RefusesTheSrdfOfAnotherRobotAndWritesNothing) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "other.srdf")
+      << "<robot name=\"other\">\n<disable_collisions link1=\"a\" link2=\"x\"/>\n</robot>\n";
+  EXPECT_EQ(run({"--from-urdf", file("chain.urdf"), "--srdf", file("other.srdf"), "-o",
+                 file("cell.yaml")}),
+            1);
+  EXPECT_NE(output_.find("other.srdf:1: found the robot 'other'"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("other.srdf:2: found the link 'x'"), std::string::npos) << output_;
+  EXPECT_FALSE(std::filesystem::exists(file("cell.yaml")));
+}
+
 TEST_F(SceneProgram, WritesOverAFileOnlyWhenForced) {
   std::ofstream(file("cell.yaml")) << "precious";
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml")}), 1);

@@ -91,7 +91,11 @@ void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample
   std::vector<PoseAt> poses;
   poses_at(scene, t_s, poses);
   for (const PoseAt& p : poses) {
-    samples.push_back({p.object, stamp_ns, p.world_from_object, p.twist, true});
+    samples.push_back({.object = p.object,
+                       .stamp_ns = stamp_ns,
+                       .world_from_object = p.world_from_object,
+                       .twist = p.twist,
+                       .has_twist = true});
   }
 }
 

@@ -145,6 +145,7 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
     if (dds_time() - shown_ns < kSecond) continue;
     shown_ns = dds_time();
     writer.flush();
+    writer.check();
     if (!terminal) continue;
     print(stderr, "\r");
     show(subscription, writer, " ");

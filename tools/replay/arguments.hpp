@@ -32,8 +32,8 @@ struct ReplayArguments {
   bool published = false;
   bool evaluate_all = false;
   bool compare = false;
-  std::string reference;  // a table of distances; empty: none
-  double tolerance = 1e-6;
+  std::string reference;            // a table of distances; empty: none
+  std::optional<double> tolerance;  // m; of the reference
   bool compare_bounds = false;
   std::optional<double> expect_min_distance;
   std::vector<std::string> expect_no_zone;

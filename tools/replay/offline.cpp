@@ -9,6 +9,7 @@
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
@@ -48,7 +49,7 @@ OfflineReplayOptions options_of(const ReplayArguments& arguments) {
   return options;
 }
 
-void print_summary(const Scene& scene, const OfflineReplay& replay, double tolerance,
+void print_summary(const Scene& scene, const OfflineReplay& replay, std::optional<double> tolerance,
                    double elapsed_s) {
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
   print(stdout, "{} ticks, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
@@ -65,8 +66,9 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, double toler
     const ReferenceTotals& totals = *replay.reference;
     print(stdout,
           "{} reference distances compared, largest difference {:.2g} m; {} off by more than {:g} "
-          "m, {} outside of the bounds\n",
-          totals.compared, totals.largest, totals.off, tolerance, totals.outside);
+          "m, {} outside of the bounds{}\n",
+          totals.compared, totals.largest, totals.off, tolerance.value_or(kReferenceTolerance),
+          totals.outside, tolerance ? " by more than that" : "");
   }
 }
 

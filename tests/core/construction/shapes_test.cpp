@@ -64,7 +64,7 @@ TEST(Shapes, HalfSpacesAndVerticesOfABoxGiveTheSameBody) {
 }
 
 TEST(Shapes, PrismTakesTheHullOfItsBase) {
-  const std::vector<Eigen::Vector2d> base = {{0, 0}, {2, 0}, {1, 0}, {2, 2},
+  const std::vector<Vec2> base = {{0, 0}, {2, 0}, {1, 0}, {2, 2},
                                              {1, 1}, {0, 2}, {2, 0}};
   const ConvexPolyhedron body = made(prism(base, -0.5, 1.5));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
@@ -130,9 +130,9 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
   EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, 3 + 9e-13}, 0.1)), HasSubstr("shorter than 1e-12"));
   EXPECT_THAT(refusal(box({1, kMost, 1})), HasSubstr("1e12 m"));
   EXPECT_THAT(refusal(box({1, 4e-13, 1})), HasSubstr("thinner than 1e-12 m"));
-  const std::vector<Eigen::Vector2d> line = {{0, 0}, {1, 1}, {2, 2}};
+  const std::vector<Vec2> line = {{0, 0}, {1, 1}, {2, 2}};
   EXPECT_THAT(refusal(prism(line, 0, 1)), HasSubstr("no area"));
-  const std::vector<Eigen::Vector2d> triangle = {{0, 0}, {1, 0}, {0, 1}};
+  const std::vector<Vec2> triangle = {{0, 0}, {1, 0}, {0, 1}};
   EXPECT_THAT(refusal(prism(triangle, 1, 1)), HasSubstr("low end"));
 }
 

@@ -1,21 +1,50 @@
-// The two ways in of README, "The core as a library"; ends with 0 where both say 1.5 m.
+// The two ways in of README, "The core as a library"; ends with 0 where both say what closed forms
+// say. Built with several switches, under which Eigen lays its types out differently.
 #include <core/batch.hpp>
 #include <core/distance.hpp>
 #include <core/shapes.hpp>
 
-int main() {
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+using clearance::Pose;
+
+// Of two unit cubes whose centres are 2.5 m apart, alone and in a batch; off `expected` by
+// rounding.
+bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
   const auto cube = std::get<clearance::ConvexPolyhedron>(clearance::box({0.5, 0.5, 0.5}));
-  clearance::Pose pose_a, pose_b;
-  pose_b.position.x() = 2.5;
   clearance::TrackingState state;
   const auto alone =
       clearance::distance(cube, cube, clearance::relative_pose(pose_a, pose_b), state);
 
   const clearance::ConvexPolyhedron* const bodies[] = {&cube, &cube};
-  const clearance::Pose poses[] = {pose_a, pose_b};
+  const Pose poses[] = {pose_a, pose_b};
   const clearance::BodyPair pairs[] = {{0, 1}};
   clearance::DistanceBatch batch(bodies, pairs);
-  bool agrees = alone.lower <= 1.5 && 1.5 <= alone.upper;
-  for (const auto& r : batch.evaluate(poses)) agrees = agrees && r.distance == alone.distance;
-  return agrees ? 0 : 1;
+  const double together = batch.evaluate(poses)[0].distance;
+  std::printf("%.9f m alone, %.9f m in a batch; expected %.9f m\n", alone.distance, together,
+              expected);
+  return std::abs(alone.distance - expected) < 1e-12 && alone.lower <= expected + 1e-12 &&
+         expected - 1e-12 <= alone.upper && together == alone.distance;
+}
+
+// The library reads what is made here, and the other way round.
+bool shares_shapes() {
+  const std::vector<clearance::Vec2> base = {{0, 0}, {1, 0}, {0, 1}};
+  const auto made = clearance::prism(base, 0.0, 2.0);
+  const auto* prism = std::get_if<clearance::ConvexPolyhedron>(&made);
+  return prism != nullptr && prism->vertices.size() == 6 && prism->edges.size() == 9 &&
+         prism->radius == 0.0;
+}
+
+int main() {
+  Pose here, beside, turned;
+  beside.position.x() = turned.position.x() = 2.5;
+  turned.orientation = Eigen::AngleAxisd(std::atan(1.0), clearance::Vec3::UnitZ());
+  const auto quarter = clearance::relative_pose(here, turned).rotation;
+  const bool columns = quarter(1, 0) > 0.7 && quarter(0, 1) < -0.7;
+  const bool good = agree(here, beside, 1.5) && agree(here, turned, 2.0 - std::sqrt(0.5)) &&
+                    agree(turned, here, 2.0 - std::sqrt(0.5)) && shares_shapes() && columns;
+  return good ? 0 : 1;
 }

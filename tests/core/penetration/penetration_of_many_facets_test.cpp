@@ -80,7 +80,7 @@ TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
 }
 
 ConvexPolyhedron cylinder(int sides) {
-  std::vector<Eigen::Vector2d> base;
+  std::vector<Vec2> base;
   for (int i = 0; i < sides; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / sides;
     base.emplace_back(std::cos(angle), std::sin(angle));

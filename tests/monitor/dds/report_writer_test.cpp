@@ -54,8 +54,9 @@ struct Publisher {
   Participant participant{dds};
   PoseReader poses{scene, participant};
   ReportQueue queue{scene, {.reports = 16}};
+  RecordingHealth recording;
   std::unique_ptr<ReportWriter> reports =
-      std::make_unique<ReportWriter>(scene, participant, queue, poses);
+      std::make_unique<ReportWriter>(scene, participant, queue, poses, recording);
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 
@@ -159,6 +160,9 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   statistics.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.rejected_total[static_cast<std::size_t>(Reject::kUnknownObject)] = 6;
   statistics.ages[0] = {.age_ns = 7'000'000, .stale = false};
+  publisher.recording.begin("run.mcap");
+  publisher.recording.fail("run.mcap was deleted");
+  publisher.recording.set_missing(12);
   publisher.queue.statistics(statistics);
 
   const clearance_msg_Health* health = reader.next();
@@ -168,6 +172,8 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   EXPECT_EQ(health->skipped_cycles, 4u);
   EXPECT_NEAR(health->tick_p50_us, 20.0, 20.0 / 64);
   EXPECT_EQ(health->tick_max_us, 90.0);
+  EXPECT_STREQ(health->recording, "run.mcap was deleted");
+  EXPECT_EQ(health->recording_missing, 12u);
   ASSERT_EQ(health->rejected._length, 2u);
   EXPECT_STREQ(health->rejected._buffer[0].object, "ball");
   EXPECT_STREQ(health->rejected._buffer[0].cause, name(Reject::kNotUnit));

@@ -20,6 +20,7 @@ class TurnedClock final : public Clock {
  public:
   std::int64_t realtime_ns() noexcept override { return kStart + now_; }
   std::int64_t monotonic_ns() noexcept override { return now_; }
+  std::int64_t steady_ns() noexcept override { return now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
     now_ = std::max(now_, monotonic_ns + late_);
     ++sleeps_;

@@ -19,7 +19,7 @@ TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   const Object object = test::moving("gone", {test::ball(0.1)});
   TrackedObject state;
   for (const std::int64_t now : {kStart, kStart + kTick}) {
-    accept(object, test::sample(0, now == kStart ? from : to, now), state);
+    accept(object, test::sample(0, now == kStart ? from : to, now), now, now, state);
     advance(object, now, state);
     displace(reach, state);
   }

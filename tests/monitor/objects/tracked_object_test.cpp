@@ -18,10 +18,6 @@ constexpr std::int64_t kFutureLimit = 5 * kTick;
 
 PoseSample good() { return test::sample(0, test::at(1, 2, 3), kStart); }
 
-std::optional<Reject> judged(const PoseSample& sample) {
-  return refusal(sample, TrackedObject{}, kStart, kFutureLimit);
-}
-
 Object late_after(std::int64_t limit_ns, double max_speed) {
   Object object = test::moving("object", {});
   object.age_limit_ns = limit_ns;
@@ -30,6 +26,19 @@ Object late_after(std::int64_t limit_ns, double max_speed) {
 }
 
 const Object kInTime = late_after(20 * kTick, kInfinity);
+
+// With stamps in the tick's time.
+std::optional<Reject> judged(const PoseSample& sample, const Object& object, TrackedObject& state,
+                             std::int64_t now_ns = kStart) {
+  return refusal(object, sample, sample.stamp_ns, {now_ns, kFutureLimit}, state);
+}
+std::optional<Reject> judged(const PoseSample& sample, std::int64_t now_ns = kStart) {
+  TrackedObject state;
+  return judged(sample, kInTime, state, now_ns);
+}
+void take(const PoseSample& sample, TrackedObject& state) {
+  accept(kInTime, sample, sample.stamp_ns, sample.stamp_ns, state);
+}
 
 TEST(TrackedObject, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
 
@@ -46,7 +55,7 @@ TEST(TrackedObject, RefusesEveryNonFiniteFigure) {
       sample.twist = {};
       sample.twist.angular[i] = bad;
       EXPECT_EQ(judged(sample), Reject::kNonFinite);
-      sample.has_twist = false;  // then nobody reads it
+      sample.has_twist = false;  // then it is not read
       EXPECT_EQ(judged(sample), std::nullopt);
     }
   }
@@ -77,21 +86,21 @@ TEST(TrackedObject, RefusesAStampFartherAheadThanTheLimit) {
   sample.stamp_ns += 1;
   EXPECT_EQ(judged(sample), Reject::kFuture);
   sample.stamp_ns = kLatest;
-  EXPECT_EQ(refusal(sample, TrackedObject{}, kEarliest, kFutureLimit), Reject::kFuture);
+  EXPECT_EQ(judged(sample, kEarliest), Reject::kFuture);
 }
 
 TEST(TrackedObject, RefusesTimeGoingBackwardsButNotStandingStill) {
   TrackedObject state;
-  accept(kInTime, good(), state);
+  take(good(), state);
   PoseSample sample = good();
-  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), std::nullopt);
+  EXPECT_EQ(judged(sample, kInTime, state), std::nullopt);
   sample.stamp_ns -= 1;
-  EXPECT_EQ(refusal(sample, state, kStart, kFutureLimit), Reject::kBackwards);
+  EXPECT_EQ(judged(sample, kInTime, state), Reject::kBackwards);
 }
 
 TEST(TrackedObject, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   TrackedObject state;
-  accept(kInTime, good(), state);
+  take(good(), state);
   EXPECT_FALSE(state.velocity_known());
 
   PoseSample next = good();
@@ -99,51 +108,51 @@ TEST(TrackedObject, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   next.world_from_object.position += Vec3(0.004, 0, 0);
   next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
   next.world_from_object.orientation.coeffs() *= -1.0;  // the same, the short way round
-  accept(kInTime, next, state);
+  take(next, state);
   EXPECT_TRUE(state.velocity_known());
   EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((state.twist.angular - Vec3(0, 0.5, 0)).norm(), 0.0, 1e-9);
 
-  accept(kInTime, next, state);  // again, with the same stamp: nothing new about its speed
+  take(next, state);  // again, with the same stamp: nothing new about its speed
   EXPECT_NEAR(state.twist.linear.x(), 1.0, 1e-9);
 
   next.has_twist = true;
   next.twist.linear = Vec3(7, 8, 9);
   next.stamp_ns += kTick;
-  accept(kInTime, next, state);
+  take(next, state);
   EXPECT_EQ(state.twist.linear, Vec3(7, 8, 9));
 }
 
 TEST(TrackedObject, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
   TrackedObject state;
   PoseSample next = good();
-  const auto take = [&](std::int64_t after_ns, bool has_twist) {
+  const auto after = [&](std::int64_t after_ns, bool has_twist) {
     next.stamp_ns += after_ns;
     next.has_twist = has_twist;
-    accept(kInTime, next, state);
+    take(next, state);
     advance(kInTime, next.stamp_ns, state);
     return state.velocity_known();
   };
-  EXPECT_FALSE(take(0, false));
-  EXPECT_FALSE(take(0, false));  // the same stamp once more
-  EXPECT_TRUE(take(40 * kTick, false)) << "the mean velocity is that of 20 ticks ago";
-  EXPECT_FALSE(take(40 * kTick + 2, false));
-  EXPECT_TRUE(take(kTick, false));
-  EXPECT_TRUE(take(500 * kTick, true));
+  EXPECT_FALSE(after(0, false));
+  EXPECT_FALSE(after(0, false));  // the same stamp once more
+  EXPECT_TRUE(after(40 * kTick, false)) << "the mean velocity is that of 20 ticks ago";
+  EXPECT_FALSE(after(40 * kTick + 2, false));
+  EXPECT_TRUE(after(kTick, false));
+  EXPECT_TRUE(after(500 * kTick, true));
   advance(kInTime, next.stamp_ns + 20 * kTick + 1, state);  // late
   EXPECT_FALSE(state.velocity_known());
-  EXPECT_FALSE(take(50 * kTick, false));
+  EXPECT_FALSE(after(50 * kTick, false));
 }
 
 // 30 ms apart, where poses of 20 ms are late: known for the time in which they are not.
 TEST(TrackedObject, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
   TrackedObject state;
   PoseSample next = good();
-  accept(kInTime, next, state);
+  take(next, state);
   for (int pose = 1; pose < 5; ++pose) {
     next.stamp_ns += 30 * kTick;
     next.world_from_object.position.x() += 0.06;
-    accept(kInTime, next, state);
+    take(next, state);
     for (int tick = 0; tick < 30; ++tick) {
       advance(kInTime, next.stamp_ns + tick * kTick, state);
       ASSERT_EQ(state.velocity_known(), tick <= 20) << "tick " << tick;
@@ -162,16 +171,16 @@ TEST(TrackedObject, FixedObjectsAreKnownToBeAtRest) {
 TEST(TrackedObject, MotionIsTheNetOneOfATick) {
   const Object object = late_after(kTick, kInfinity);
   TrackedObject state;
-  accept(kInTime, good(), state);
+  take(good(), state);
   advance(object, kStart, state);
   EXPECT_EQ(state.motion.shift, 0.0);
   PoseSample there = good(), back = good();
   there.world_from_object.position += Vec3(5, 0, 0);
-  accept(kInTime, there, state);
-  accept(kInTime, back, state);
+  take(there, state);
+  take(back, state);
   advance(object, kStart, state);
   EXPECT_EQ(state.motion.shift, 0.0);
-  accept(kInTime, there, state);
+  take(there, state);
   advance(object, kStart, state);
   EXPECT_NEAR(state.motion.shift, 5.0, 1e-12);
   advance(object, kStart, state);
@@ -181,7 +190,7 @@ TEST(TrackedObject, MotionIsTheNetOneOfATick) {
 TEST(TrackedObject, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   const Object stated = late_after(20 * kTick, 2.0);
   TrackedObject state;
-  accept(kInTime, good(), state);
+  take(good(), state);
   advance(stated, kStart + 20 * kTick, state);
   EXPECT_FALSE(state.late);
   EXPECT_EQ(state.may_have_moved, 0.0);
@@ -200,11 +209,11 @@ TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   PoseSample sample = good();
   sample.stamp_ns = kEarliest;
   TrackedObject state;
-  accept(kInTime, sample, state);
+  take(sample, state);
   advance(late_after(0, 1.0), kLatest, state);
   EXPECT_EQ(state.age_ns, kLatest);
   sample.stamp_ns = kLatest;
-  accept(kInTime, sample, state);
+  take(sample, state);
   advance(late_after(0, 1.0), kEarliest, state);
   EXPECT_EQ(state.age_ns, 0);
 }

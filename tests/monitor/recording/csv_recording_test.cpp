@@ -73,6 +73,23 @@ TEST_F(CsvRecording, StoppedHalfWayItSaysHowFarItCame) {
   EXPECT_TRUE(writing.begun);
 }
 
+TEST_F(CsvRecording, APoseThatTheDaemonWouldRefuseIsRefusedWithItsLine) {
+  const auto fault = [this](const std::string& pose) {
+    write_text(folder / "log.csv", std::string(kHeader) + "5,tool,1,2,3,1,0,0,0\n6,tool," + pose);
+    return record_csv(folder / "log.csv", folder / "a.mcap", nullptr).error;
+  };
+  EXPECT_THAT(fault("1,2,3,0,0,0,0\n"),
+              HasSubstr("log.csv:3: has a quaternion (qw, qx, qy, qz) of length 0; expected 1 "
+                        "within 0.001"));
+  EXPECT_THAT(fault("1,2,3,1,1,0,0\n"), HasSubstr("log.csv:3: has a quaternion (qw, qx, qy, qz) "
+                                                  "of length 1.41421; expected 1 within 0.001"));
+  EXPECT_THAT(fault("1,2,3,1.0011,0,0,0\n"), HasSubstr("log.csv:3: has a quaternion"));
+  EXPECT_THAT(fault("1,2,3,1e200,0,0,0\n"), HasSubstr("log.csv:3: has a quaternion"));
+  EXPECT_THAT(fault("1,2e9,3,1,0,0,0\n"), HasSubstr("log.csv:3: has a coordinate of 2e+09 m"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));
+  EXPECT_EQ("", fault("1,2,3,1.0009,0,0,0\n"));
+}
+
 TEST_F(CsvRecording, ObjectThatTheCellLacksIsNamedWithItsLineAndNothingIsWritten) {
   const Scene scene = bench_cell();
   write_text(folder / "log.csv",

@@ -35,7 +35,7 @@ class Reference : public testing::Test {
   static std::string row(int tick, const std::string& pair, const std::string& distance) {
     return std::to_string(time_ns(tick)) + "," + pair + "," + distance + "\n";
   }
-  OfflineReplay held_against(const std::string& rows, double tolerance = 1e-9) {
+  OfflineReplay held_against(const std::string& rows, std::optional<double> tolerance = 1e-9) {
     write_text(folder / "ref.csv", "t_ns,object_a,object_b,distance\n" + rows);
     return replay_offline(scene, folder / "run.mcap",
                           {.reference = folder / "ref.csv", .tolerance = tolerance});
@@ -78,14 +78,28 @@ TEST_F(Reference, ThatIsMissedNamesTickPairAndFigures) {
   EXPECT_NEAR(0.002, replay.reference->largest, 1e-12);
 }
 
+// Without a tolerance, bounds are held to the digits.
 TEST_F(Reference, IsWithinTheBoundsWhenItsDigitsAllowIt) {
-  EXPECT_EQ(1u, held_against(row(2, "hand,box", "0.12"), 1.0).failures.size());
-  EXPECT_TRUE(held_against(row(2, "hand,box", "0.1"), 1.0).ok());
-  EXPECT_TRUE(held_against(row(2, "hand,box", "1e-1"), 1.0).ok());
-  EXPECT_EQ(1u, held_against(row(2, "hand,box", "0.105"), 1.0).failures.size());
-  EXPECT_EQ(1u, held_against(row(1, "hand,box", "2.4e-1"), 1.0).failures.size());
-  EXPECT_EQ(1u, held_against(row(1, "hand,box", "0.00000024e+6"), 1.0).failures.size());
-  EXPECT_EQ(1u, held_against(row(1, "hand,box", "0.2000004"), 1.0).failures.size());
+  const auto outside = [this](int tick, const std::string& distance) {
+    return held_against(row(tick, "hand,box", distance), std::nullopt).reference->outside;
+  };
+  EXPECT_EQ(1u, outside(2, "0.12"));
+  EXPECT_EQ(0u, outside(2, "0.1"));
+  EXPECT_EQ(0u, outside(2, "1e-1"));
+  EXPECT_EQ(1u, outside(2, "0.105"));
+  EXPECT_EQ(1u, outside(1, "2.4e-1"));
+  EXPECT_EQ(1u, outside(1, "0.00000024e+6"));
+  EXPECT_EQ(1u, outside(1, "0.2000004"));
+}
+
+TEST_F(Reference, MayBeOffByTheToleranceStatedInDistanceAndBounds) {
+  EXPECT_TRUE(held_against(row(2, "hand,box", "0.1009"), 1e-3).ok());
+  EXPECT_TRUE(held_against(row(2, "hand,box", "0.0991"), 1e-3).ok());
+  EXPECT_TRUE(held_against(row(2, "hand,box", "0.1000003"), std::nullopt).reference->off == 0);
+  const OfflineReplay replay = held_against(row(2, "hand,box", "0.1011"), 1e-3);
+  EXPECT_EQ(1u, replay.reference->off);
+  EXPECT_EQ(1u, replay.reference->outside);
+  EXPECT_EQ(2u, replay.failures.size());
 }
 
 TEST_F(Reference, OfOtherPairsAndTimesIsToldAndNothingToCompareIsAFailure) {

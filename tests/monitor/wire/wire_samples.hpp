@@ -143,6 +143,8 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
   health->foreign_reports = random();
   health->tick_p50_us = any_double(random);
   health->overruns = random();
+  health->recording = any_text(random);
+  health->recording_missing = random();
   reserve_sequence(health->rejected, random() % 6);
   for (std::uint32_t i = 0; i < health->rejected._maximum; ++i) {
     health->rejected._buffer[health->rejected._length++] = {any_text(random), any_text(random),

@@ -1,0 +1,31 @@
+// Runs code that may crash, hang or eat memory on bytes of unknown origin, in a process of its own.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace clearance {
+
+// What the child may take before the kernel or the parent ends it.
+struct ChildLimits {
+  std::size_t memory = std::size_t{2} << 30;  // bytes, beyond what the parent has
+  unsigned cpu_s = 20;                        // processor time
+  unsigned wall_s = 60;                       // the last resort, for a child that only waits
+};
+
+// The bytes that the work gave, or, where it gave none, how the child ended: "crashed
+// (Segmentation fault)". One of the two is empty unless the work gave nothing.
+struct ChildWork {
+  std::string bytes;
+  std::string fault;
+};
+
+// Forks, runs `work` in the child and hands over what it returns. The child says nothing: its
+// standard output and error lead nowhere. `work` must not start threads or take locks that other
+// threads of this process may hold. Never throws. Under AddressSanitizer and ThreadSanitizer, which
+// map terabytes themselves, there is no limit on memory.
+[[nodiscard]] ChildWork in_child(const std::function<std::string()>& work,
+                                 const ChildLimits& limits = {});
+
+}  // namespace clearance

@@ -1,0 +1,18 @@
+// Reads PLY, ASCII and binary. Our own: assimp reads for ever what is cut off in its header, and
+// takes what is cut off behind it for a whole mesh.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/mesh_file.hpp"
+
+namespace clearance {
+
+// The vertices that faces of three or more corners name, in the file's order of faces, some more
+// than once. Elements `vertex` (x, y, z) and `face` (vertex_indices or vertex_index); others are
+// read over. Every index and count is checked.
+[[nodiscard]] std::variant<std::vector<Vec3>, MeshFault> ply_vertices(const std::string& bytes);
+
+}  // namespace clearance

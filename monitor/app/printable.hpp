@@ -1,0 +1,19 @@
+// Text from outside, made fit for a terminal and for a log of one line an event.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace clearance {
+
+// What printable() does with line feeds, carriage returns and tabs.
+enum class LineBreaks { kEscaped, kKept };
+
+// The text with every byte that could do something else than show a character written as \xNN:
+// control characters (ASCII and C1), line separators and bidirectional controls of Unicode, and
+// bytes that are no UTF-8. All other UTF-8 stays as it is. What is named by a stranger (a source, a
+// file, a cell) can thus neither begin a line of its own nor command the terminal.
+[[nodiscard]] std::string printable(std::string_view text,
+                                    LineBreaks breaks = LineBreaks::kEscaped);
+
+}  // namespace clearance

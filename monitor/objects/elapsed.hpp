@@ -1,0 +1,26 @@
+// Differences of any two times, ns: what does not fit becomes the largest number that does.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace clearance {
+
+// later - earlier, not negative.
+[[nodiscard]] inline std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
+  constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  if (later <= earlier) return 0;
+  const std::uint64_t apart =
+      static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+  return static_cast<std::int64_t>(apart < kMost ? apart : kMost);
+}
+
+// a - b, or the end of the range that lies in its direction.
+[[nodiscard]] inline std::int64_t less(std::int64_t a, std::int64_t b) noexcept {
+  std::int64_t difference = 0;
+  if (!__builtin_sub_overflow(a, b, &difference)) return difference;
+  return b > 0 ? std::numeric_limits<std::int64_t>::min()
+               : std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace clearance

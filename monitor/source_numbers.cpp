@@ -1,0 +1,36 @@
+#include "monitor/source_numbers.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace clearance {
+
+// The reader of cells refuses more names than there are places.
+SourceNumbers::SourceNumbers(const Scene& scene) {
+  for (const Object& object : scene.objects) {
+    if (object.source.empty()) continue;
+    const std::uint32_t number = of(SourceName(object.source));
+    named_ = std::max<std::size_t>(named_, number + 1);
+  }
+}
+
+// A place that was never used comes before all that were.
+std::uint32_t SourceNumbers::of(const SourceName& source) noexcept {
+  auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
+    return candidate.last_use > 0 && candidate.source == source;
+  });
+  if (place == places_.end()) {
+    place =
+        std::ranges::min_element(std::next(places_.begin(), static_cast<std::ptrdiff_t>(named_)),
+                                 places_.end(), {}, &Place::last_use);
+    place->source = source;
+  }
+  place->last_use = ++uses_;
+  return static_cast<std::uint32_t>(place - places_.begin());
+}
+
+SourceName SourceNumbers::name(std::uint32_t number) const noexcept {
+  return number < kMaxSources ? places_[number].source : SourceName();
+}
+
+}  // namespace clearance

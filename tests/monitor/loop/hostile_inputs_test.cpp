@@ -1,0 +1,197 @@
+// Clocks that are stepped, poses that are lost, held up and sent by several sources, against the
+// true motion: no report calls a pair proved beyond what the poses of the last age limit allow.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "monitor/loop/tick_loop.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+constexpr std::int64_t kSecond = 1000 * kTick;
+constexpr std::int64_t kTicksASeed = 25'000;  // of 40 seeds
+constexpr double kRadius = 0.05;
+// Without steps, losses and delays, so that every source is heard by a clock that is right.
+constexpr std::int64_t kCalm = kSecond / 5;
+
+// Up to 1.9 m/s, and metres from where it was a second ago.
+Vec3 true_position(std::uint32_t object, std::int64_t at_ns) {
+  const double t = 1e-9 * static_cast<double>(at_ns);
+  const double side = object == 0 ? -2.5 : 2.5;
+  return {side + 1.3 * std::sin(1.1 * t + object), 0.9 * std::cos(0.7 * t),
+          0.3 * std::sin(0.9 * t)};
+}
+
+// A program that sends the true pose of one object, on this machine or another.
+struct TrueSource {
+  std::string name;
+  std::uint32_t object;
+  bool elsewhere;
+  std::uint64_t sequence = 0;
+  std::int64_t sends_next = 0, comes_last = 0;     // ns of true time
+  std::int64_t clock_ahead = 0;                    // of its own machine, where that is another
+  std::int64_t lost_until = 0, held_up_until = 0;  // ns of true time
+};
+
+struct BatchUnderWay {
+  std::int64_t comes = 0;
+  PoseBatch batch;
+};
+
+// All that stands around the loop. True time is what the steady clock shows.
+class HostileWorld final : public Clock, public PoseSource, public ReportSink {
+ public:
+  HostileWorld(const Scene& scene, std::uint32_t seed) : scene_(scene), random_(seed) {
+    sources_ = {{"arm", 0, false}, {"tracker", 1, true}, {"spare", 0, true}, {"second", 1, false}};
+  }
+
+  std::int64_t realtime_ns() noexcept override { return kStart + now_ + wall_ahead_; }
+  std::int64_t monotonic_ns() noexcept override { return now_; }
+  std::int64_t steady_ns() noexcept override { return now_; }
+  void sleep_until(std::int64_t monotonic_ns) noexcept override {
+    while (now_ < monotonic_ns) live_through_a_moment();
+    if (now_ > kCalm && below(500) == 0) now_ += below(5 * kTick);  // held up
+  }
+
+  const PoseBatch* next() noexcept override {
+    for (auto& queue : under_way_) {
+      if (queue.empty() || queue.front().comes > now_) continue;
+      given_ = std::move(queue.front().batch);
+      queue.pop_front();
+      return &given_;
+    }
+    return nullptr;
+  }
+
+  void input(const PoseBatch&) noexcept override {}
+  void statistics(const LoopStatistics&) noexcept override {}
+  void report(const Report& report, std::span<const SourceUse>) noexcept override {
+    for (const PairReport& pair : report.pairs) judge(report, pair);
+  }
+
+  [[nodiscard]] std::uint64_t proved() const noexcept { return proved_; }
+  [[nodiscard]] std::uint64_t not_proved() const noexcept { return not_proved_; }
+  [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
+
+ private:
+  void live_through_a_moment() {
+    now_ += kTick / 4;
+    if (now_ > kCalm) disturb();
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (now_ >= sources_[i].sends_next) send(sources_[i], under_way_[i]);
+    }
+  }
+
+  // Each about once in so many quarters of a millisecond.
+  void disturb() {
+    if (below(40'000) == 0) wall_ahead_ += step();
+    if (below(40'000) == 0) wall_ahead_ = 0;
+    for (TrueSource& source : sources_) {
+      if (source.elsewhere && below(40'000) == 0) source.clock_ahead += step();
+      if (source.elsewhere && below(20'000) == 0) source.clock_ahead = 0;
+      if (below(30'000) == 0) source.lost_until = now_ + below(2 * kSecond);
+      if (below(30'000) == 0) source.held_up_until = now_ + below(2 * kSecond);
+      if (below(20'000) == 0) source.sequence = 0;  // started again
+    }
+  }
+
+  std::int64_t below(std::int64_t end) {
+    return static_cast<std::int64_t>(random_.next() % static_cast<std::uint64_t>(end));
+  }
+
+  // From a millisecond to an hour, either way.
+  std::int64_t step() {
+    const double size = std::pow(10.0, 6.0 + 6.5 * random_.unit());
+    return static_cast<std::int64_t>(below(2) == 0 ? size : -size);
+  }
+
+  void send(TrueSource& source, std::deque<BatchUnderWay>& queue) {
+    source.sends_next = now_ + kTick + below(3 * kTick);
+    ++source.sequence;
+    if (now_ < source.lost_until) return;
+    const std::int64_t ahead = source.elsewhere ? source.clock_ahead : wall_ahead_;
+    PoseSample sample = test::sample(source.object, Pose{true_position(source.object, now_)},
+                                     kStart + now_ + ahead);
+    // In the order of sending, as DDS delivers one writer's samples.
+    source.comes_last = std::max(
+        {source.comes_last, source.held_up_until, now_ + below(now_ > kCalm ? 3 * kTick : kTick)});
+    queue.push_back({source.comes_last,
+                     {.source = SourceName(source.name),
+                      .sequence_number = source.sequence,
+                      .samples = {sample}}});
+  }
+
+  void judge(const Report& report, const PairReport& pair) {
+    const bool claims = pair.status <= PairStatus::kCarried;
+    ++(claims ? proved_ : not_proved_);
+    if (!claims || !fault_.empty()) return;
+    const ObjectPair& objects = scene_.pairs[pair.pair];
+    const double apart = (place(objects.first) - place(objects.second)).norm() - 2.0 * kRadius;
+    if (apart >= pair.lower - allowed(objects) && apart <= pair.upper + allowed(objects)) return;
+    fault_ = "tick " + std::to_string(report.cycle) + ", pair " + std::to_string(pair.pair) +
+             ": true " + std::to_string(apart) + " m, bounds " + std::to_string(pair.lower) +
+             " to " + std::to_string(pair.upper) + ", clock offset " +
+             std::to_string(report.clock_offset_ns);
+  }
+
+  Vec3 place(std::uint32_t object) const {
+    const Object& body = scene_.objects[object];
+    return body.fixed ? body.world_from_object.position : true_position(object, now_);
+  }
+
+  // How far both objects go in the age limit, and in what stamps may be ahead, m.
+  double allowed(const ObjectPair& pair) const {
+    double distance = 0.0;
+    for (const std::uint32_t object : {pair.first, pair.second}) {
+      const Object& body = scene_.objects[object];
+      if (body.fixed) continue;
+      distance +=
+          2.0 * 1e-9 * static_cast<double>(body.age_limit_ns + scene_.future_limit_ns + kTick);
+    }
+    return distance;
+  }
+
+  const Scene& scene_;
+  Random random_;
+  std::vector<TrueSource> sources_;
+  std::array<std::deque<BatchUnderWay>, 4> under_way_;
+  PoseBatch given_;
+  std::int64_t now_ = 0, wall_ahead_ = 0;
+  std::uint64_t proved_ = 0, not_proved_ = 0;
+  std::string fault_;
+};
+
+Scene two_movers_and_a_post() {
+  Scene scene = test::cell_of({test::moving("a", {test::ball(kRadius)}),
+                               test::moving("b", {test::ball(kRadius)}),
+                               test::fixed("post", {test::ball(kRadius)}, test::at(0, 0, 1))});
+  scene.objects[0].may_jump = scene.objects[1].may_jump = false;
+  scene.objects[0].max_speed = 2.0;
+  for (ObjectPair& pair : scene.pairs) pair.publish = true;
+  return scene;
+}
+
+class HostileInputs : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(HostileInputs, NeverMakeAPairProvedThatTheTrueMotionContradicts) {
+  const Scene scene = two_movers_and_a_post();
+  HostileWorld world(scene, GetParam());
+  TickLoop loop(scene, world, {&world}, world, {.max_ticks = kTicksASeed});
+  const std::atomic<bool> stop{false};
+  loop.run(stop);
+  EXPECT_EQ(world.fault(), "");
+  EXPECT_GT(world.proved(), world.not_proved() / 2) << "the daemon still says something";
+  EXPECT_GT(world.not_proved(), 1000u) << "the inputs are hostile";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, HostileInputs, testing::Range(1u, 41u));
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,84 @@
+// Who may say where an object is, through the tick.
+#include <gtest/gtest.h>
+
+#include "monitor/source_numbers.hpp"
+#include "tests/monitor/two_balls.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+
+PoseSample from(std::uint32_t source, double x, std::int64_t stamp_ns) {
+  PoseSample sample = test::sample(0, test::at(x, 0, 0), stamp_ns);
+  sample.source = source;
+  return sample;
+}
+
+std::uint64_t refused(const Monitor& monitor) {
+  return monitor.rejected(0)[static_cast<std::size_t>(Reject::kOtherSource)];
+}
+
+TEST(Ownership, FirstSourceOfAnObjectKeepsItWhateverAnotherSends) {
+  const Scene scene = test::two_balls();
+  Monitor monitor(scene);
+  for (int tick = 0; tick < 500; ++tick) {
+    const std::int64_t now = kStart + tick * kTick;
+    const std::array samples{from(3, 0.0, now), from(5, 0.5, now + 4'500'000)};
+    const Report& report = monitor.tick(samples, now);
+    ASSERT_NEAR(report.minimum.distance, 0.8, 1e-12);
+  }
+  EXPECT_EQ(refused(monitor), 500u);
+  EXPECT_EQ(monitor.input_age(0).source, 3u);
+  EXPECT_EQ(monitor.input_age(0).other_source, 5u);
+}
+
+TEST(Ownership, AnotherSourceTakesOverAfterASecondOfSilence) {
+  const Scene scene = test::two_balls();
+  Monitor monitor(scene);
+  const PoseSample first = from(3, 0.0, kStart);
+  monitor.tick(std::span(&first, 1), kStart);
+  for (int tick = 1; tick <= 1001; ++tick) {
+    const std::int64_t now = kStart + tick * kTick;
+    const PoseSample sample = from(5, 0.1, now);
+    const Report& report = monitor.tick(std::span(&sample, 1), now);
+    ASSERT_EQ(report.pairs[0].status, tick <= 20     ? PairStatus::kConverged
+                                      : tick <= 1000 ? PairStatus::kUnknown
+                                                     : PairStatus::kConverged)
+        << tick;
+  }
+  EXPECT_EQ(monitor.input_age(0).source, 5u);
+}
+
+TEST(Ownership, SourceThatTheCellNamesIsTheOnlyOne) {
+  Scene scene = test::two_balls();
+  scene.objects[0].source = "arm";
+  SourceNumbers numbers(scene);
+  Monitor monitor(scene);
+  const PoseSample other = from(numbers.of(SourceName("other")), 0.0, kStart);
+  EXPECT_EQ(monitor.tick(std::span(&other, 1), kStart).unknown, 1u);
+  const PoseSample own = from(numbers.of(SourceName("arm")), 0.1, kStart);
+  EXPECT_NEAR(monitor.tick(std::span(&own, 1), kStart).minimum.distance, 0.7, 1e-12);
+  const std::int64_t later = kStart + 5000 * kTick;
+  const PoseSample again = from(other.source, 0.0, later);
+  EXPECT_EQ(monitor.tick(std::span(&again, 1), later).unknown, 1u);
+  EXPECT_EQ(refused(monitor), 2u);
+}
+
+TEST(SourceNumbers, OneBeyondThePlacesTakesThatOfTheOneHeardLongestAgo) {
+  Scene scene = test::two_balls();
+  scene.objects[0].source = "named";
+  SourceNumbers numbers(scene);
+  for (std::size_t i = 1; i < kMaxSources; ++i) {
+    EXPECT_EQ(numbers.of(SourceName("s" + std::to_string(i))), i);
+  }
+  EXPECT_EQ(numbers.of(SourceName("s1")), 1u);
+  EXPECT_EQ(numbers.of(SourceName("late")), 2u);
+  EXPECT_EQ(numbers.name(2).view(), "late");
+  EXPECT_EQ(numbers.of(SourceName("named")), 0u) << "is never replaced";
+  EXPECT_EQ(numbers.name(kNoSource).view(), "");
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,240 @@
+// --record: what is in the file, and what becomes of a daemon whose disk fails it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+
+const bool kNoHangingDisk = std::string(CLEARANCE_HANGING_DISK).empty();
+
+// A daemon that records, with a client of its reports and its health.
+class RecordingDaemon : public testing::Test {
+ protected:
+  explicit RecordingDaemon(const std::string& text = small_cell("small")) : cell(text) {}
+
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+
+  void start(const ChildOptions& options = {}) {
+    daemon.emplace(kDaemon, with({cell.path(), "--record", path("run.mcap")}, dds_arguments(dds)),
+                   options);
+    distances.settle();
+  }
+  // With a disk that hangs as long as the file 'hang' exists.
+  void start_on_a_disk_that_may_hang() {
+    start({.environment = {{"LD_PRELOAD", CLEARANCE_HANGING_DISK},
+                           {"CLEARANCE_DISK_HANGS_IF", path("hang")}}});
+    ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; })) << daemon->output();
+  }
+  // Reports go on without a gap.
+  void expect_reports(int count) {
+    std::uint64_t cycle = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto report = distances.next();
+      ASSERT_NE(report, nullptr) << daemon->output();
+      if (i > 0) {
+        ASSERT_EQ(cycle + 1, (*report)->cycle) << "the daemon was held up";
+      }
+      cycle = (*report)->cycle;
+    }
+  }
+  // Until the health topic says this of the recording, and that so much is missing.
+  bool health_says(const std::string& what, std::uint64_t missing = 0) {
+    Sample<clearance_msg_Health> sample;
+    void* pointer = &*sample;
+    dds_sample_info_t info{};
+    return eventually([&] {
+      return dds_take(health, &pointer, &info, 1, 1) == 1 && info.valid_data &&
+             std::string(sample->recording).find(what) != std::string::npos &&
+             sample->recording_missing >= missing;
+    });
+  }
+  // What a fault of the file must lead to, whichever it is.
+  void expect_told(const std::string& what) {
+    EXPECT_TRUE(health_says(what)) << daemon->output();
+    EXPECT_TRUE(eventually([&] { return daemon->wrote("recording stopped: "); }));
+    EXPECT_THAT(daemon->output(), HasSubstr(what));
+    daemon->signal(SIGTERM);
+    EXPECT_EQ(5, daemon->wait()) << daemon->output();
+    EXPECT_THAT(daemon->output(), HasSubstr("recording INCOMPLETE in " + path("run.mcap")));
+    EXPECT_THAT(daemon->output(), testing::Not(HasSubstr("recorded ")));
+    EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
+  }
+  std::uintmax_t size(const std::string& name) const {
+    std::error_code missing;
+    const std::uintmax_t bytes = std::filesystem::file_size(folder / name, missing);
+    return missing ? 0 : bytes;
+  }
+  int replay(const std::string& name, std::string& output) const {
+    ChildProcess child(kReplay, {"--offline", path(name)});
+    const int status = child.wait();
+    output = child.output();
+    return status;
+  }
+
+  ScratchFolder folder;
+  CellFile cell;
+  Scene scene = cell.scene();
+  DdsOptions dds = own_dds();
+  Participant client{dds};
+  Distances distances{client, scene};
+  dds_entity_t health = client.reader(TopicKind::kHealth, scene.topics.health);
+  std::optional<ChildProcess> daemon;
+};
+
+TEST_F(RecordingDaemon, RecordsWhatAnOfflineReplayGivesAgain) {
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "300"}, dds_arguments(dds)));
+  ChildProcess run(kDaemon, with({cell.path(), "--record", path("run.mcap"), "--ticks", "150"},
+                                 dds_arguments(dds)));
+  EXPECT_EQ(0, run.wait()) << run.output();
+  EXPECT_TRUE(run.wrote("recorded ")) << run.output();
+  ChildProcess compared(kReplay, {"--offline", path("run.mcap"), "--compare"});
+  EXPECT_EQ(0, compared.wait()) << compared.output();
+  EXPECT_TRUE(compared.wrote("150 reports compared")) << compared.output();
+}
+
+TEST_F(RecordingDaemon, StampsReportsWhenTheTickHandedThemOver) {
+  const std::int64_t before = SystemClock().realtime_ns();
+  ChildProcess run(kDaemon, with({cell.path(), "--record", path("run.mcap"), "--ticks", "20"},
+                                 dds_arguments(dds)));
+  EXPECT_EQ(0, run.wait()) << run.output();
+  const std::int64_t after = SystemClock().realtime_ns();
+  std::int64_t last = before;
+  for (const Kept& message : messages_of(folder / "run.mcap")) {
+    if (message.kind != TopicKind::kDistances) continue;
+    const auto report = decoded<clearance_msg_Distances>(message);
+    EXPECT_GE(report->publish_ns, report->now_ns);
+    EXPECT_GE(report->publish_ns, last);
+    last = report->publish_ns;
+  }
+  EXPECT_GT(last, before);
+  EXPECT_LE(last, after);
+}
+
+TEST_F(RecordingDaemon, StartsAgainAfterACrashAndKeepsWhatWasRecorded) {
+  start();
+  ASSERT_TRUE(health_says("recording " + path("run.mcap"))) << daemon->output();
+  ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; }));
+  daemon->signal(SIGKILL);
+  daemon->wait();
+  start();
+  EXPECT_TRUE(health_says("recording " + path("run-2.mcap"))) << daemon->output();
+  EXPECT_THAT(daemon->output(),
+              HasSubstr(path("run.mcap") + " exists: recording to " + path("run-2.mcap")));
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(0, daemon->wait()) << daemon->output();
+  std::string output;
+  EXPECT_EQ(5, replay("run.mcap", output)) << output;
+  EXPECT_THAT(output, HasSubstr("cut off"));
+  EXPECT_THAT(output, testing::ContainsRegex("[1-9][0-9]+ ticks, ")) << "nothing is left of it";
+  EXPECT_EQ(0, replay("run-2.mcap", output)) << output;
+  ChildProcess third(kDaemon, with({cell.path(), "--record", path("run.mcap"), "--ticks", "1"},
+                                   dds_arguments(dds)));
+  EXPECT_EQ(0, third.wait()) << third.output();
+  EXPECT_GT(size("run-3.mcap"), 0u);
+}
+
+TEST_F(RecordingDaemon, RefusesWhatIsNoRegularFileAtOnce) {
+  ASSERT_EQ(0, mkfifo(path("pipe").c_str(), 0600));
+  std::filesystem::create_directory(folder / "folder");
+  for (const char* name : {"pipe", "folder"}) {
+    for (const bool force : {false, true}) {
+      std::vector<std::string> arguments{cell.path(), "--record", path(name)};
+      if (force) arguments.push_back("--force");
+      ChildProcess refused(kDaemon, with(arguments, dds_arguments(dds)));
+      EXPECT_EQ(5, refused.wait()) << name;
+      EXPECT_THAT(refused.output(), HasSubstr("expected ")) << name;
+      EXPECT_THAT(refused.output(), HasSubstr(path(name)));
+    }
+  }
+  ChildProcess recorder(kRecord, with({"-o", path("pipe"), "--force"}, dds_arguments(dds)));
+  EXPECT_EQ(1, recorder.wait());
+  EXPECT_THAT(recorder.output(), HasSubstr("it is no regular file; expected one"));
+}
+
+TEST_F(RecordingDaemon, TellsThatItsFileWasDeleted) {
+  start();
+  std::filesystem::remove(folder / "run.mcap");
+  expect_told("was deleted while it was being written");
+}
+
+TEST_F(RecordingDaemon, TellsThatItsFileWasCutOff) {
+  start();
+  ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; }));
+  std::filesystem::resize_file(folder / "run.mcap", 10'000);
+  expect_told("was changed by another program while it was being written");
+}
+
+TEST_F(RecordingDaemon, TellsThatItsFileWasReplaced) {
+  start();
+  std::filesystem::rename(folder / "run.mcap", folder / "kept");
+  write_text(folder / "run.mcap", "somebody else's");
+  expect_told("was moved or replaced while it was being written");
+  EXPECT_EQ("somebody else's", read_text(folder / "run.mcap"));
+}
+
+TEST_F(RecordingDaemon, TellsThatItsDiskIsFull) {
+  start({.most_file_bytes = 100'000});
+  expect_told("cannot write to " + path("run.mcap"));
+  std::string output;
+  EXPECT_EQ(5, replay("run.mcap", output)) << output;
+  EXPECT_THAT(output, testing::ContainsRegex("[1-9][0-9]+ ticks, "));
+}
+
+// A disk that takes nothing any more (a network file system that is away): write() does not return.
+TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
+  if (kNoHangingDisk) GTEST_SKIP() << "no preloading with sanitizers";
+  start_on_a_disk_that_may_hang();
+  write_text(folder / "hang", "");
+  expect_reports(200);
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(5, daemon->wait(std::chrono::seconds(20))) << daemon->output();
+  EXPECT_THAT(daemon->output(), HasSubstr("the disk takes nothing"));
+  EXPECT_THAT(daemon->output(), HasSubstr("recording INCOMPLETE"));
+  EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
+}
+
+// The queue in front of the disk holds a thousand reports: a fast daemon fills it in a second.
+class FastRecordingDaemon : public RecordingDaemon {
+ protected:
+  FastRecordingDaemon() : RecordingDaemon(small_cell_at("1000")) {}
+
+  static std::string small_cell_at(const std::string& rate_hz) {
+    std::string text = small_cell("small");
+    return text.replace(text.find("200"), 3, rate_hz);
+  }
+};
+
+TEST_F(FastRecordingDaemon, CountsWhatADiskIsTooSlowFor) {
+  if (kNoHangingDisk) GTEST_SKIP() << "no preloading with sanitizers";
+  start_on_a_disk_that_may_hang();
+  write_text(folder / "hang", "");
+  EXPECT_TRUE(health_says("recording " + path("run.mcap"), 1)) << daemon->output();
+  EXPECT_TRUE(eventually([&] { return daemon->wrote("the disk is too slow"); }));
+  std::filesystem::remove(folder / "hang");
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(5, daemon->wait()) << daemon->output();
+  EXPECT_THAT(daemon->output(), HasSubstr("the disk was too slow; "));
+  std::string output;
+  EXPECT_EQ(0, replay("run.mcap", output)) << output;
+}
+
+TEST_F(RecordingDaemon, NeverRecordsOverItsCell) {
+  ChildProcess over(kDaemon,
+                    with({cell.path(), "--record", cell.path(), "--force"}, dds_arguments(dds)));
+  EXPECT_EQ(2, over.wait());
+  EXPECT_TRUE(over.wrote("is a file that is read")) << over.output();
+  EXPECT_EQ("small", cell.scene().name);
+}
+
+}  // namespace
+}  // namespace clearance::test
