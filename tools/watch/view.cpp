@@ -126,6 +126,8 @@ std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
       return fmt::format(": poses of {} are late", object);
     case ZoneCause::kUnknown:
       return fmt::format(": no pose of {}", object);
+    case ZoneCause::kContradicted:
+      return fmt::format(": poses of {} contradict each other or the cell", object);
     case ZoneCause::kDiscontinuous:
       return fmt::format(": the pose of {} is discontinuous", object);
     default:
