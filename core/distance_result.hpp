@@ -21,11 +21,11 @@ enum class DistanceStatus : std::uint8_t {
 
 // Which way an answer came: core/README.md, "What the iteration is".
 enum class DistancePath : std::uint8_t {
-  kWalk,     // step 1 certified it
-  kLoop,     // the loop, and of what touches or overlaps then the depth
-  kRobust,   // the loop and then the robust path
-  kOverlap,  // at once from where they overlapped last
-  kSpheres,  // see DistanceOptions::far_away
+  kWalk,         // feature tracking certified it
+  kActiveSet,    // the active-set iteration, and of what touches or overlaps then the depth
+  kGjk,          // the active-set iteration and then GJK
+  kPenetration,  // penetration depth, at once from the features of the last overlap
+  kSpheres,      // see DistanceOptions::far_away
 };
 
 // Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'

@@ -35,8 +35,8 @@ class Separators {
 [[nodiscard]] Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept;
 
 // min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at
-// least this less p.slack. -infinity where an unbounded body leaves no bound, and for two unbounded
-// bodies where rounding cannot tell whether it does.
+// least this less p.error_bound. -infinity where an unbounded body leaves no bound, and for two
+// unbounded bodies where rounding cannot tell whether it does.
 [[nodiscard]] double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                                 const Precision& p) noexcept;
 

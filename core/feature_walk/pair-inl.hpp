@@ -276,7 +276,7 @@ struct TrackedPair {
   Vec4 normal;            // unit, from A to B, frame A
   double apart;           // m: |point_b - point_a|; of penetrating bodies minus the depth
   double certified;    // m: how far apart the normal certifies the polyhedra, but for error_bound
-  double error_bound;  // m: Precision::slack
+  double error_bound;  // m: Precision::error_bound
   int transitions;
   int parallel_transitions;  // of these, to features that are parallel within tolerance
 

@@ -111,13 +111,13 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.apart};
   const Precision p = precision(pair.a, pair.b, place, std::abs(pair.apart));
-  pair.error_bound = p.slack;
-  const bool certified = pair.apart > 0.0
-                             ? pair.certified > p.slack
-                             : pair.apart + pair.beyond < -p.slack && is_shortest(pair, p.size);
+  pair.error_bound = p.error_bound;
+  const bool certified =
+      pair.apart > 0.0 ? pair.certified > p.error_bound
+                       : pair.apart + pair.beyond < -p.error_bound && is_shortest(pair, p.size);
   const double noise = pair.apart - pair.certified;
-  const double gap = noise + pair.beyond + 2.0 * p.slack;
-  if (!certified || !(noise <= p.tight) ||
+  const double gap = noise + pair.beyond + 2.0 * p.error_bound;
+  if (!certified || !(noise <= p.gap_tolerance) ||
       !is_as_promised(pair.a, pair.b, p.size, pair.apart, gap)) {
     return false;
   }
@@ -148,7 +148,7 @@ HWY_INLINE bool walk_penetration(TrackedPair& pair) {
 // Of a walk that has certified something.
 HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
   DistanceResult r = result_of(pair);
-  r.path = DistancePath::kOverlap;
+  r.path = DistancePath::kPenetration;
   if (pair.apart > 0.0) return r;
   r.upper = (pair.apart + pair.beyond) + pair.error_bound;
   r.status = DistanceStatus::kOverlapping;

@@ -241,10 +241,11 @@ HWY_INLINE WalkEnd certify(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const Precision p = precision(
       pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.apart}, pair.apart);
-  pair.error_bound = p.slack;
+  pair.error_bound = p.error_bound;
   pair.on_a.point = vec3(pair.point_a);
   pair.on_b.point = vec3(pair.own_b);
-  const bool certified = pair.certified > p.slack && pair.apart - pair.certified <= p.tight;
+  const bool certified =
+      pair.certified > p.error_bound && pair.apart - pair.certified <= p.gap_tolerance;
   return certified ? WalkEnd::kCertified : WalkEnd::kUncertified;
 }
 

@@ -122,10 +122,10 @@ class Simplex {
 // to the direction found last, and that one of those that prove as much.
 void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r, const Simplex& simplex,
                    double length, const Precision& p) noexcept {
-  if (length > r.distance + p.tight) return;
+  if (length > r.distance + p.gap_tolerance) return;
   a.place(a.feature(), a.index(), simplex.point_on_a());
   b.place(b.feature(), b.index(), simplex.own_point_on_b());
-  r.upper = std::min(r.upper, length + p.slack);
+  r.upper = std::min(r.upper, length + p.error_bound);
   r.distance = length;
   r.point_on_a = a.common();
   r.point_on_b = simplex.point_on_b();
@@ -151,16 +151,17 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
     const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
     const DifferenceVertex next = body.support_point(n);
     const double separated = separation({n}, a, b, p);
-    if (separated - p.slack > r.lower - p.tight) r.normal = unit_along(n);  // squares may underflow
-    r.lower = std::max(r.lower, separated - p.slack);
-    if (length - separated <= p.tight || !simplex.add(next)) break;
+    if (separated - p.error_bound > r.lower - p.gap_tolerance)
+      r.normal = unit_along(n);  // squares may underflow
+    r.lower = std::max(r.lower, separated - p.error_bound);
+    if (length - separated <= p.gap_tolerance || !simplex.add(next)) break;
   }
   const bool converged = p.converged(r.upper - r.lower);
   if (r.lower > 0.0) {
     r.status = converged ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
   } else {
-    r.status = r.upper <= 2.0 * (p.slack + p.tight) ? DistanceStatus::kTouching
-                                                    : DistanceStatus::kIterationLimit;
+    r.status = r.upper <= 2.0 * (p.error_bound + p.gap_tolerance) ? DistanceStatus::kTouching
+                                                                  : DistanceStatus::kIterationLimit;
   }
 }
 

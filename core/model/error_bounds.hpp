@@ -15,16 +15,17 @@
 namespace clearance {
 
 struct Precision {
-  double size;   // m: reach_a + reach_b + |translation|: what ulps are counted in
-  double slack;  // m: no bound computed in doubles from this model is off by more, either way
-  double
-      tight;  // m: an upper bound this close to the lower one (before slack) is as good as it gets
+  double size;  // m: reach_a + reach_b + |translation|: what ulps are counted in
+  // m: no bound computed in doubles from this model is off by more, either way.
+  double error_bound;
+  // m: an upper bound this close to the lower one (before error_bound) is as good as it gets.
+  double gap_tolerance;
   double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
   double promised;          // m: as near to each other are bounds that have converged
 
-  // Are bounds, slack included, this near to each other what a converged answer promises?
+  // Are bounds, error_bound included, this near to each other what a converged answer promises?
   [[nodiscard]] bool converged(double gap) const noexcept {
-    return gap <= std::max(tight + 2.0 * slack, promised);
+    return gap <= std::max(gap_tolerance + 2.0 * error_bound, promised);
   }
 };
 
@@ -45,7 +46,7 @@ struct PlacePrecision {
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
   const double apart = b_in_a.apart;
-  double tight = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;
+  double ulps = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;
   p.reach_a = a.bounding_radius;
   p.reach_b = b.bounding_radius;
   if (!a.bounded()) {
@@ -56,13 +57,13 @@ struct PlacePrecision {
     p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
     on_features += kUlp * kUlpsOnB * p.reach_b;
   }
-  if (!a.bounded() || !b.bounded()) tight = kGapToleranceUlps[!a.bounded() + !b.bounded()];
+  if (!a.bounded() || !b.bounded()) ulps = kGapToleranceUlps[!a.bounded() + !b.bounded()];
   p.size = p.reach_a + p.reach_b + apart;
   const double turned =
       a.bounded() ? std::min(p.reach_b, p.reach_a + apart + kStretched * farthest) : p.reach_b;
-  p.slack = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
-            b_in_a.rotation_error * turned;
-  p.tight = tight * kUlp * p.size;
+  p.error_bound = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
+                  b_in_a.rotation_error * turned;
+  p.gap_tolerance = ulps * kUlp * p.size;
   p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kContactGap) * p.size;
   return p;
 }

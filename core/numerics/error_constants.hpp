@@ -67,8 +67,9 @@ inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
 // Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
 inline constexpr double kUnderflow = 1e-150;
 
-// Bounds no farther apart than this, before the slack, are as good as it gets, and nothing else is
-// tried; by how many of the bodies are unbounded, as errors of direction grow along their rays.
+// Bounds no farther apart than this, before the error bound, are as good as it gets, and nothing
+// else is tried; by how many of the bodies are unbounded, as errors of direction grow along their
+// rays.
 inline constexpr double kGapToleranceUlps[] = {6.5, 16.0, 16.0};
 
 // What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies

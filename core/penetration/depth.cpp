@@ -10,8 +10,8 @@
 namespace clearance {
 namespace {
 
-// Beyond what Precision::slack counts, in roundings of Precision::size: a direction of an arc and
-// the exact one next to it on the exact arc (6), a vertex in its plane (6).
+// Beyond what Precision::error_bound counts, in roundings of Precision::size: a direction of an arc
+// and the exact one next to it on the exact arc (6), a vertex in its plane (6).
 constexpr double kOnArc = 12 * kUlp;
 // How near two bounds of h must come, in the same unit.
 constexpr double kGapTolerance = 8 * kUlp;
@@ -37,7 +37,7 @@ Precision precision_of_vertices(const ConvexPolyhedron& a, const ConvexPolyhedro
   Precision p = precision(a, b, a_from_b, 0.0);
   const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;
   p.size -= beyond_a + beyond_b;
-  p.slack -= kUlp * (kUlpsOnA * beyond_a + kUlpsOnB * beyond_b);
+  p.error_bound -= kUlp * (kUlpsOnA * beyond_a + kUlpsOnB * beyond_b);
   return p;
 }
 
@@ -47,7 +47,7 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
   // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
   const double apart = a_from_b.translation.norm();
   const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(height));
-  return kOnArc * p.size + p.slack + a_from_b.rotation_error * scaled;
+  return kOnArc * p.size + p.error_bound + a_from_b.rotation_error * scaled;
 }
 
 // The certified distance along `s` that parts the bodies. A facet of X, or the arc of an
@@ -59,7 +59,7 @@ double certified(const NormalSearch::Best& best, const Separator& s, const Activ
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
   const double by_feature = feature_of_x ? best.height + rounding : kInfinity;
   if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
-  return std::min(by_feature, -separation(s, a, b, p) + p.slack);
+  return std::min(by_feature, -separation(s, a, b, p) + p.error_bound);
 }
 
 // How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
@@ -95,7 +95,7 @@ Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
   Depth out;
   out.normal = forth >= back ? n : Vec3(-n);
   out.value = -std::max(forth, back);
-  out.upper = out.value + p.slack;
+  out.upper = out.value + p.error_bound;
   return out;
 }
 
@@ -132,7 +132,7 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   }
   out.upper =
       certified(best, s, a, b, p, rounding_of_height(a_from_b, start, best.height), out.lower);
-  out.value = best.source == Source::kGuess ? out.upper - p.slack : best.height;
+  out.value = best.source == Source::kGuess ? out.upper - p.error_bound : best.height;
   return out;
 }
 

@@ -98,9 +98,9 @@ void measure_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   result.upper = std::min(result.upper, -found.lower);
   result.distance = std::max(std::min(result.distance, result.upper), result.lower);
   const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
-  // A penetration by less than the slack can be seen from one side only: thrice.
-  const bool tight = result.upper - result.lower <= 3.0 * p.slack + 5.0 * p.tight;
-  if (tight) {
+  // A penetration by less than the error bound can be seen from one side only: thrice.
+  const bool narrow = result.upper - result.lower <= 3.0 * p.error_bound + 5.0 * p.gap_tolerance;
+  if (narrow) {
     result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
     return;
   }

@@ -37,12 +37,12 @@ void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& 
                    const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
     bounds.raise(separation(s, a, b, p), s.normal);
-    if (bounds.certified_upper() - bounds.lower <= p.tight) return;
+    if (bounds.certified_upper() - bounds.lower <= p.gap_tolerance) return;
   }
 }
 
 DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceResult& r) noexcept {
-  if (!p.converged(r.upper - r.lower) && bounds.upper > p.slack) {
+  if (!p.converged(r.upper - r.lower) && bounds.upper > p.error_bound) {
     return DistanceStatus::kIterationLimit;
   }
   return r.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
@@ -51,8 +51,8 @@ DistanceStatus judge(const Bounds& bounds, const Precision& p, const DistanceRes
 DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bounds& bounds,
                         const Precision& p) noexcept {
   DistanceResult r;
-  r.lower = bounds.lower - p.slack;
-  r.upper = bounds.certified_upper() + p.slack;
+  r.lower = bounds.lower - p.error_bound;
+  r.upper = bounds.certified_upper() + p.error_bound;
   r.distance = bounds.upper;
   r.normal = unit_along(bounds.normal);
   r.point_on_a = a.common();
@@ -91,7 +91,7 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
   // closest points can lie.
   const double first = (b.common() - a.common()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
-  const Dqp3Outcome outcome = dqp3(a, b, start.tight);
+  const Dqp3Outcome outcome = dqp3(a, b, start.gap_tolerance);
 
   Bounds bounds;
   bounds.upper = (b.common() - a.common()).norm();
@@ -103,15 +103,15 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
     bounds.raise(certified_distance(n, apart, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
-  if (!met && !(bounds.certified_upper() - bounds.lower <= p.tight)) {
+  if (!met && !(bounds.certified_upper() - bounds.lower <= p.gap_tolerance)) {
     certify_lower(bounds, a, b, p);
   }
   DistanceResult result = conclude(a, b, bounds, p);
-  result.path = DistancePath::kLoop;
+  result.path = DistancePath::kActiveSet;
   const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
-  if (bounds.certified_upper() - above > p.tight) {
+  if (bounds.certified_upper() - above > p.gap_tolerance) {
     refine(a, b, a_from_b, p, result);
-    result.path = DistancePath::kRobust;
+    result.path = DistancePath::kGjk;
   }
   // Points far away, whose places cost much, may be nearer than is certified.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
@@ -169,7 +169,7 @@ DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
   if (track_penetration(a, b, a_from_b, state, result)) {
-    result.path = DistancePath::kOverlap;
+    result.path = DistancePath::kPenetration;
   } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
     return by_search(a, b, a_from_b, state, true);
   }

@@ -21,13 +21,13 @@ namespace {
 
 class MeshMutation : public testing::TestWithParam<BoxMesh> {};
 
-// A child process for each, which takes 2 ms, 15 ms where assimp reads OBJ: 5 s in all, as there is
-// no other way to see a crash.
+// A child process for each, which takes 2 to 5 ms, 15 ms where assimp reads OBJ: some seconds for
+// all formats, as there is no other way to see a crash.
 std::uint32_t mutations_of(const BoxMesh& mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return mesh.extension == "obj" ? 10 : 50;
 #else
-  return mesh.extension == "obj" ? 100 : 500;
+  return mesh.extension == "obj" ? 60 : 400;
 #endif
 }
 
@@ -60,6 +60,7 @@ TEST_P(MeshMutation, IsRefusedByNameOrWithinTheLimits) {
     for (const Vertex& vertex : shape.vertices) {
       ASSERT_LE(vertex.position.cwiseAbs().maxCoeff(), 100.0);
     }
+    if (seed % 5 != 0) continue;
     const auto once = mesh_vertices(bytes, mesh.extension);
     const auto twice = mesh_vertices(bytes, mesh.extension);
     ASSERT_EQ(std::get<std::vector<Vec3>>(once), std::get<std::vector<Vec3>>(twice));

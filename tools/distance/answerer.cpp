@@ -24,7 +24,7 @@ Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   side_a.place_cold(side_b.point_to_common(b.interior));
   side_b.place_cold(a.interior);
-  (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).tight);
+  (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).gap_tolerance);
   const double radii = a.radius + b.radius;
   const double part_of_a = radii > 0.0 ? a.radius / radii : 0.5;
   return side_a.common() + part_of_a * (side_b.common() - side_a.common());
@@ -97,20 +97,21 @@ void Answerer::print_summary(std::size_t lines, std::size_t bad_lines) const {
 }
 
 void Answerer::print_paths() const {
-  const std::size_t robust = paths_[DistancePath::kRobust];
+  const std::size_t robust = paths_[DistancePath::kGjk];
   print(stderr,
         "clearance-distance: by feature tracking {}, by the active set {} ({} touch or overlap, {} "
         "by "
         "GJK), by the last penetration {}\n",
-        paths_[DistancePath::kWalk], paths_[DistancePath::kLoop] + robust, paths_.met, robust,
-        paths_[DistancePath::kOverlap]);
+        paths_[DistancePath::kWalk], paths_[DistancePath::kActiveSet] + robust, paths_.met, robust,
+        paths_[DistancePath::kPenetration]);
 }
 
 void PathCount::add(const DistanceResult& result) {
   ++by_path[static_cast<std::size_t>(result.path)];
   const bool meets =
       result.status == DistanceStatus::kTouching || result.status == DistanceStatus::kOverlapping;
-  const bool searched = result.path == DistancePath::kLoop || result.path == DistancePath::kRobust;
+  const bool searched =
+      result.path == DistancePath::kActiveSet || result.path == DistancePath::kGjk;
   met += meets && searched ? 1 : 0;
 }
 

@@ -64,8 +64,7 @@ TEST(Shapes, HalfSpacesAndVerticesOfABoxGiveTheSameBody) {
 }
 
 TEST(Shapes, PrismTakesTheHullOfItsBase) {
-  const std::vector<Vec2> base = {{0, 0}, {2, 0}, {1, 0}, {2, 2},
-                                             {1, 1}, {0, 2}, {2, 0}};
+  const std::vector<Vec2> base = {{0, 0}, {2, 0}, {1, 0}, {2, 2}, {1, 1}, {0, 2}, {2, 0}};
   const ConvexPolyhedron body = made(prism(base, -0.5, 1.5));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   EXPECT_EQ(body.facets.size(), 6U);

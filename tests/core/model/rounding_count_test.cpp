@@ -1,4 +1,4 @@
-// Precision::slack against the worst that all roundings of a query can do at once.
+// Precision::error_bound against the worst that all roundings of a query can do at once.
 //
 // Oracle: the walk's straight-line code once more, in numbers that keep book of their roundings
 // (tests/core/model/counted.hpp); its doubles have to be the walk's, so it is the same code. The
@@ -236,7 +236,7 @@ Counted lower_across(const Pair& p, const CountedPlace& at) {
 }
 
 struct Worst {
-  double by_roundings, slack, size;  // m
+  double by_roundings, error_bound, size;  // m
 };
 
 struct Evaluated {
@@ -259,9 +259,9 @@ struct Evaluated {
     const double o = (pair.pose_b.position - pair.pose_a.position).norm();
     const double a = reach_a(), b = reach_b();
     const double turned = std::min(b, a + o + kStretched * apart.value());
-    const double slack = kUlp * (kUlpsOnA * a + kUlpsOnB * b + kUlpsBetween * o) +
-                         kTranslationError * o + kRotationError * turned;
-    return {kUlp * by_roundings, slack, a + b + o};
+    const double error_bound = kUlp * (kUlpsOnA * a + kUlpsOnB * b + kUlpsBetween * o) +
+                               kTranslationError * o + kRotationError * turned;
+    return {kUlp * by_roundings, error_bound, a + b + o};
   }
 };
 
@@ -301,8 +301,8 @@ TEST_P(RoundingCounts, CoverAllRoundingsAtOnceWhereTheyAreWorst) {
   const auto used = [&](const Genes& g) {
     const Worst w = Evaluated{GetParam(), GetParam().pair(made_of(g))}.worst();
     if (!std::isfinite(w.by_roundings)) return 0.0;  // no direction between them
-    EXPECT_LE(w.by_roundings, w.slack);
-    return w.by_roundings / w.slack;
+    EXPECT_LE(w.by_roundings, w.error_bound);
+    return w.by_roundings / w.error_bound;
   };
   std::vector<Sample> best;
   const auto keep_best = [&](std::size_t count) {

@@ -287,11 +287,11 @@ TEST(Distance, SaysWhichWayTheAnswerCame) {
     return distance(body, body, b, state, {.far_away = far_away}).path;
   };
   EXPECT_EQ(way(cube(), at(1.5, 0.3, 0.2), kInfinity), DistancePath::kWalk);
-  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kLoop);
-  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kOverlap);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kActiveSet);
+  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kPenetration);
   EXPECT_EQ(way(cube(), at(9.0, 0.3, 0.2), 5.0), DistancePath::kSpheres);
   const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
-  EXPECT_EQ(way(column, leaning, kInfinity), DistancePath::kRobust);
+  EXPECT_EQ(way(column, leaning, kInfinity), DistancePath::kGjk);
 }
 
 TEST(Distance, NamesEveryStatus) {
