@@ -71,6 +71,7 @@ enum class ZoneCause : std::uint8_t {
   kLate = 2,     // what a late object may have moved unseen: on time, the pair would be outside
   kUnknown = 3,  // an object was never seen
   kDiscontinuous = 4,  // nobody can say what was between the last two poses of an object
+  kContradicted = 5,   // as kLate, since the poses of an object contradict each other or the cell
 };
 
 struct ZoneReport {

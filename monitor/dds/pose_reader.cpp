@@ -73,6 +73,17 @@ void log_news(const Admission& admission, const SourceName& source, dds_entity_t
   }
 }
 
+// Once each; the reader of cells refuses more than there are places.
+std::vector<SourceName> named_sources(const Scene& scene) {
+  std::vector<SourceName> named;
+  for (const Object& object : scene.objects) {
+    const SourceName source(object.source);
+    if (!object.source.empty() && std::ranges::find(named, source) == named.end())
+      named.push_back(source);
+  }
+  return named;
+}
+
 }  // namespace
 
 std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
@@ -89,6 +100,7 @@ PoseReader::PoseReader(const Scene& scene, Participant& participant)
       reader_(make_reader(participant)),
       wait_(participant, {reader_}),
       ring_(kBatches),
+      sources_(named_sources(scene)),
       slow_poses_(scene) {
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
   ring_.prepare([this](PoseBatch& slot) { slot.samples.resize(samples_a_batch_); });

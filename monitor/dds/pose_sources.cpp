@@ -1,6 +1,7 @@
 #include "monitor/dds/pose_sources.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace clearance {
 namespace {
@@ -28,7 +29,7 @@ void SourceTally::note_sequence(std::uint64_t number) noexcept {
   last_sequence = number;
 }
 
-PoseSources::PoseSources() {
+PoseSources::PoseSources(std::vector<SourceName> named) : named_(std::move(named)) {
   tallies_.reserve(kMaxSources);
   refused_.reserve(2 * kMaxSources + 2);
 }
@@ -51,7 +52,7 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
     return {.tally = &tally, .news = Admission::News::kTakenOver, .former_writer = former};
   }
   const SourceTally fresh{.source = source, .writer = writer};
-  if (tallies_.size() < kMaxSources) {
+  if (is_named(source) || places_for_others() > 0) {
     return {.tally = &tallies_.emplace_back(fresh), .news = Admission::News::kNewSource};
   }
   SourceTally* const place = free_place(monotonic_ns);
@@ -63,12 +64,24 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
   return {.tally = place, .news = Admission::News::kNewSource, .place_of = before};
 }
 
+bool PoseSources::is_named(const SourceName& source) const noexcept {
+  return std::ranges::find(named_, source) != named_.end();
+}
+
+// That are not taken.
+std::size_t PoseSources::places_for_others() const noexcept {
+  const auto taken = std::ranges::count_if(
+      tallies_, [this](const SourceTally& tally) { return !is_named(tally.source); });
+  return kMaxSources - named_.size() - static_cast<std::size_t>(taken);
+}
+
 // The one that has been silent for the longest time, of those that may go.
 SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
   SourceTally* longest = nullptr;
   for (SourceTally& tally : tallies_) {
     const bool spare = std::ranges::count(tallies_, tally.writer, &SourceTally::writer) > 1;
     const std::int64_t silent = monotonic_ns - tally.last_ns;
+    if (is_named(tally.source)) continue;
     const bool may_go =
         tally.writer == kNobody || silent >= (spare ? kSparePlaceHeldNs : kPlaceHeldNs);
     if (may_go && (longest == nullptr || tally.last_ns < longest->last_ns)) longest = &tally;

@@ -59,7 +59,8 @@ class PoseSources {
   static constexpr std::int64_t kPlaceHeldNs = 10'000'000'000;
   static constexpr std::int64_t kSparePlaceHeldNs = 1'000'000'000;
 
-  PoseSources();
+  // `named`: the sources that the cell names, whose places nobody else gets.
+  explicit PoseSources(std::vector<SourceName> named = {});
 
   // Who a batch of this name, taken from this writer, counts for. The tally is valid until the next
   // call.
@@ -74,9 +75,12 @@ class PoseSources {
   [[nodiscard]] const SourceTally& departed() const noexcept { return departed_; }
 
  private:
+  [[nodiscard]] bool is_named(const SourceName& source) const noexcept;
+  [[nodiscard]] std::size_t places_for_others() const noexcept;
   [[nodiscard]] SourceTally* free_place(std::int64_t monotonic_ns);
   Admission refuse(const SourceName& source, SourceRefusal cause, std::size_t poses);
 
+  std::vector<SourceName> named_;
   std::vector<SourceTally> tallies_;
   std::vector<RefusedSource> refused_;
   SourceTally departed_;

@@ -47,6 +47,11 @@ std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint
       return fmt::format(
           "entered at cycle {} because poses of {} are late, not by distance: {}, at least {}",
           cycle, object, pair, clear);
+    case ZoneCause::kContradicted:
+      return fmt::format(
+          "entered at cycle {} because poses of {} contradict each other or the cell, not by "
+          "distance: {}, at least {}",
+          cycle, object, pair, clear);
     case ZoneCause::kDiscontinuous:
       return fmt::format(
           "entered at cycle {}: {}, unknown since the last tick: the pose of {} is discontinuous",

@@ -10,7 +10,8 @@ namespace {
 // What an object contributes to a pair that is inside a zone.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
   if (!object.seen) return ZoneCause::kUnknown;
-  if (object.unseen_since > 0.0) return ZoneCause::kLate;
+  if (object.unseen_since > 0.0)
+    return object.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 

@@ -12,6 +12,11 @@ namespace clearance::watch {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
+// After this program itself was held up, Cyclone thinks for a moment that the daemon was: a report
+// that has just come says otherwise.
+constexpr std::int64_t kJustCameNs = 200'000'000;
+// How long old reports are told of: two plain lines.
+constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 const char* status_name(std::uint8_t status) {
@@ -85,14 +90,15 @@ std::string frozen(const Feed& feed, std::int64_t now_ns) {
       fmt::format("last cycle {} at {}", feed.distances().cycle, time_of_day(feed.last_ns()));
   if (feed.has_ended())
     return fmt::format("clearanced has ended {:.1f} s ago, {}", seconds_of(since), last);
-  if (feed.publishers() == 0 || since > kSilentNs) {
+  const bool not_alive = feed.publishers() == 0 && since > kJustCameNs;
+  if (not_alive || since > kSilentNs) {
     return fmt::format("clearanced is silent for {:.1f} s: it died or stands still, {}",
                        seconds_of(since), last);
   }
   return {};
 }
 
-// What is wrong with the latest reports themselves, or was until a second ago; empty: nothing.
+// What is wrong with the latest reports themselves, or was a moment ago; empty: nothing.
 std::string not_fresh(const Feed& feed, std::int64_t now_ns) {
   if (feed.check().clocks_disagree) {
     return fmt::format("the clock of clearanced is {:.1f} s ahead of this one: ages mean nothing",
@@ -102,9 +108,14 @@ std::string not_fresh(const Feed& feed, std::int64_t now_ns) {
     return fmt::format("the reports are {:.1f} s old", seconds_of(feed.check().age_ns));
   }
   const OldReports& old = feed.old_reports();
-  if (old.count == 0 || now_ns - old.last_ns > kSilentNs) return {};
+  if (old.count == 0 || now_ns - old.last_ns > kToldForNs) return {};
   return fmt::format("{} reports so far were old when they were read, up to {:.1f} s", old.count,
                      seconds_of(old.oldest_ns));
+}
+
+std::string trouble(const Feed& feed, std::int64_t now_ns) {
+  const std::string why = frozen(feed, now_ns);
+  return why.empty() ? not_fresh(feed, now_ns) : why;
 }
 
 // "", or ": poses of hand are late".
@@ -115,6 +126,8 @@ std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
       return fmt::format(": poses of {} are late", object);
     case ZoneCause::kUnknown:
       return fmt::format(": no pose of {}", object);
+    case ZoneCause::kContradicted:
+      return fmt::format(": poses of {} contradict each other or the cell", object);
     case ZoneCause::kDiscontinuous:
       return fmt::format(": the pose of {} is discontinuous", object);
     default:
@@ -130,12 +143,7 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
   }
   line.add(context.where).add("  ");
   if (!feed.any()) return line.add("waiting for clearanced", Style::kWarning);
-  if (const std::string why = frozen(feed, context.now_ns); !why.empty()) {
-    return line.add(why, Style::kAlarm);
-  }
-  if (const std::string why = not_fresh(feed, context.now_ns); !why.empty()) {
-    return line.add(why, Style::kAlarm);
-  }
+  if (!trouble(feed, context.now_ns).empty()) return line.add("not live", Style::kAlarm);
   if (feed.publishers() > 1) {
     return line.add(fmt::format("{} daemons publish here: figures are mixed", feed.publishers()),
                     Style::kAlarm);
@@ -309,6 +317,9 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
   std::vector<Line> lines;
   lines.push_back(title_line(feed, context, size.columns));
   if (feed.any()) {
+    if (const std::string why = trouble(feed, context.now_ns); !why.empty()) {
+      lines.emplace_back(size.columns).add(why, Style::kAlarm);
+    }
     add_minimum(lines, feed, size.columns);
     add_zones(lines, feed, size.columns);
     add_counts(lines, feed, size.columns);

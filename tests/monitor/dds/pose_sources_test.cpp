@@ -107,6 +107,17 @@ TEST(PoseSources, LetNoWriterLockOthersOutWithManyNames) {
   EXPECT_NE(send(sources, "arm", 2, kSecond + kOneMs).tally, nullptr);
 }
 
+TEST(PoseSources, KeepAPlaceForASourceThatTheCellNames) {
+  PoseSources sources({SourceName("arm")});
+  for (std::uint64_t i = 1; i <= kMaxSources; ++i) {
+    const Admission other = send(sources, "other" + std::to_string(i), i, kOneMs);
+    EXPECT_EQ(other.tally != nullptr, i < kMaxSources) << i;
+  }
+  EXPECT_NE(send(sources, "arm", 99, kOneMs).tally, nullptr);
+  EXPECT_EQ(send(sources, "late", 100, 20 * kSecond).place_of.view(), "other1");
+  EXPECT_NE(send(sources, "arm", 99, 40 * kSecond).tally, nullptr);
+}
+
 TEST(PoseSources, NameOnlyTheFirstOnesTheyRefuse) {
   PoseSources sources = all_places_taken();
   for (int i = 0; i < 1000; ++i) send(sources, "more" + std::to_string(i), 99, kOneMs);

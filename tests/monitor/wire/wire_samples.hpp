@@ -127,7 +127,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_ZoneState>& zone)
   any_bounded_text(random, zone->name);
   zone->daemon = random();
   zone->active = random() % 2 != 0;
-  zone->cause = static_cast<std::uint8_t>(random() % 5);
+  zone->cause = static_cast<std::uint8_t>(random() % 6);
   zone->cause_object = static_cast<std::uint32_t>(random());
   zone->clearance = any_double(random);
   zone->swept_clearance = any_double(random);

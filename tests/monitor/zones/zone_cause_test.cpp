@@ -8,9 +8,10 @@ namespace {
 
 // A ball (0) that goes at 1 m/s at most around a post (1); the zone ends at 0.3 m.
 struct BallAndPost {
-  explicit BallAndPost(double max_speed = 1.0) {
+  explicit BallAndPost(double max_speed = 1.0, bool may_jump = true) {
     Object ball = test::moving("ball", {test::ball(0.1)});
     ball.max_speed = max_speed;
+    ball.may_jump = may_jump;
     scene = test::cell_of({test::fixed("post", {test::ball(0.1)}, test::at(0, 0, 0)), ball});
     scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
     monitor.emplace(scene);
@@ -58,6 +59,14 @@ TEST(ZoneCause, IsALateObjectWithoutAStatedSpeed) {
   cell.tick(0.6);
   expect(cell.tick(0.6), ZoneCause::kInactive, 0);
   expect(cell.tick(std::nullopt, 21 * test::kTick), ZoneCause::kLate, 1);
+}
+
+TEST(ZoneCause, IsAnObjectWhosePosesContradictEachOther) {
+  BallAndPost cell(1.0, false);
+  cell.tick(0.6);
+  expect(cell.tick(0.6), ZoneCause::kInactive, 0);
+  // 50 m in 150 ms are refused; where it is, only 1 m/s since the pose before that says.
+  expect(cell.tick(50.0, 150 * test::kTick), ZoneCause::kContradicted, 1);
 }
 
 TEST(ZoneCause, IsStillDistanceWhenANearObjectIsLate) {
