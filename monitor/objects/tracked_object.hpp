@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "config/scene.hpp"
@@ -55,11 +56,15 @@ struct TrackedObject {
   bool source_is_stated = false;  // by the cell: no other takes over
   std::int64_t taken_ns = 0;
   std::uint32_t other_source = kNoSource;  // the last that was refused since it is not that one
-  // What came last contradicts the pose in use or the cell: where the object is, only the pose
-  // before that and its speed tell.
+  // Poses have come that contradict the pose in use or the cell, not longer ago than the age limit
+  // or none since that does not: nothing is known of it.
   bool contradicted = false;
-  Repetition repetition;
+  bool agrees_again = true;  // a pose was taken after the last contradiction
+  std::int64_t contradicted_until_ns = std::numeric_limits<std::int64_t>::min();  // tick's time
   Landmarks landmarks;
+  Anchor anchor;
+  Repetition repetition;
+  OtherPlace other_place;
 
   Pose pose_last_tick;
   Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now
