@@ -8,16 +8,14 @@ namespace clearance {
 namespace {
 
 // Why not, if the sample is not taken.
-std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+std::optional<Reject> take_in_time(const PoseSample& sample, const Scene& scene,
+                                   Inputs& inputs) noexcept {
   const Object& object = scene.objects[sample.object];
   TrackedObject& state = inputs.objects[sample.object];
   const std::int64_t stamp_ns = inputs.sources[sample.source].in_tick_time(
       sample.stamp_ns, inputs.time,
       {.future_ns = scene.future_limit_ns, .age_ns = object.age_limit_ns});
-  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
-  const auto cause = refusal(object, sample, stamp_ns, limits, state);
-  if (!cause) accept(object, sample, stamp_ns, inputs.time.now_ns, state);
-  return cause;
+  return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns}, state);
 }
 
 // For a tick that cannot know how much time has passed.
@@ -50,7 +48,7 @@ void ingest(std::span<const PoseSample> samples, const TickTime& time, const Sce
     if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
         sample.source >= kMaxSources) {
       refuse(sample.object, Reject::kUnknownObject, inputs);
-    } else if (const auto cause = take(sample, scene, inputs)) {
+    } else if (const auto cause = take_in_time(sample, scene, inputs)) {
       refuse(sample.object, *cause, inputs);
     }
   }

@@ -35,8 +35,10 @@ class Landmarks {
   [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept;
   // Whether none of them is faster than `limit`, m/s.
   [[nodiscard]] bool are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept;
-  // The speed of the fastest, m/s.
-  [[nodiscard]] double fastest(const Pose& pose, const Twist& twist) const noexcept;
+  // None of them is faster, m/s.
+  [[nodiscard]] double speed_at_most(const Twist& twist) const noexcept {
+    return twist.linear.norm() + twist.angular.norm() * reach_;
+  }
 
  private:
   std::array<Vec3, 4> points_;  // in the object's frame, m
@@ -55,19 +57,36 @@ class Landmarks {
 class Repetition {
  public:
   // `same`: the sample has the pose that is in use. `stamp_ns`: in the tick's time.
-  void add(bool same, std::int64_t stamp_ns, const PoseSample& sample, const Object& object,
-           const Landmarks& landmarks) noexcept;
-  // The twists lead farther than the object goes in an age limit, or the pose has come for longer
-  // than the cell says that one of this object may.
-  [[nodiscard]] bool frozen(const Pose& pose, const Object& object,
-                            const Landmarks& landmarks) const noexcept;
+  void add(bool same, std::int64_t stamp_ns) noexcept;
+  // It has come for longer than the cell says that one of this object may.
+  [[nodiscard]] bool frozen(const Object& object) const noexcept;
 
  private:
   std::int64_t since_ns_ = 0, last_ns_ = 0;
-  // Where the twists lead, m and rad, in sum, so that noise is none; zero from when one says that
-  // the object is as good as at rest.
-  Twist way_;
-  std::int64_t way_since_ns_ = 0;
+};
+
+// Where the twists lead from an older pose: poses that are elsewhere contradict them. A twist may
+// be off in time by the age limit, and by a sixth of itself; over the whole time that is summed up,
+// noise comes to nothing and an offset to no more than a fiftieth of the object's speed.
+class Reckoning {
+ public:
+  // Adds the sample's twist, if it has one. False: it leads elsewhere. `stamp_ns` is in the tick's
+  // time, `same` as of a repetition.
+  [[nodiscard]] bool follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+                             bool same, const Object& object, const Landmarks& landmarks) noexcept;
+
+  // How long what follows must agree, in age limits.
+  static constexpr std::int64_t kAgreesAfterAgeLimits = 6;
+
+ private:
+  void start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns) noexcept;
+  void add(const Twist& twist, std::int64_t stamp_ns, const Landmarks& landmarks) noexcept;
+
+  bool any_ = false;
+  Pose pose_;          // where they lead
+  double path_ = 0.0;  // no point goes farther on the way there, m
+  Twist last_;
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 
 // An older pose of the stream in use, from which the object cannot have gone too far either.
