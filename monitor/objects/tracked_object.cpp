@@ -100,10 +100,10 @@ std::optional<Reject> contradiction(const Object& object, const PoseSample& samp
   const bool same = state.seen && same_pose(pose, state.pose);
   state.repetition.add(same, stamp_ns);
   if (same && state.repetition.frozen(object)) return Reject::kFrozen;
+  if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
   if (!state.reckoning.follows(sample, pose, stamp_ns, same, object, state.landmarks)) {
     return same ? Reject::kFrozen : Reject::kOtherWay;
   }
-  if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
   return std::nullopt;
 }
 
