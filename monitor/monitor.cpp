@@ -118,8 +118,8 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   return {.age_ns = state.age_ns,
           .stale = state.late,
           .contradicted = state.contradicted,
-          .source = state.source,
-          .other_source = state.other_source};
+          .source = state.owner.source(),
+          .other_source = state.owner.other_source()};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {

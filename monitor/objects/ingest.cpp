@@ -35,8 +35,9 @@ Inputs initial_inputs(const Scene& scene) {
   SourceNumbers numbers(scene);
   for (const Object& object : scene.objects) {
     TrackedObject& state = inputs.objects.emplace_back(initial_state(object));
-    state.source_is_stated = !object.source.empty();
-    if (state.source_is_stated) state.source = numbers.of(SourceName(object.source));
+    if (!object.source.empty()) {
+      state.owner = InputOwner(numbers.of(SourceName(object.source)));
+    }
   }
   return inputs;
 }

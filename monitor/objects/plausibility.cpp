@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -13,8 +13,6 @@ namespace {
 constexpr double kAtRest = 0.01;
 // By which the repetitions of an object that states no max_speed are judged, m/s.
 constexpr double kUsualSpeed = 1.0;
-
-double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 
 double fastest_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kFastestUnstated;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -15,11 +15,6 @@ constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTo
 // A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
 // after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
-
-// A source that has sent no pose of an object for this long no longer owns it.
-constexpr std::int64_t kSilentNs = 1'000'000'000;
-// As good as any time: a hundred years.
-constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 
 bool usable(const Vec3& v) noexcept {
   return std::abs(v.x()) <= kLargestInSample && std::abs(v.y()) <= kLargestInSample &&
@@ -65,15 +60,6 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
 }
 
-// An object belongs to the source that the cell names, else to the first one that sends its poses,
-// until that one has been silent for long enough.
-bool belongs_to_another(const Object& object, const PoseSample& sample, std::int64_t now_ns,
-                        const TrackedObject& state) noexcept {
-  if (sample.source == state.source || state.source == kNoSource) return false;
-  return state.source_is_stated ||
-         elapsed(state.taken_ns, now_ns) <= std::max(object.age_limit_ns, kSilentNs);
-}
-
 // What is against the pose of a well-formed sample, given the one in use.
 std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
                                     std::int64_t stamp_ns, TrackedObject& state) noexcept {
@@ -109,8 +95,7 @@ TrackedObject initial_state(const Object& object) {
 std::optional<Reject> refusal(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
                               const SampleLimits& limits, TrackedObject& state) noexcept {
   if (const auto cause = malformed(sample)) return cause;
-  if (belongs_to_another(object, sample, limits.now_ns, state)) {
-    state.other_source = sample.source;
+  if (state.owner.refuses(sample.source, limits.now_ns, object.age_limit_ns)) {
     return Reject::kOtherSource;
   }
   if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
@@ -136,14 +121,13 @@ void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_n
   }
   state.pose = as_queries_take_it(sample.world_from_object);
   state.stamp_ns = stamp_ns;
-  state.source = sample.source;
-  state.taken_ns = now_ns;
+  state.owner.take(sample.source, now_ns);
   state.seen = true;
 }
 
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
-  state.taken_ns = now_ns;
+  state.owner.forget_age(now_ns);
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "config/scene.hpp"
+#include "monitor/kinematics/input_owner.hpp"
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
 #include "monitor/motion/relative_displacement.hpp"
@@ -50,11 +51,7 @@ struct TrackedObject {
   Motion motion;  // since the last tick; none when first seen
   std::array<std::uint64_t, kRejects> rejected{};
 
-  // Who sends its poses, and when the last of them was taken, in the tick's time.
-  std::uint32_t source = kNoSource;
-  bool source_is_stated = false;  // by the cell: nobody takes over
-  std::int64_t taken_ns = 0;
-  std::uint32_t other_source = kNoSource;  // the last that was refused since it is not that one
+  InputOwner owner;  // who sends its poses
   // What came last contradicts the pose in use or the cell: where the object is, only the pose
   // before that and its speed tell.
   bool contradicted = false;
@@ -87,12 +84,6 @@ struct TrackedObject {
 
 // Before any input: a fixed object stands where the scene says.
 [[nodiscard]] TrackedObject initial_state(const Object& object);
-
-// The time of a tick and what it allows.
-struct SampleLimits {
-  std::int64_t now_ns = 0;
-  std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
-};
 
 // Why this sample must not be used, if so; notes what that says of the object. `object` is a moving
 // one and the one that the sample names; `stamp_ns` is the sample's, in the tick's time.
