@@ -22,7 +22,7 @@ inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 class InputOwner {
  public:
   InputOwner() = default;
-  // Stated by the cell: nobody takes over.
+  // Stated by the cell: no other takes over.
   explicit InputOwner(std::uint32_t source) noexcept : source_(source), is_stated_(true) {}
 
   // Whether what this source sends is to be refused; notes who it is. `age_limit_ns`: of the input.

@@ -30,9 +30,9 @@ struct TrackedObject {
   // Since its stamp, m, at most: 0 unless late; infinity: no speed is stated.
   double may_have_moved = 0.0;
   double unseen_since = 0.0;  // the larger of that at the last tick, if known then, and now, m
-  // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
-  // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
-  // m, set by displace().
+  // No point of it has moved farther than these: since the last tick (infinity: not known),
+  // and in all, up to the last tick and up to now, leaving out the ticks of which that is not
+  // known. All m, set by displace().
   double displacement = 0.0, accumulated_last_tick = 0.0, accumulated = 0.0;
   // At any instant since the last tick no point of it was farther than this from where it would
   // have been had it gone straight and evenly from its place then to its place now, m.
@@ -95,7 +95,7 @@ struct TrackedObject {
 void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
             std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Nobody can say how old the pose in use is: it is late until the next one comes.
+// The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.
