@@ -67,7 +67,7 @@ double LinkState::error(double reach) const noexcept {
 
 // Where its link is in the frame of the link before, and how it moves there.
 struct ForwardKinematics::Placement {
-  bool known = true, velocity_known = true, late = false;
+  bool known = true, velocity_known = true, late = false, contradicted = false;
   std::int64_t stamp_ns = kNoStamp;
   Eigen::Quaterniond turn;
   Vec3 step = Vec3::Zero();                            // m
@@ -88,6 +88,7 @@ ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std
   placed.known = placed.known && state.seen;
   placed.velocity_known = placed.velocity_known && state.velocity_known && !state.late;
   placed.late = placed.late || state.late;
+  placed.contradicted = placed.contradicted || state.contradicted;
   placed.stamp_ns = std::min(placed.stamp_ns, state.stamp_ns);
   const double scaled = joint.multiplier * state.position;
   const double factor = std::abs(joint.multiplier);
@@ -201,6 +202,7 @@ void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
   link.known = parent.known && placed.known;
   link.velocity_known = parent.velocity_known && placed.velocity_known;
   link.late = parent.late || placed.late;
+  link.contradicted = parent.contradicted || placed.contradicted;
   link.stamp_ns = std::min(parent.stamp_ns, placed.stamp_ns);
   link.pose.orientation = product(parent.pose.orientation, placed.turn);
   link.pose.position = parent.pose.position + step;

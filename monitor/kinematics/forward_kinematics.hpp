@@ -18,6 +18,7 @@ struct LinkState {
   bool known = false;           // all joints from the world to here have been seen
   bool velocity_known = false;  // and how all of them move
   bool late = false;            // one of them is
+  bool contradicted = false;    // late since one of them is
   // The oldest of the positions that it hangs on, in the tick's time; the largest number when it
   // hangs on none.
   std::int64_t stamp_ns = 0;

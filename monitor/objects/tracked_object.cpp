@@ -125,6 +125,19 @@ void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_n
   state.seen = true;
 }
 
+void follow(const LinkState& link, TrackedObject& state) noexcept {
+  state.follows_joints = true;
+  state.joints_late = !link.known || link.late;
+  state.unseen_by_joints = link.known ? link.may_have_moved(state.reach) : kInfinity;
+  if (!link.known) return;
+  state.contradicted = link.contradicted;
+  state.pose = as_queries_take_it(link.pose);
+  state.stamp_ns = link.stamp_ns;
+  state.twist = link.twist;
+  state.twist_known = link.velocity_known;
+  state.seen = true;
+}
+
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
   state.owner.forget_age(now_ns);
@@ -145,9 +158,13 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
-  state.late = state.contradicted || state.age_ns > object.age_limit_ns;
-  const double age_s = static_cast<double>(state.age_ns) * 1e-9;
-  state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
+  if (state.follows_joints) {
+    state.late = state.joints_late;
+    state.may_have_moved = state.unseen_by_joints;
+  } else {
+    state.late = state.contradicted || state.age_ns > object.age_limit_ns;
+    state.may_have_moved = state.late ? rounded_up(object.max_speed * seconds(state.age_ns)) : 0.0;
+  }
   state.unseen_since =
       state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "config/scene.hpp"
+#include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/input_owner.hpp"
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
@@ -55,6 +56,10 @@ struct TrackedObject {
   // What came last contradicts the pose in use or the cell: where the object is, only the pose
   // before that and its speed tell.
   bool contradicted = false;
+  // Of a link whose pose follows from joints: they say how late it is, and how far it may have
+  // moved since, m.
+  bool follows_joints = false, joints_late = false;
+  double unseen_by_joints = 0.0;
   Repetition repetition;
   Landmarks landmarks;
 
@@ -94,6 +99,9 @@ struct TrackedObject {
 // Takes an unrefused sample into use.
 void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
             std::int64_t now_ns, TrackedObject& state) noexcept;
+
+// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere.
+void follow(const LinkState& link, TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
