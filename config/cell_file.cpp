@@ -107,7 +107,8 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
                                    {"distances", &topics.distances},
                                    {"catalogue", &topics.catalogue},
                                    {"health", &topics.health},
-                                   {"zones", &topics.zones}}) {
+                                   {"zones", &topics.zones},
+                                   {"joint_states", &topics.joint_states}}) {
     const YamlNode* name_node = map.optional(key);
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);

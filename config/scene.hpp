@@ -64,6 +64,7 @@ struct Topics {
   std::string catalogue = "clearance/catalogue";
   std::string health = "clearance/health";
   std::string zones = "clearance/zones";
+  std::string joint_states = "clearance/joint_states";
 };
 
 // All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and

@@ -3,73 +3,22 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/monitor.hpp"
-#include "tests/config/cells.hpp"
+#include "tests/monitor/scara_cell.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
-#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
 
+using test::joint;
+using test::joints;
 using test::kStart;
 using test::kTick;
-
-// Two links of a metre that swing about z, and a finger that slides out of the second.
-const std::string kUrdf = R"(<robot name="scara">
-  <link name="foot"><collision><origin xyz="0 0 -1"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <link name="upper"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
-  <link name="lower"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
-  <link name="finger"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
-  <joint name="shoulder" type="revolute"><parent link="foot"/><child link="upper"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="2"/></joint>
-  <joint name="elbow" type="continuous"><origin xyz="1 0 0"/><parent link="upper"/><child link="lower"/><axis xyz="0 0 1"/></joint>
-  <joint name="push" type="prismatic"><origin xyz="1 0 0"/><parent link="lower"/><child link="finger"/><axis xyz="1 0 0"/><limit lower="0" upper="0.2" velocity="0.5"/></joint>
-</robot>
-)";
-
-// Objects: wall, cart, foot, upper, lower, finger.
-const std::string kRest =
-    "objects:\n"
-    "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
-    "  - {name: cart, may_jump: true, sphere: {radius: 0.1}}\n"
-    "pairs:\n"
-    "  - between: [arm, wall]\n"
-    "  - between: [cart, wall]\n"
-    "  - between: [arm, arm]\n"
-    "zones:\n"
-    "  - {name: near, between: [upper, wall], enter_below: 3.5, leave_above: 3.6}\n";
-
-class RobotsInTheTick : public testing::Test {
- protected:
-  RobotsInTheTick() { test::write_text(folder_ / "scara.urdf", kUrdf); }
-
-  Scene scene(const std::string& base = "") {
-    return scene_of(
-        "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: "
-        "scara.urdf" +
-            base + "}]\n" + kRest,
-        folder_ / "cell.yaml");
-  }
-
-  test::ScratchFolder folder_;
-};
-
-JointSample joint(std::uint32_t variable, double position, std::int64_t stamp_ns) {
-  JointSample sample;
-  sample.variable = variable;
-  sample.position = position;
-  sample.stamp_ns = stamp_ns;
-  return sample;
-}
-
-std::array<JointSample, 3> joints(double shoulder, double elbow, double push, std::int64_t now) {
-  return {joint(0, shoulder, now), joint(1, elbow, now), joint(2, push, now)};
-}
 
 PoseSample pose_of(std::uint32_t object, const LinkState& link, std::int64_t now) {
   PoseSample sample;
@@ -93,8 +42,8 @@ PairReport between(const Scene& scene, const Monitor& monitor, const std::string
   return {};
 }
 
-TEST_F(RobotsInTheTick, DistancesFollowTheJoints) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, DistancesFollowTheJoints) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart), kStart);
   EXPECT_NEAR(between(cell, monitor, "finger", "wall").distance, 5.0 - 2.1 - 0.05, 1e-12);
@@ -105,8 +54,8 @@ TEST_F(RobotsInTheTick, DistancesFollowTheJoints) {
               5.0 - 0.45 - 0.05 * std::sin(std::numbers::pi / 3.0), 1e-12);
 }
 
-TEST_F(RobotsInTheTick, ClosingSpeedsComeFromJointVelocities) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, ClosingSpeedsComeFromJointVelocities) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   auto samples = joints(0.0, 0.0, 0.1, kStart);
   for (JointSample& sample : samples) sample.has_velocity = true;
@@ -116,8 +65,8 @@ TEST_F(RobotsInTheTick, ClosingSpeedsComeFromJointVelocities) {
   EXPECT_NEAR(between(cell, monitor, "finger", "wall").closing_speed, 0.3, 1e-12);
 }
 
-TEST_F(RobotsInTheTick, JointStatesAndLinkPosesOfOneMotionGiveTheSameDistances) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, JointStatesAndLinkPosesOfOneMotionGiveTheSameDistances) {
+  const Scene cell = test::scara_cell();
   Monitor by_joints(cell), by_poses(cell);
   ForwardKinematics kinematics(cell.robots);
   for (int tick = 0; tick < 1000; ++tick) {
@@ -148,8 +97,8 @@ TEST_F(RobotsInTheTick, JointStatesAndLinkPosesOfOneMotionGiveTheSameDistances) 
   }
 }
 
-TEST_F(RobotsInTheTick, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   const std::array some{joint(0, 0.0, kStart), joint(2, 0.1, kStart)};
   const Report& report = monitor.tick({}, some, kStart);
@@ -159,8 +108,8 @@ TEST_F(RobotsInTheTick, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
   EXPECT_FALSE(report.minimum_certified);
 }
 
-TEST_F(RobotsInTheTick, AZoneOfLinksIsActiveUntilTheirJointsAreKnown) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, AZoneOfLinksIsActiveUntilTheirJointsAreKnown) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   EXPECT_TRUE(monitor.tick({}, {}, kStart).zones[0].active);
   EXPECT_EQ(monitor.tick({}, {}, kStart).zones[0].cause, ZoneCause::kUnknown);
@@ -170,8 +119,8 @@ TEST_F(RobotsInTheTick, AZoneOfLinksIsActiveUntilTheirJointsAreKnown) {
 
 // Each joint by its own limits: the shoulder turns 2 rad/s, the elbow anyhow, but only about
 // itself.
-TEST_F(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart), kStart);
   const std::int64_t now = kStart + 50 * kTick;
@@ -194,8 +143,8 @@ TEST_F(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
   EXPECT_NEAR(between(cell, monitor, "finger", "wall").lower, 5.0 - 2.15 - 2.0 * 1.15, 1e-9);
 }
 
-TEST_F(RobotsInTheTick, APublisherOfZerosThatWasLeftRunningIsRefused) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, APublisherOfZerosThatWasLeftRunningIsRefused) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   for (int tick = 0; tick < 100; ++tick) {
     const std::int64_t now = kStart + tick * kTick;
@@ -213,8 +162,8 @@ TEST_F(RobotsInTheTick, APublisherOfZerosThatWasLeftRunningIsRefused) {
   }
 }
 
-TEST_F(RobotsInTheTick, PosesOfLinksAreTakenUntilJointsAreHeard) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, PosesOfLinksAreTakenUntilJointsAreHeard) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   LinkState link;
   link.pose.position = Vec3(1.0, 0.0, 0.0);
@@ -226,8 +175,8 @@ TEST_F(RobotsInTheTick, PosesOfLinksAreTakenUntilJointsAreHeard) {
   EXPECT_EQ(monitor.rejected(3)[static_cast<std::size_t>(Reject::kOtherSource)], 1u);
 }
 
-TEST_F(RobotsInTheTick, ARobotMovesWithWhatItStandsOn) {
-  const Scene cell = scene(", base: {on: cart}");
+TEST(RobotsInTheTick, ARobotMovesWithWhatItStandsOn) {
+  const Scene cell = test::scara_cell(", base: {on: cart}");
   Monitor monitor(cell);
   const auto still = [](std::int64_t now) { return joints(0.0, 0.0, 0.1, now); };
   monitor.tick({}, still(kStart), kStart);
@@ -242,8 +191,8 @@ TEST_F(RobotsInTheTick, ARobotMovesWithWhatItStandsOn) {
   EXPECT_EQ(between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
 }
 
-TEST_F(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   constexpr std::int64_t kOffset = 3'600'000'000'000;
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart + kOffset), {kStart, kOffset});
@@ -255,8 +204,8 @@ TEST_F(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
   EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kStale);
 }
 
-TEST_F(RobotsInTheTick, UnknownVariablesAreCountedAndNothingIsAllocated) {
-  const Scene cell = scene();
+TEST(RobotsInTheTick, UnknownVariablesAreCountedAndNothingIsAllocated) {
+  const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart), kStart);
   const auto samples = joints(0.01, 0.01, 0.1, kStart + kTick);

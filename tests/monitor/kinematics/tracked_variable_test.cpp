@@ -10,7 +10,7 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // A joint of 2 rad/s between -1 and 1 rad, late after 20 ms.
@@ -67,7 +67,7 @@ TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
   // A driver that measures none fills in NaN.
   sample = at(4 * kMs, 0.003);
   sample.has_velocity = true;
-  sample.velocity = kNan;
+  sample.velocity = kNotANumber;
   EXPECT_EQ(take(sample), std::nullopt);
   EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
   // Over a long gap a difference says nothing about now.
@@ -121,7 +121,7 @@ TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndItIsLateAtOnce) {
 
 TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
   EXPECT_EQ(take(at(10 * kMs, 0.0)), std::nullopt);
-  EXPECT_EQ(take(at(11 * kMs, kNan)), Reject::kNonFinite);
+  EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);
   EXPECT_EQ(take(at(11 * kMs, 2e6)), Reject::kNonFinite);
   EXPECT_EQ(take(at(9 * kMs, 0.0), 2 * kMs), Reject::kBackwards);
   EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
