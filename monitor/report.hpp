@@ -24,8 +24,8 @@ enum class PairStatus : std::uint8_t {
   // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
   kCarried = 4,
   kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
-  // An object has never been seen, or is late without a stated maximum speed: all NaN,
-  // lower = -infinity, upper = +infinity.
+  // An object has never been seen, is late without a stated maximum speed, or is contradicted: all
+  // NaN, lower = -infinity, upper = +infinity.
   kUnknown = 6,
 };
 inline constexpr std::size_t kPairStatuses = 7;

@@ -37,6 +37,7 @@ class InputOwner {
 
   // What this source sends was taken into use.
   void take(std::uint32_t source, std::int64_t now_ns) noexcept {
+    if (source != source_) other_ = kNoSource;
     source_ = source;
     taken_ns_ = now_ns;
   }
@@ -45,7 +46,7 @@ class InputOwner {
   void forget_age(std::int64_t now_ns) noexcept { taken_ns_ = now_ns; }
 
   [[nodiscard]] std::uint32_t source() const noexcept { return source_; }
-  // The last one that was refused since it is not the owner.
+  // The last one that was refused since it is not the owner; none since that took over.
   [[nodiscard]] std::uint32_t other_source() const noexcept { return other_; }
 
  private:

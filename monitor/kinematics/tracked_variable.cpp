@@ -12,16 +12,30 @@ namespace {
 
 bool usable(double x) noexcept { return std::abs(x) <= kLargestJoint; }
 
-// A joint that was seen to go faster than its description says is not bound by that.
-double fastest(const JointVariable& variable, const TrackedVariable& state) noexcept {
-  return std::max(variable.max_speed, std::abs(state.velocity));
+// Without one, or one that is a number: 0.
+double speed_of(const JointSample& sample) noexcept {
+  return sample.has_velocity && usable(sample.velocity) ? std::abs(sample.velocity) : 0.0;
 }
 
-// The age limit is how far off in time the cell lets a position be.
+// The age limit is how far off in time the cell lets a position be. What is sent as its velocity
+// may exceed the limit, which many descriptions have wrong; what positions say may not: that is in
+// question.
 bool can_reach(const JointVariable& variable, const JointSample& sample, std::int64_t stamp_ns,
                const TrackedVariable& state) noexcept {
   const double time = seconds(elapsed(state.stamp_ns, stamp_ns)) + seconds(variable.age_limit_ns);
-  return std::abs(sample.position - state.position) <= rounded_up(fastest(variable, state) * time);
+  const double fastest = std::max({variable.max_speed, state.sent_speed, speed_of(sample)});
+  return std::abs(sample.position - state.position) <= rounded_up(fastest * time);
+}
+
+// What is against a position of the joint's source, given those before it.
+std::optional<Reject> contradiction(const JointVariable& variable, const JointSample& sample,
+                                    std::int64_t stamp_ns, const SampleLimits& limits,
+                                    const TrackedVariable& state) noexcept {
+  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
+  if (!state.seen) return std::nullopt;
+  if (stamp_ns < state.stamp_ns) return Reject::kBackwards;
+  return can_reach(variable, sample, stamp_ns, state) ? std::nullopt
+                                                      : std::optional(Reject::kTooFast);
 }
 
 // The farther of its two limits; none that it was seen to exceed.
@@ -39,10 +53,12 @@ std::optional<Reject> refusal(const JointVariable& variable, const JointSample& 
   if (state.owner.refuses(sample.source, limits.now_ns, variable.age_limit_ns)) {
     return Reject::kOtherSource;
   }
-  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
-  if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
-  state.contradicted = state.seen && !can_reach(variable, sample, stamp_ns, state);
-  return state.contradicted ? std::optional(Reject::kTooFast) : std::nullopt;
+  const auto cause = contradiction(variable, sample, stamp_ns, limits, state);
+  // Of positions that come in another order than they were made one is as good as the other.
+  const bool reordered =
+      cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= variable.age_limit_ns;
+  if (cause && !reordered) state.contradiction.meet(limits.now_ns, variable.age_limit_ns);
+  return cause;
 }
 
 // A velocity that is no number is none: drivers fill in NaN for what they do not measure. The same
@@ -59,7 +75,9 @@ void accept(const JointVariable& variable, const JointSample& sample, std::int64
     state.velocity =
         state.velocity_known ? (sample.position - state.position) / seconds(apart_ns) : 0.0;
   }
+  state.sent_speed = speed_of(sample);
   state.position = sample.position;
+  state.contradiction.agree();
   state.stamp_ns = stamp_ns;
   state.owner.take(sample.source, now_ns);
   state.seen = true;
@@ -68,16 +86,20 @@ void accept(const JointVariable& variable, const JointSample& sample, std::int64
 void forget_age(std::int64_t now_ns, TrackedVariable& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
   state.owner.forget_age(now_ns);
+  state.contradiction.forget_age();
 }
 
 void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state) noexcept {
   if (!state.seen) return;
   state.age_ns = elapsed(state.stamp_ns, now_ns);
+  state.contradicted = state.contradiction.holds(now_ns);
   state.late = state.contradicted || state.age_ns > variable.age_limit_ns;
-  state.may_have_moved =
-      state.late ? std::min(rounded_up(fastest(variable, state) * seconds(state.age_ns)),
-                            room(variable, state.position))
-                 : 0.0;
+  state.may_have_moved = 0.0;
+  if (!state.late) return;
+  // A joint that was seen to go faster than its description says is not bound by that.
+  const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
+  const double way = state.contradicted ? kInfinity : rounded_up(fastest * seconds(state.age_ns));
+  state.may_have_moved = std::min(way, room(variable, state.position));
 }
 
 }  // namespace clearance

@@ -8,6 +8,7 @@
 
 #include "config/robot.hpp"
 #include "monitor/joint_batch.hpp"
+#include "monitor/kinematics/contradiction.hpp"
 #include "monitor/kinematics/input_owner.hpp"
 #include "monitor/pose_batch.hpp"
 
@@ -16,7 +17,7 @@ namespace clearance {
 struct TrackedVariable {
   bool seen = false;          // some position is in use
   bool late = false;          // it is older than its limit, or contradicted
-  bool contradicted = false;  // by a position that came since and that the joint cannot have
+  bool contradicted = false;  // by positions that the joint cannot have
   bool velocity_known = false;
   double position = 0.0;  // rad or m
   // As sent with the position, else from the last two. Not known, and zero, after the first, and
@@ -28,7 +29,9 @@ struct TrackedVariable {
   std::int64_t stamp_ns = 0;  // in the tick's time
   std::int64_t age_ns = -1;   // now - stamp, never negative; -1: never seen
 
-  InputOwner owner;  // who sends it
+  double sent_speed = 0.0;  // with the position; 0: none was
+  InputOwner owner;         // who sends it
+  Contradiction contradiction;
   std::array<std::uint64_t, kRejects> rejected{};
 };
 

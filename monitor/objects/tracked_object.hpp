@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "config/scene.hpp"
+#include "monitor/kinematics/contradiction.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/input_owner.hpp"
 #include "monitor/motion/displacement.hpp"
@@ -53,15 +54,18 @@ struct TrackedObject {
   std::array<std::uint64_t, kRejects> rejected{};
 
   InputOwner owner;  // who sends its poses
-  // What came last contradicts the pose in use or the cell: where the object is, only the pose
-  // before that and its speed tell.
+  // Poses have come that contradict the pose in use or the cell, not longer ago than the age limit
+  // or none since that does not: nothing is known of it.
   bool contradicted = false;
+  Contradiction contradiction;
   // Of a link whose pose follows from joints: they say how late it is, and how far it may have
   // moved since, m.
-  bool follows_joints = false, joints_late = false;
+  bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;
-  Repetition repetition;
   Landmarks landmarks;
+  Anchor anchor;
+  Repetition repetition;
+  OtherPlace other_place;
 
   Pose pose_last_tick;
   Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now

@@ -106,17 +106,37 @@ TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
   EXPECT_NEAR(state_.may_have_moved, 0.5, 1e-12);
 }
 
-TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndItIsLateAtOnce) {
+// Which of two positions that exclude each other is wrong, nobody can tell: only the limits hold.
+TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnown) {
   EXPECT_EQ(take(at(0, 0.8)), std::nullopt);
   EXPECT_EQ(take(at(10 * kMs, 0.0)), Reject::kTooFast);
   EXPECT_TRUE(state_.late);
+  EXPECT_TRUE(state_.contradicted);
   EXPECT_EQ(state_.position, 0.8);
-  EXPECT_NEAR(state_.may_have_moved, 0.02, 1e-12);
+  EXPECT_NEAR(state_.may_have_moved, 1.8, 1e-12);
+  // Until one agrees again and an age limit has passed.
   EXPECT_EQ(take(at(11 * kMs, 0.79)), std::nullopt);
+  EXPECT_TRUE(state_.contradicted);
+  EXPECT_EQ(take(at(31 * kMs, 0.79)), std::nullopt);
   EXPECT_FALSE(state_.late);
   // Where they stay there, they are taken when the joint can have got there.
   EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
-  EXPECT_EQ(take(at(400 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
+  joint_.upper = kNone;
+  EXPECT_EQ(take(at(421 * kMs, 0.9)), Reject::kTooFast);
+  EXPECT_EQ(state_.may_have_moved, kNone);
+}
+
+// Velocity limits of many descriptions are wrong.
+TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
+  JointSample fast = at(0, 0.0);
+  fast.has_velocity = true;
+  fast.velocity = 6.0;
+  EXPECT_EQ(take(fast), std::nullopt);
+  fast.stamp_ns = 100 * kMs;
+  fast.position = 0.6;
+  EXPECT_EQ(take(fast), std::nullopt);
+  EXPECT_EQ(take(at(101 * kMs, 0.9)), Reject::kTooFast);
 }
 
 TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
@@ -124,8 +144,9 @@ TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
   EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);
   EXPECT_EQ(take(at(11 * kMs, 2e6)), Reject::kNonFinite);
   EXPECT_EQ(take(at(9 * kMs, 0.0), 2 * kMs), Reject::kBackwards);
-  EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
   EXPECT_FALSE(state_.contradicted);
+  EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
+  EXPECT_TRUE(state_.contradicted);
   EXPECT_EQ(state_.stamp_ns, 10 * kMs);
 }
 
