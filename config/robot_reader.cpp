@@ -8,15 +8,12 @@
 #include <optional>
 #include <set>
 #include <utility>
-#include <variant>
 
 #include "config/link_parts.hpp"
-#include "config/mesh_file.hpp"
+#include "config/robot_description.hpp"
 #include "config/robot_exceptions.hpp"
 #include "config/robot_files.hpp"
-#include "config/robot_model.hpp"
 #include "config/spelling.hpp"
-#include "config/urdf.hpp"
 
 namespace clearance {
 namespace {
@@ -30,14 +27,6 @@ struct RobotKeys {
   std::string name, prefix;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
-};
-
-// A URDF, its SRDF if there is one, and the tree that they describe.
-struct Description {
-  std::filesystem::path urdf;
-  UrdfRobot robot;
-  std::optional<Srdf> srdf;
-  RobotModel model;
 };
 
 class RobotReader {
@@ -59,13 +48,11 @@ class RobotReader {
  private:
   RobotKeys read_keys(const YamlNode& node);
   void read_packages(const YamlNode& node, RobotKeys& keys);
-  std::optional<std::filesystem::path> find(const YamlNode& node, const RobotKeys& keys);
-  std::optional<Description> describe_robot(const RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void read_base(const YamlNode& node, const RobotList& list, RobotBase& base);
   void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
-  void add_links(const RobotKeys& keys, const Description& description, Robot& robot);
-  void allow(const RobotKeys& keys, const Description& description, Robot& robot,
+  void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
+  void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
              PairExceptions& may_touch);
 
   const std::filesystem::path& file_;
@@ -130,65 +117,6 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
                                  keys.name, same->second));
   }
   return keys;
-}
-
-// The file that a key names, which has to be there.
-std::optional<std::filesystem::path> RobotReader::find(const YamlNode& node,
-                                                       const RobotKeys& keys) {
-  const auto name = read_text(node, "a file", diagnostics_);
-  if (!name) return std::nullopt;
-  const auto path = RobotFiles{file_, keys.packages}.find(*name);
-  if (!path) {
-    const std::string package = package_of(*name);
-    diagnostics_.add(node,
-                     fmt::format("found '{}', and no directory for the package '{}'; expected "
-                                 "packages: {{{}: DIRECTORY}}",
-                                 *name, package, package));
-    return std::nullopt;
-  }
-  const auto bytes = read_bytes(path->string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-    diagnostics_.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
-                                       "relative to the cell file",
-                                       fault->reason));
-    return std::nullopt;
-  }
-  revision_.add(std::get<std::string>(bytes));
-  return path;
-}
-
-// Both files are read even if the first is wrong, so that one run reports what is wrong with
-// either.
-std::optional<Description> RobotReader::describe_robot(const RobotKeys& keys) {
-  if (keys.urdf_node == nullptr) return std::nullopt;
-  Description description;
-  const auto urdf = find(*keys.urdf_node, keys);
-  const auto srdf = keys.srdf_node == nullptr ? std::nullopt : find(*keys.srdf_node, keys);
-  const std::size_t before = diagnostics_.count();
-  if (srdf) {
-    auto read = read_srdf(*srdf);
-    if (const auto* faults = std::get_if<UrdfFaults>(&read))
-      refuse_robot(*keys.srdf_node, *faults, diagnostics_);
-    if (auto* good = std::get_if<Srdf>(&read)) description.srdf = std::move(*good);
-  }
-  if (!urdf || (keys.srdf_node != nullptr && !srdf)) return std::nullopt;
-  description.urdf = *urdf;
-  auto read = read_urdf(*urdf);
-  if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
-    refuse_robot(*keys.urdf_node, *faults, diagnostics_);
-    return std::nullopt;
-  }
-  description.robot = std::get<UrdfRobot>(std::move(read));
-  if (description.srdf) {
-    refuse_robot(*keys.srdf_node, faults_of(*description.srdf, *srdf, description.robot, *urdf),
-                 diagnostics_);
-  }
-  auto model = robot_model(description.robot, *urdf, keys.prefix);
-  if (const auto* faults = std::get_if<UrdfFaults>(&model))
-    refuse_robot(*keys.urdf_node, *faults, diagnostics_);
-  if (diagnostics_.count() != before) return std::nullopt;
-  description.model = std::get<RobotModel>(std::move(model));
-  return description;
 }
 
 // Poses and joint states of two links or joints of one name could not be told apart.
@@ -258,7 +186,8 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotBa
 }
 
 // Joints come in an order in which the link before is known to move or not.
-void RobotReader::add_links(const RobotKeys& keys, const Description& description, Robot& robot) {
+void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
+                            Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
   for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
   LinkParts parts({description.urdf, keys.packages}, *keys.urdf_node, shapes_, diagnostics_);
@@ -298,7 +227,7 @@ void RobotReader::add_links(const RobotKeys& keys, const Description& descriptio
 }
 
 // What may touch is said of links, without the prefix.
-void RobotReader::allow(const RobotKeys& keys, const Description& description, Robot& robot,
+void RobotReader::allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
                         PairExceptions& may_touch) {
   LinkNames shaped, fixed;
   std::map<std::string, std::uint32_t> objects;
@@ -320,7 +249,11 @@ void RobotReader::allow(const RobotKeys& keys, const Description& description, R
 
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   const RobotKeys keys = read_keys(node);
-  auto description = describe_robot(keys);
+  auto description = read_description({.urdf = keys.urdf_node,
+                                       .srdf = keys.srdf_node,
+                                       .files = {file_, keys.packages},
+                                       .prefix = keys.prefix},
+                                      diagnostics_, revision_);
   Robot robot;
   if (description) robot = std::move(description->model.robot);
   robot.name = keys.name;

@@ -92,6 +92,13 @@ class XmlReader {
     return {values[0], values[1], values[2]};
   }
 
+  // A finite number.
+  double number(const XMLElement& element, const char* name) {
+    double value = 0.0;
+    numbers(element, name, std::span(&value, 1), Sign::kAny);
+    return value;
+  }
+
   // Three finite numbers.
   Vec3 vector(const XMLElement& element, const char* name) {
     std::array<double, 3> values{};
