@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
+#include "monitor/joint_batch.hpp"
 
 namespace clearance {
 
@@ -62,12 +63,16 @@ class SourceName {
   std::array<char, kMaxSourceLength + 1> text_{};  // the rest is zeros
 };
 
-// One sample of the topic `poses`.
+// One sample of the topic `poses`, or of `joint_states`: then it has joints instead of poses.
 struct PoseBatch {
   SourceName source;
   std::uint64_t sequence_number = 0;
   std::uint64_t scene_revision = 0;  // of the catalogue its ids are from; 0: not said
   std::vector<PoseSample> samples;
+  std::vector<JointSample> joints = {};
+
+  [[nodiscard]] bool empty() const noexcept { return samples.empty() && joints.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return samples.size() + joints.size(); }
 };
 
 // Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -22,8 +22,6 @@ constexpr std::int64_t kReckoningAgeLimits = 50;
 constexpr std::int64_t kGapAgeLimits = 2;
 // By which share of itself a twist may be off.
 constexpr double kTwistError = 1.0 / 6.0;
-
-double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 
 double fastest_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kFastestUnstated;

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -16,11 +15,6 @@ constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTo
 // A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
 // after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
-
-// A source that has sent no pose of an object for this long no longer owns it.
-constexpr std::int64_t kSilentNs = 1'000'000'000;
-// As good as any time: a hundred years.
-constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 
 bool usable(const Vec3& v) noexcept {
   return std::abs(v.x()) <= kLargestInSample && std::abs(v.y()) <= kLargestInSample &&
@@ -64,15 +58,6 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   const double squared = orientation.squaredNorm();
   if (squared >= kLeastUnit && squared <= kMostUnit) return std::nullopt;
   return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
-}
-
-// An object belongs to the source that the cell names, else to the first one that sends its poses,
-// until that one has been silent for long enough.
-bool belongs_to_another(const Object& object, const PoseSample& sample, std::int64_t now_ns,
-                        const TrackedObject& state) noexcept {
-  if (sample.source == state.source || state.source == kNoSource) return false;
-  return state.source_is_stated ||
-         elapsed(state.taken_ns, now_ns) <= std::max(object.age_limit_ns, kSilentNs);
 }
 
 // Whether the object can have come to this pose; if not, whether it has to be taken all the same.
@@ -125,11 +110,9 @@ void use(const Object& object, const PoseSample& sample, const Pose& pose, std::
   if (!state.seen) state.anchor.set(state.pose, stamp_ns);
   state.anchor.follow(state.pose, stamp_ns, object);
   state.other_place.clear();
-  state.agrees_again = true;
+  state.contradiction.agree();
   state.stamp_ns = stamp_ns;
-  if (state.source != sample.source) state.other_source = kNoSource;
-  state.source = sample.source;
-  state.taken_ns = now_ns;
+  state.owner.take(sample.source, now_ns);
   state.seen = true;
 }
 
@@ -150,8 +133,7 @@ TrackedObject initial_state(const Object& object) {
 std::optional<Reject> take(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
                            const SampleLimits& limits, TrackedObject& state) noexcept {
   if (const auto cause = malformed(sample)) return cause;
-  if (belongs_to_another(object, sample, limits.now_ns, state)) {
-    state.other_source = sample.source;
+  if (state.owner.refuses(sample.source, limits.now_ns, object.age_limit_ns)) {
     return Reject::kOtherSource;
   }
   const Pose pose = as_queries_take_it(sample.world_from_object);
@@ -163,16 +145,28 @@ std::optional<Reject> take(const Object& object, const PoseSample& sample, std::
   if (cause && !reordered) {
     const std::int64_t age_limits =
         cause == Reject::kOtherWay ? Reckoning::kAgreesAfterAgeLimits : 1;
-    state.contradicted_until_ns = limits.now_ns + age_limits * object.age_limit_ns;
-    state.agrees_again = false;
+    state.contradiction.meet(limits.now_ns, age_limits * object.age_limit_ns);
   }
   return cause;
 }
 
+void follow(const LinkState& link, TrackedObject& state) noexcept {
+  state.follows_joints = true;
+  state.joints_late = !link.known || link.late;
+  state.unseen_by_joints = link.known ? link.may_have_moved(state.reach) : kInfinity;
+  if (!link.known) return;
+  state.joints_contradicted = link.contradicted;
+  state.pose = as_queries_take_it(link.pose);
+  state.stamp_ns = link.stamp_ns;
+  state.twist = link.twist;
+  state.twist_known = link.velocity_known;
+  state.seen = true;
+}
+
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
-  state.taken_ns = now_ns;
-  state.contradicted_until_ns = std::numeric_limits<std::int64_t>::min();
+  state.owner.forget_age(now_ns);
+  state.contradiction.forget_age();
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
@@ -190,12 +184,17 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
-  state.contradicted = !state.agrees_again || now_ns <= state.contradicted_until_ns;
-  state.late = state.contradicted || state.age_ns > object.age_limit_ns;
-  const double age_s = static_cast<double>(state.age_ns) * 1e-9;
-  state.may_have_moved = state.contradicted ? kInfinity
-                         : state.late       ? rounded_up(object.max_speed * age_s)
-                                            : 0.0;
+  if (state.follows_joints) {
+    state.contradicted = state.joints_contradicted;
+    state.late = state.joints_late;
+    state.may_have_moved = state.unseen_by_joints;
+  } else {
+    state.contradicted = state.contradiction.holds(now_ns);
+    state.late = state.contradicted || state.age_ns > object.age_limit_ns;
+    state.may_have_moved = state.contradicted ? kInfinity
+                           : state.late       ? rounded_up(object.max_speed * seconds(state.age_ns))
+                                              : 0.0;
+  }
   state.unseen_since =
       state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }
