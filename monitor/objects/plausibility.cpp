@@ -31,6 +31,16 @@ double usual_speed_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kUsualSpeed;
 }
 
+// To first order, where that leaves nothing to see.
+void normalize_almost_unit(Eigen::Quaterniond& q) noexcept {
+  const double off = q.squaredNorm() - 1.0;
+  if (std::abs(off) < 1e-3) {
+    q.coeffs() *= 1.0 - 0.5 * off;
+  } else {
+    q.normalize();
+  }
+}
+
 std::vector<Vec3> corners_of(const Object& object) {
   std::vector<Vec3> corners;
   for (const Part& part : object.parts) {
@@ -62,13 +72,7 @@ Landmarks::Landmarks(const Object& object) {
   for (std::size_t i = 0; i < count_; ++i) reach_ = std::max(reach_, points_[i].norm());
 }
 
-// The origin's way and the turn, |R2 - R1| <= 2 |q2 - q1|, mostly tell at once: (a + b)^2 <=
-// 2 a^2 + 2 b^2.
-bool Landmarks::stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
-  const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
-  const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
-  const double shift = (to.position - from.position).squaredNorm();
-  if (2.0 * (shift + turn * (reach_ * reach_)) <= limit * limit) return true;
+bool Landmarks::each_stays_within(double limit, const Pose& from, const Pose& to) const noexcept {
   return std::all_of(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_),
                      [&](const Vec3& point) {
                        return (transform(to, point) - transform(from, point)).norm() <= limit;
@@ -139,12 +143,12 @@ void Reckoning::add(const Twist& twist, std::int64_t stamp_ns,
                    .angular = half * (last_.angular + twist.angular)};
   last_ = twist;
   last_ns_ = stamp_ns;
-  path_ += landmarks.speed_at_most(step);
+  path_ += landmarks.length(step);
   pose_.position += step.linear;
   const Eigen::Quaterniond half_turn(0.0, 0.5 * step.angular.x(), 0.5 * step.angular.y(),
                                      0.5 * step.angular.z());
   pose_.orientation.coeffs() += (half_turn * pose_.orientation).coeffs();
-  pose_.orientation.normalize();
+  normalize_almost_unit(pose_.orientation);
 }
 
 void Anchor::set(const Pose& pose, std::int64_t stamp_ns) noexcept {

@@ -10,7 +10,9 @@
 // got there, or after ten seconds.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,16 +33,26 @@ class Landmarks {
   Landmarks() = default;
   explicit Landmarks(const Object& object);
 
-  // Whether none of them goes farther than `limit`, m, from one pose to the other.
-  [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept;
+  // Whether none of them goes farther than `limit`, m, from one pose to the other. The origin's
+  // way and the turn, |R2 - R1| <= 2 |q2 - q1|, mostly tell at once: (a + b)^2 <= 2 a^2 + 2 b^2.
+  [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
+    const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
+    const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
+    const double shift = (to.position - from.position).squaredNorm();
+    return 2.0 * (shift + turn * (reach_ * reach_)) <= limit * limit ||
+           each_stays_within(limit, from, to);
+  }
   // Whether none of them is faster than `limit`, m/s.
   [[nodiscard]] bool are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept;
-  // None of them is faster, m/s.
-  [[nodiscard]] double speed_at_most(const Twist& twist) const noexcept {
-    return twist.linear.norm() + twist.angular.norm() * reach_;
+  // How far they go, about, m, on a way of so many m and rad.
+  [[nodiscard]] double length(const Twist& way) const noexcept {
+    return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (reach_ * reach_));
   }
 
  private:
+  [[nodiscard]] bool each_stays_within(double limit, const Pose& from,
+                                       const Pose& to) const noexcept;
+
   std::array<Vec3, 4> points_;  // in the object's frame, m
   std::size_t count_ = 0;
   double reach_ = 0.0;  // none is farther from the frame's origin, m
@@ -84,7 +96,7 @@ class Reckoning {
 
   bool any_ = false;
   Pose pose_;          // where they lead
-  double path_ = 0.0;  // no point goes farther on the way there, m
+  double path_ = 0.0;  // how far it is to there, m
   Twist last_;
   std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
