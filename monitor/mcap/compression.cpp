@@ -72,7 +72,7 @@ void decompress_lz4(std::span<const std::byte> compressed, std::size_t size,
 }  // namespace
 
 std::optional<McapCompression> mcap_compression(std::string_view name) noexcept {
-  if (name.empty()) return McapCompression::kNone;
+  if (name.empty()) return McapCompression::kStored;
   if (name == "zstd") return McapCompression::kZstd;
   if (name == "lz4") return McapCompression::kLz4;
   return std::nullopt;
@@ -80,7 +80,7 @@ std::optional<McapCompression> mcap_compression(std::string_view name) noexcept 
 
 std::string_view name(McapCompression compression) noexcept {
   switch (compression) {
-    case McapCompression::kNone:
+    case McapCompression::kStored:
       return "";
     case McapCompression::kZstd:
       return "zstd";

@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-enum class McapCompression : std::uint8_t { kNone, kZstd, kLz4 };
+enum class McapCompression : std::uint8_t { kStored, kZstd, kLz4 };
 
 // "", "zstd", "lz4"; nothing: another one.
 [[nodiscard]] std::optional<McapCompression> mcap_compression(std::string_view name) noexcept;

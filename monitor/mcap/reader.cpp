@@ -159,7 +159,7 @@ void McapReader::open_chunk(const Record& record) {
     return damage(record.offset, "a chunk whose content does not fit its length");
   }
   chunk_offset_ = record.offset;
-  chunk_is_stored_ = *how == McapCompression::kNone;
+  chunk_is_stored_ = *how == McapCompression::kStored;
   chunk_end_ = offset_;
   chunk_ = chunk_is_stored_ ? stored : decompressed(record, *how, stored, uncompressed);
   if (chunk_cut_off_ || done_) return;

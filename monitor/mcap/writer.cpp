@@ -215,7 +215,7 @@ void McapWriter::flush() {
   out_.clear();
   if (options_.compression == McapCompression::kZstd) compress_zstd(chunk_.view(), compressed_);
   McapChunkIndex index;
-  index.compression = name(compressed_.empty() ? McapCompression::kNone : McapCompression::kZstd);
+  index.compression = name(compressed_.empty() ? McapCompression::kStored : McapCompression::kZstd);
   const std::span<const std::byte> stored = compressed_.empty() ? chunk_.view() : compressed_;
   index.start_ns = chunk_start_ns_;
   index.end_ns = chunk_end_ns_;

@@ -24,8 +24,8 @@ struct McapWriterOptions {
   // first.
   std::size_t chunk_bytes = std::size_t{1} << 20;
   std::uint64_t chunk_span_ns = 200'000'000;
-  McapCompression compression = McapCompression::kNone;  // or zstd
-  bool overwrite = true;                                 // false: an existing file is an error
+  McapCompression compression = McapCompression::kStored;  // or zstd
+  bool overwrite = true;                                   // false: an existing file is an error
 };
 
 // Errors are kept: after the first one nothing more is written, and error() says what happened to

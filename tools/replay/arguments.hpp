@@ -26,6 +26,9 @@ struct ReplayArguments {
   // Offline.
   bool offline = false;
   std::string cell;  // empty: the one in the recording
+  std::optional<double> tick_hz;
+  std::vector<std::string> joint_topics;
+  std::vector<std::string> joints;  // NAME=POSITION
   std::string out;
   std::string csv;
   bool force = false;

@@ -1,11 +1,17 @@
+#include <fmt/format.h>
+
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -23,6 +29,11 @@ void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   if (!arguments.cell.empty()) return read_cell(arguments.cell);
+  if (is_input_log(arguments.recording)) {
+    say(fmt::format("{} holds no cell: give one with --cell, with the robots that it is of",
+                    arguments.recording));
+    return std::nullopt;
+  }
   const RecordingOutline found = outline(arguments.recording);
   if (!found.error.empty()) {
     say(found.error);
@@ -36,8 +47,31 @@ std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   return parse_cell(yaml, arguments.recording);
 }
 
+// NAME=POSITION, each once. False, after saying why, where one is not.
+bool read_joints(const std::vector<std::string>& texts, std::map<std::string, double>& joints) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    double position = 0.0;
+    const char* const end = text.data() + text.size();
+    const bool is_number = equals != std::string::npos && equals > 0 &&
+                           std::from_chars(text.data() + equals + 1, end, position).ptr == end &&
+                           equals + 1 < text.size() && std::isfinite(position);
+    if (!is_number) {
+      say(fmt::format("--joint: found '{}'; expected NAME=POSITION, in rad or m", text));
+      return false;
+    }
+    if (!joints.emplace(text.substr(0, equals), position).second) {
+      say(fmt::format("--joint: '{}' is given twice", text.substr(0, equals)));
+      return false;
+    }
+  }
+  return true;
+}
+
 OfflineReplayOptions options_of(const ReplayArguments& arguments) {
   OfflineReplayOptions options;
+  options.tick_hz = arguments.tick_hz;
+  options.joint_topics = arguments.joint_topics;
   options.start_s = arguments.start_s;
   options.end_s = arguments.end_s;
   if (arguments.compare) options.compare = Comparison::kBits;
@@ -128,6 +162,8 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
 }
 
 int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) {
+  std::map<std::string, double> joints;
+  if (!read_joints(arguments.joints, joints)) return kUsage;
   if (arguments.evaluate_all || !arguments.reference.empty()) {
     scene.evaluate_all = true;
     scene.budget = std::numeric_limits<std::uint32_t>::max();
@@ -137,6 +173,7 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
 
   ProgressBar bar(arguments.progress);
   OfflineReplayOptions options = options_of(arguments);
+  options.joints = joints;
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
