@@ -43,21 +43,23 @@ void add_log_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* off
   app.add_option("--joint-topic", arguments.joint_topics,
                  "Take joint states of this topic of the bag, /left/joint_states for instance; "
                  "repeatable. Without it, of all that are named joint_states")
+      ->allow_extra_args(false)
       ->needs(offline)
       ->group(kOffline);
   app.add_option(
          "--joint", arguments.joints,
          "NAME=POSITION: a joint that the bag or joint log does not have stays there (rad or "
          "m); repeatable")
+      ->allow_extra_args(false)
       ->needs(offline)
       ->group(kOffline);
 }
 
 void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option(
-         "FILE", arguments.recording,
-         "The recording (MCAP); with --offline also a ROS 2 bag (MCAP, .db3, or the folder), "
-         "or joint positions as CSV: t_ns and a column a joint")
+         "FILE", arguments.recordings,
+         "The recording (MCAP), or its files in their order; with --offline also a ROS 2 bag "
+         "(MCAP, .db3, or the folder), or joint positions as CSV: t_ns and a column a joint")
       ->required();
   app.add_option("--start", arguments.start_s, "Begin this many seconds after its first message")
       ->check(number_from_zero());

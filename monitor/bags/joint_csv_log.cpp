@@ -101,10 +101,10 @@ bool JointCsvLog::next(LoggedBatch& batch) {
 
 std::vector<std::string> JointCsvLog::notes() const {
   std::vector<std::string> notes;
-  for (const std::string& column : left_out_) {
-    notes.push_back(fmt::format("column '{}' is no joint of the cell: left out{}", column,
-                                did_you_mean(column, joint_names(scene_))));
-  }
+  std::string names;
+  for (const std::string& column : left_out_) names += (names.empty() ? "" : ", ") + column;
+  if (!names.empty())
+    notes.push_back(fmt::format("columns that are no joints of the cell were left out: {}", names));
   note_unheard(scene_, heard_, given_positions_, notes);
   return notes;
 }

@@ -56,6 +56,7 @@ class Replay {
       : scene_(scene),
         options_(options),
         has_reports_(outline.has_reports),
+        some_without_pairs_(outline.some_without_pairs),
         other_build_(other_build(outline.build)),
         feed_(std::move(feed)),
         expectations_(scene, options.expect_min_distance, options.expect_no_zone),
@@ -86,7 +87,7 @@ class Replay {
 
   const Scene& scene_;
   const OfflineReplayOptions& options_;
-  bool has_reports_;
+  bool has_reports_, some_without_pairs_;
   std::string other_build_;  // what to say of it where something differs
   TickFeed feed_;
   Expectations expectations_;
@@ -246,6 +247,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 // Only the first difference is reported: later ones are its consequences.
 void Replay::compare(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
+  if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
   const auto difference =
       report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
   ++result_.compared;
@@ -340,7 +342,9 @@ OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& re
     failed.error = outlined.error;
     return failed;
   }
-  TickFeed feed(recording, scene, outlined, options.tick_hz.value_or(0.0));
+  std::vector<std::filesystem::path> files{recording};
+  files.insert(files.end(), options.continued_in.begin(), options.continued_in.end());
+  TickFeed feed(files, scene, outlined, options.tick_hz.value_or(0.0));
   return Replay(scene, std::move(feed), options, outlined).run(on_tick);
 }
 

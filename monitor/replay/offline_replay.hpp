@@ -42,6 +42,9 @@ struct OfflineReplayOptions {
 
   std::optional<Comparison> compare = {};  // with the recorded reports and zones
 
+  // Where a recording of several files goes on, in their order.
+  std::vector<std::filesystem::path> continued_in = {};
+
   // Ticks a second, where the recording holds no reports, which say when the ticks were; 0: only
   // when something came. Not stated: the cell's rate for a bag or a joint log, 0 for recordings of
   // ours.

@@ -20,9 +20,9 @@ constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 }  // namespace
 
-TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
+TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
                    const RecordingOutline& outline, double tick_hz)
-    : reader_(file),
+    : reader_(files),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
       joint_names_(scene),
       sources_(scene),

@@ -45,9 +45,10 @@ struct TickInput {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  // A recording of ours. `tick_hz`: unless it holds reports; 0: ticks at log times.
-  TickFeed(const std::filesystem::path& file, const Scene& scene, const RecordingOutline& outline,
-           double tick_hz = 0.0);
+  // A recording of ours, in one file or several. `tick_hz`: unless it holds reports; 0: ticks at
+  // log times.
+  TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
+           const RecordingOutline& outline, double tick_hz = 0.0);
   // Somebody else's.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 

@@ -11,7 +11,9 @@
 namespace clearance {
 
 struct ReplayArguments {
-  std::string recording;
+  std::vector<std::string> recordings;  // at least one
+
+  [[nodiscard]] const std::string& recording() const { return recordings.front(); }
   double start_s = 0.0;
   double end_s = 1e18;
   bool progress = false;

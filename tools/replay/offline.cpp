@@ -29,12 +29,12 @@ void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   if (!arguments.cell.empty()) return read_cell(arguments.cell);
-  if (is_input_log(arguments.recording)) {
+  if (is_input_log(arguments.recording())) {
     say(fmt::format("{} holds no cell: give one with --cell, with the robots that it is of",
-                    arguments.recording));
+                    arguments.recording()));
     return std::nullopt;
   }
-  const RecordingOutline found = outline(arguments.recording);
+  const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     say(found.error);
     return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
     say("the recording holds no cell: give one with --cell");
     return std::nullopt;
   }
-  return parse_cell(yaml, arguments.recording);
+  return parse_cell(yaml, arguments.recording());
 }
 
 // NAME=POSITION, each once. False, after saying why, where one is not.
@@ -70,6 +70,7 @@ bool read_joints(const std::vector<std::string>& texts, std::map<std::string, do
 
 OfflineReplayOptions options_of(const ReplayArguments& arguments) {
   OfflineReplayOptions options;
+  options.continued_in.assign(arguments.recordings.begin() + 1, arguments.recordings.end());
   options.tick_hz = arguments.tick_hz;
   options.joint_topics = arguments.joint_topics;
   options.start_s = arguments.start_s;
@@ -178,7 +179,7 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
   const OfflineReplay replay =
-      replay_offline(scene, arguments.recording, options,
+      replay_offline(scene, arguments.recording(), options,
                      [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
@@ -202,9 +203,11 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
     return kUsage;
   }
   for (const std::string& output : {arguments.out, arguments.csv}) {
-    if (!output_is_not_an_input("clearance-replay", output,
-                                {arguments.recording, arguments.cell, arguments.reference})) {
-      return kUsage;
+    for (const std::string& recording : arguments.recordings) {
+      if (!output_is_not_an_input("clearance-replay", output,
+                                  {recording, arguments.cell, arguments.reference})) {
+        return kUsage;
+      }
     }
     if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
   }
