@@ -28,8 +28,35 @@ Examples:
   clearance-replay --offline --cell cell.yaml run.mcap --compare
   clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
   clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv
-  clearance-replay --offline --cell cell.yaml rosbag2_2026_11_22/ --expect-min-distance 0.05
+  clearance-replay --offline --urdf R.urdf --srdf R.srdf rosbag2_2026_11_22/ --expect-min-distance 0.05
   clearance-replay --offline --cell cell.yaml run.mcap --reference distances.csv.gz --tolerance 1e-6)";
+
+// Instead of a cell.
+void add_robot_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* offline) {
+  CLI::Option* const urdf =
+      app.add_option("--urdf", arguments.robot.urdf,
+                     "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in "
+                     "the world, and every pair of its links is watched")
+          ->excludes("--cell")
+          ->needs(offline)
+          ->group(kOffline);
+  app.add_option("--srdf", arguments.robot.srdf,
+                 "The robot's SRDF, which disables pairs; without it, a link and the next above it "
+                 "that has shapes may touch")
+      ->needs(urdf)
+      ->group(kOffline);
+  app.add_option("--package", arguments.packages,
+                 "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
+      ->allow_extra_args(false)
+      ->needs(urdf)
+      ->group(kOffline);
+  app.add_option("--age-limit-ms", arguments.robot.age_limit_ms,
+                 "An older position makes what hangs on the joint stale")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->needs(urdf)
+      ->group(kOffline);
+}
 
 // Of what holds no ticks of a daemon.
 void add_log_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* offline) {
@@ -80,6 +107,7 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("-o,--output", arguments.out, "Write the reports to this recording")
       ->needs(offline)
       ->group(kOffline);
+  add_robot_options(app, arguments, offline);
   add_log_options(app, arguments, offline);
   CLI::Option* const csv =
       app.add_option("--csv", arguments.csv, "Write a table with one row a tick and pair")

@@ -161,7 +161,7 @@ void BagLog::take_joints(const BagMessage& message, Topic& topic) {
     ++topic.empty;
     return;
   }
-  ++topic.batches;
+  topic.rate.note(scene_, batch);
   wait(message.topic->name, message.log_ns, std::move(batch));
 }
 
@@ -181,7 +181,7 @@ void BagLog::take_transforms(const BagMessage& message, Topic& topic) {
       batch.samples.push_back(*sample);
   }
   if (batch.samples.empty()) return;
-  ++topic.batches;
+  topic.rate.note(scene_, batch);
   wait(message.topic->name, message.log_ns, std::move(batch));
 }
 
@@ -213,6 +213,15 @@ std::string BagLog::nothing_of_use() const {
     there += fmt::format("{}{} ({}, {} messages)", there.empty() ? "" : ", ", name, topic.type,
                          topic.messages);
   }
+  std::string joints;
+  for (const std::string& joint : unknown_joints_) joints += (joints.empty() ? "" : ", ") + joint;
+  if (!joints.empty()) {
+    return fmt::format(
+        "{} has nothing that moves this cell: its joint states are of joints that the cell's "
+        "robots "
+        "do not have: {}; theirs are {}",
+        path_.string(), joints, fmt::join(joint_names(scene_), ", "));
+  }
   return fmt::format(
       "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
       "objects. Expected a topic joint_states of type {} with its joints' names, or one that "
@@ -222,10 +231,12 @@ std::string BagLog::nothing_of_use() const {
 
 std::vector<std::string> BagLog::notes() const {
   std::vector<std::string> notes;
+  if (!given_out_) return notes;  // error() says it
   for (const auto& [name, topic] : topics_) {
     const auto note = [&, &topic_name = name](std::uint64_t count, const std::string& what) {
       if (count > 0) notes.push_back(fmt::format("{} messages of {} {}", count, topic_name, what));
     };
+    topic.rate.add_note("messages of " + name, notes);
     note(topic.undecodable, "do not decode as " + topic.type + " and were left out");
     note(topic.empty, "have no position of a joint of this cell");
     note(topic.unstamped, "have no stamp: the time when they were recorded is used");

@@ -12,6 +12,7 @@
 #include "monitor/bags/bag.hpp"
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
+#include "monitor/bags/input_rate.hpp"
 #include "monitor/bags/ros_messages.hpp"
 #include "monitor/bags/tf_tree.hpp"
 #include "monitor/wire/joint_names.hpp"
@@ -42,9 +43,10 @@ class BagLog final : public InputLog {
   struct Topic {
     std::string type;
     Use use = Use::kNothing;
-    std::uint64_t messages = 0, batches = 0;
+    std::uint64_t messages = 0;
     std::uint64_t undecodable = 0, empty = 0, unstamped = 0, of_another_clock = 0;
     std::int64_t clock_difference_ns = 0;  // of the first such stamp
+    InputRate rate;
   };
 
   void read_ahead();

@@ -39,14 +39,16 @@ std::vector<std::string> joint_names(const Scene& scene) {
 
 void note_unheard(const Scene& scene, const std::vector<bool>& heard,
                   const std::map<std::string, double>& given, std::vector<std::string>& notes) {
+  std::string names;
   for (std::size_t i = 0; i < heard.size(); ++i) {
     const std::string& name = scene.variables[i].name;
-    if (heard[i] || given.contains(name)) continue;
-    notes.push_back(fmt::format(
-        "nothing says where joint '{}' is: what hangs on it is unknown (--joint {}=POSITION says "
-        "where it stays)",
-        name, name));
+    if (!heard[i] && !given.contains(name)) names += (names.empty() ? "" : ", ") + name;
   }
+  if (names.empty()) return;
+  notes.push_back(fmt::format(
+      "nothing says where these joints are, and what hangs on them is unknown: {}; --joint "
+      "NAME=POSITION says where one stays",
+      names));
 }
 
 }  // namespace clearance

@@ -30,7 +30,7 @@ class GivenJoints {
 // Of all variables, as joint states name them.
 [[nodiscard]] std::vector<std::string> joint_names(const Scene& scene);
 
-// A sentence for each joint that was neither heard (by variable) nor given.
+// A sentence about the joints that were neither heard (by variable) nor given, if there are some.
 void note_unheard(const Scene& scene, const std::vector<bool>& heard,
                   const std::map<std::string, double>& given, std::vector<std::string>& notes);
 

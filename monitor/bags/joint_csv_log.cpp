@@ -93,6 +93,7 @@ bool JointCsvLog::next(LoggedBatch& batch) {
     if (error_.empty() && sequence_ == 0) error_ = fmt::format("{} has no rows", file_.string());
     return false;
   }
+  rate_.note(scene_, batch.batch);
   batch.batch.source = SourceName("csv");
   batch.batch.sequence_number = ++sequence_;
   if (!given_.empty()) given_batch_ = LoggedBatch{given_.at(batch.log_ns), batch.log_ns};
@@ -105,6 +106,7 @@ std::vector<std::string> JointCsvLog::notes() const {
   for (const std::string& column : left_out_) names += (names.empty() ? "" : ", ") + column;
   if (!names.empty())
     notes.push_back(fmt::format("columns that are no joints of the cell were left out: {}", names));
+  rate_.add_note("rows", notes);
   note_unheard(scene_, heard_, given_positions_, notes);
   return notes;
 }

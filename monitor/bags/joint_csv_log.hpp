@@ -13,6 +13,7 @@
 
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
+#include "monitor/bags/input_rate.hpp"
 #include "monitor/csv/table.hpp"
 
 namespace clearance {
@@ -49,6 +50,7 @@ class JointCsvLog final : public InputLog {
   std::vector<bool> heard_;  // by variable
   std::optional<CsvTable> table_;
   std::optional<LoggedBatch> given_batch_;
+  InputRate rate_;
   std::uint64_t sequence_ = 0;
   std::string error_;
 };

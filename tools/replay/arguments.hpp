@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/single_robot_cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 
@@ -27,7 +28,9 @@ struct ReplayArguments {
 
   // Offline.
   bool offline = false;
-  std::string cell;  // empty: the one in the recording
+  std::string cell;                   // empty: the one in the recording, or
+  SingleRobotOptions robot;           // this, if it has a URDF
+  std::vector<std::string> packages;  // NAME=DIRECTORY
   std::optional<double> tick_hz;
   std::vector<std::string> joint_topics;
   std::vector<std::string> joints;  // NAME=POSITION

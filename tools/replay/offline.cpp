@@ -26,11 +26,28 @@ namespace {
 
 void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
 
+// The robot given, as a cell.
+std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
+  SingleRobotOptions robot = arguments.robot;
+  for (const std::string& text : arguments.packages) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      say(fmt::format("--package: found '{}'; expected NAME=DIRECTORY", text));
+      return std::nullopt;
+    }
+    robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  return read_single_robot(robot);
+}
+
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   if (!arguments.cell.empty()) return read_cell(arguments.cell);
+  if (!arguments.robot.urdf.empty()) return read_robot(arguments);
   if (is_input_log(arguments.recording())) {
-    say(fmt::format("{} holds no cell: give one with --cell, with the robots that it is of",
+    say(
+        fmt::format("{} holds no cell; expected --urdf R.urdf and --srdf R.srdf of the robot that "
+                    "it is of, or --cell with a cell file that names it under 'robots:'",
                     arguments.recording()));
     return std::nullopt;
   }
@@ -215,7 +232,7 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
   if (!cell) return kFailed;
   std::optional<Scene> scene = scene_or_errors(std::move(*cell));
   if (!scene) {
-    if (arguments.cell.empty())
+    if (arguments.cell.empty() && arguments.robot.urdf.empty())
       say("this is the cell as the recording keeps it, without its mesh files; give the cell file "
           "with --cell");
     return kBadCell;

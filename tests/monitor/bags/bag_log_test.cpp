@@ -92,8 +92,8 @@ TEST_F(BagLogTest, WhatIsNotUsedIsToldOnceWithItsCount) {
                                             "out; did you mean 'shoulder'?")));
   EXPECT_THAT(log.notes, Contains(HasSubstr("1 messages of /joint_states have no position")));
   EXPECT_THAT(log.notes, Contains(HasSubstr("1 messages of /joint_states do not decode")));
-  EXPECT_THAT(log.notes, Contains(HasSubstr("where joint 'shoulder' is: what hangs on it is "
-                                            "unknown (--joint shoulder=POSITION")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("what hangs on them is unknown: shoulder, push; "
+                                            "--joint NAME=POSITION")));
 }
 
 TEST_F(BagLogTest, AListThatIsTooShortGivesWhatItHas) {
@@ -175,6 +175,12 @@ TEST_F(BagLogTest, NothingOfUseIsAnErrorThatNamesWhatIsThereInstead) {
   EXPECT_THAT(log.error, HasSubstr("/arm/joint_commands (sensor_msgs/msg/JointState, 1 messages), "
                                    "/chatter (std_msgs/msg/String, 1 messages)"));
   EXPECT_THAT(log.error, HasSubstr("--joint-topic"));
+}
+
+TEST_F(BagLogTest, TheBagOfAnotherRobotSaysWhoseJointsItHas) {
+  const ReadLog log = read({joint_state(kT, kT, {{"panda_joint1"}, {1}})});
+  EXPECT_THAT(log.error, HasSubstr("of joints that the cell's robots do not have: panda_joint1; "
+                                   "theirs are shoulder, elbow, push"));
 }
 
 TEST_F(BagLogTest, JointsThatNobodySendsMayBeGiven) {
