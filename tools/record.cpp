@@ -1,11 +1,13 @@
-// clearance-record: records Clearance's topics, or converts a pose log kept as CSV, to an MCAP
-// file.
+// clearance-record: records Clearance's topics, or converts a ROS 2 bag or a log kept as CSV, to an
+// MCAP file.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "tools/record/arguments.hpp"
 
 namespace clearance {
@@ -18,15 +20,25 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
+  5  the bag is damaged; the recording holds what came before that
 
 A pose log has a header line that names t_ns,object,px,py,pz,qw,qx,qy,qz in any order (other columns are
 ignored), then a line a pose: poses of the object's frame in the world, m, times in ns, not going back.
-With --cell, every object must be in the cell; without, clearance-replay finds them by name.
+With --cell, every object must be in the cell; without, clearance-replay finds them by name. A joint log names
+t_ns and, as columns, joints of the cell's robots: rad or m; NAME/velocity may stand beside them.
 
 Examples:
   clearance-record -o run.mcap --cell cell.yaml
   clearance-record -o run.mcap --domain 7 --partition lab --seconds 60
-  clearance-record --from-csv poses.csv.gz -o run.mcap --cell cell.yaml)";
+  clearance-record --from-csv poses.csv.gz -o run.mcap --cell cell.yaml
+  clearance-record --from-bag rosbag2_2026_11_22/ -o run.mcap --cell cell.yaml)";
+
+// The bag, or the table if it is one of joints; empty: neither.
+std::string joint_log_of(const RecordArguments& arguments) {
+  if (!arguments.from_bag.empty()) return arguments.from_bag;
+  const bool of_joints = !arguments.from_csv.empty() && is_input_log(arguments.from_csv);
+  return of_joints ? arguments.from_csv : "";
+}
 
 int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app("Records every topic of Clearance, as it is on the wire, to an MCAP file.");
@@ -36,28 +48,48 @@ int run(int argc, char** argv, StopSignal& stop) {
                  "The cell file, which names domain, partition, topics and objects");
   CLI::Option* const csv =
       app.add_option("--from-csv", arguments.from_csv,
-                     "Convert this pose log, plain or gzip, instead of recording from DDS");
+                     "Convert this pose log or joint log, plain or gzip, instead of recording "
+                     "from DDS");
+  CLI::Option* const bag =
+      app.add_option("--from-bag", arguments.from_bag,
+                     "Convert the joint states and transforms of this ROS 2 bag (MCAP, .db3 or the "
+                     "folder) for the robots and objects of the cell")
+          ->excludes(csv);
+  app.add_option("--joint-topic", arguments.joint_topics,
+                 "Of the bag, take joint states of this topic; repeatable. Without it, of all that "
+                 "are named joint_states")
+      ->allow_extra_args(false)
+      ->needs(bag);
   app.add_option("--seconds", arguments.seconds,
                  "Stop after this many seconds; otherwise on Ctrl-C")
       ->check(positive_number())
-      ->excludes(csv);
+      ->excludes(csv)
+      ->excludes(bag);
   add_force(app, arguments.force);
+  arguments.recording.add_to(app, "--");
   arguments.dds.add_to(app);
   app.footer(kFooter);
   if (const auto done = parse(app, argc, argv)) return *done;
   if (!output_is_not_an_input("clearance-record", arguments.out,
-                              {arguments.from_csv, arguments.cell}))
+                              {arguments.from_csv, arguments.from_bag, arguments.cell}))
     return kUsage;
   if (!can_create("clearance-record", arguments.out, arguments.force)) return kFailed;
-  const bool from_csv = !arguments.from_csv.empty();
+  const std::string log = joint_log_of(arguments);
+  if (!log.empty() && arguments.cell.empty()) {
+    print(stderr,
+          "clearance-record: --cell is missing: {} names joints, and a cell says whose they are\n",
+          log);
+    return kUsage;
+  }
   std::optional<Scene> scene;
   if (!arguments.cell.empty()) {
     scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
   }
   const Scene* const known = scene ? &*scene : nullptr;
-  return from_csv ? record_from_csv(arguments, known, stop)
-                  : record_from_dds(arguments, known, stop);
+  if (!log.empty()) return record_from_log(arguments, log, *scene, stop);
+  return arguments.from_csv.empty() ? record_from_dds(arguments, known, stop)
+                                    : record_from_csv(arguments, known, stop);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 namespace clearance {
 namespace {
 
+constexpr const char* kOffline = "Offline";
+
 constexpr const char* kFooter = R"(Exit status:
   0  done; with --offline: every expectation held, nothing differed
   1  an expectation did not hold, the replay differs (from the recording or the reference), or a file cannot be
@@ -26,10 +28,66 @@ Examples:
   clearance-replay --offline --cell cell.yaml run.mcap --compare
   clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
   clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv
+  clearance-replay --offline --urdf R.urdf --srdf R.srdf rosbag2_2026_11_22/ --expect-min-distance 0.05
   clearance-replay --offline --cell cell.yaml run.mcap --reference distances.csv.gz --tolerance 1e-6)";
 
+// Instead of a cell.
+void add_robot_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* offline) {
+  CLI::Option* const urdf =
+      app.add_option("--urdf", arguments.robot.urdf,
+                     "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in "
+                     "the world, and every pair of its links is watched")
+          ->excludes("--cell")
+          ->needs(offline)
+          ->group(kOffline);
+  app.add_option("--srdf", arguments.robot.srdf,
+                 "The robot's SRDF, which disables pairs; without it, a link and the next above it "
+                 "that has shapes may touch")
+      ->needs(urdf)
+      ->group(kOffline);
+  app.add_option("--package", arguments.packages,
+                 "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
+      ->allow_extra_args(false)
+      ->needs(urdf)
+      ->group(kOffline);
+  app.add_option("--age-limit-ms", arguments.robot.age_limit_ms,
+                 "An older position makes what hangs on the joint stale")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->needs(urdf)
+      ->group(kOffline);
+}
+
+// Of what holds no ticks of a daemon.
+void add_log_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* offline) {
+  app.add_option("--tick-hz", arguments.tick_hz,
+                 "Ticks a second, also while nothing comes, as the daemon has them; 0: only when "
+                 "something came. Without it, the cell's rate for bags and joint logs, 0 for "
+                 "recordings without reports; those with reports have their own ticks")
+      ->check(number_from_zero())
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option("--joint-topic", arguments.joint_topics,
+                 "Take joint states of this topic of the bag, /left/joint_states for instance; "
+                 "repeatable. Without it, of all that are named joint_states")
+      ->allow_extra_args(false)
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option(
+         "--joint", arguments.joints,
+         "NAME=POSITION: a joint that the bag or joint log does not have stays there (rad or "
+         "m); repeatable")
+      ->allow_extra_args(false)
+      ->needs(offline)
+      ->group(kOffline);
+}
+
 void add_options(CLI::App& app, ReplayArguments& arguments) {
-  app.add_option("FILE", arguments.recording, "The recording (MCAP)")->required();
+  app.add_option(
+         "FILE", arguments.recordings,
+         "The recording (MCAP), or its files in their order; with --offline also a ROS 2 bag "
+         "(MCAP, .db3, or the folder), or joint positions as CSV: t_ns and a column a joint")
+      ->required();
   app.add_option("--start", arguments.start_s, "Begin this many seconds after its first message")
       ->check(number_from_zero());
   app.add_option("--end", arguments.end_s, "End this many seconds after its first message")
@@ -41,7 +99,6 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
       "--offline", arguments.offline,
       "Run the recorded poses through the monitor instead, without DDS or a clock, as fast as "
       "possible");
-  const char* const kOffline = "Offline";
   app.add_option(
          "--cell", arguments.cell,
          "The cell file; otherwise the cell that is kept in the recording, which lacks mesh "
@@ -50,6 +107,8 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("-o,--output", arguments.out, "Write the reports to this recording")
       ->needs(offline)
       ->group(kOffline);
+  add_robot_options(app, arguments, offline);
+  add_log_options(app, arguments, offline);
   CLI::Option* const csv =
       app.add_option("--csv", arguments.csv, "Write a table with one row a tick and pair")
           ->needs(offline)

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "monitor/app/print.hpp"
+#include "monitor/files/numbered_file.hpp"
 
 namespace clearance {
 namespace {
@@ -17,12 +18,6 @@ bool has_folder(const char* program, const std::filesystem::path& file) {
   print(stderr, "{}: cannot create {}: there is no folder {}\n", program, file.string(),
         file.parent_path().string());
   return false;
-}
-
-// Also what a dangling link names.
-bool is_taken(const std::filesystem::path& file) {
-  std::error_code unknown;
-  return std::filesystem::exists(std::filesystem::symlink_status(file, unknown));
 }
 
 }  // namespace
@@ -61,12 +56,7 @@ std::optional<std::filesystem::path> free_name(const char* program,
     print(stderr, "{}: {} is no regular file; expected one\n", program, file.string());
     return std::nullopt;
   }
-  std::filesystem::path free = file;
-  for (int number = 2; !force && is_taken(free); ++number) {
-    free.replace_filename(
-        fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()));
-  }
-  return free;
+  return force ? file : first_free(file);
 }
 
 // Devices and pipes (/dev/stdout) are left alone.

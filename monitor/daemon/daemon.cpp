@@ -47,8 +47,7 @@ MonitorOptions monitor_options(const DaemonOptions& options) {
 std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
                                           const PoseReader& poses, RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
-  return std::make_unique<Recording>(options.record_file, options.record_over, scene, poses,
-                                     health);
+  return std::make_unique<Recording>(options.record_file, options.recording, scene, poses, health);
 }
 
 }  // namespace

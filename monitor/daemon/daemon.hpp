@@ -25,9 +25,9 @@ struct DaemonOptions {
   std::uint64_t max_ticks = 0;  // 0: until a signal comes
   int fifo_priority = 0;  // of the tick thread; the threads around it get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
-  bool record_over = false;           // replace a file that exists already
-  std::optional<int> cpu;             // that the tick thread is pinned to
-  unsigned workers = 1;  // threads that evaluate pairs, the tick thread included; same scheduling
+  RecordingOptions recording = {.overwrite = false};
+  std::optional<int> cpu;  // that the tick thread is pinned to
+  unsigned workers = 1;    // threads that evaluate pairs, the tick thread included; same scheduling
 };
 
 // The order of the members matters: ports and queues outlive the loop that uses them.

@@ -11,6 +11,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/daemon/daemon.hpp"
+#include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 
@@ -35,6 +36,8 @@ struct Arguments {
   bool check = false;
   std::string log_level = "info";
   DdsArguments dds;
+  bool record_over = false;  // replace files that exist already
+  RecordingArguments recording;
   DaemonOptions daemon;
 };
 
@@ -45,7 +48,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--record", arguments.daemon.record_file,
                  "Record inputs and reports to this MCAP file, or, when it exists, to NAME-2.mcap "
                  "and so on");
-  add_force(app, arguments.daemon.record_over);
+  add_force(app, arguments.record_over);
+  arguments.recording.add_to(app, "--record-");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
   app.add_option("--priority", arguments.daemon.fifo_priority,
@@ -102,13 +106,14 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {arguments.cell}))
     return kUsage;
   const auto record_file =
-      free_name("clearanced", arguments.daemon.record_file, arguments.daemon.record_over);
+      free_name("clearanced", arguments.daemon.record_file, arguments.record_over);
   if (!record_file) return kIncomplete;
   if (*record_file != arguments.daemon.record_file) {
     spdlog::warn("{} exists: recording to {}", arguments.daemon.record_file.string(),
                  record_file->string());
     arguments.daemon.record_file = *record_file;
   }
+  arguments.daemon.recording = arguments.recording.options(arguments.record_over);
   return run_daemon(*scene, arguments, signal);
 }
 

@@ -41,14 +41,14 @@ ReportQueueOptions queue_options(const Scene& scene) {
 }  // namespace
 
 // The file and its catalogue are written before the first tick, so that errors come at the start.
-Recording::Recording(const std::filesystem::path& file, bool over, const Scene& scene,
-                     const PoseReader& poses, RecordingHealth& health)
+Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
+                     const Scene& scene, const PoseReader& poses, RecordingHealth& health)
     : scene_(scene),
       file_(file.string()),
       poses_(poses),
       health_(health),
       queue_(scene, queue_options(scene)),
-      recorder_(file, scene, SystemClock().realtime_ns(), over) {
+      recorder_(file, scene, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   health_.begin(file_);
   thread_ = std::thread([this] { run(); });
@@ -108,6 +108,7 @@ void Recording::record_all() {
     recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
     queue_.reports().pop();
     count(1);
+    tell_of_new_files();
   }
   while (const LoopStatistics* statistics = queue_.statistics().front()) {
     recorder_.health(*make_health(scene_, *statistics, poses_, queue_.dropped_reports(), health_));
@@ -115,6 +116,12 @@ void Recording::record_all() {
     recorder_.check();
     count(0);
   }
+}
+
+void Recording::tell_of_new_files() {
+  if (recorder_.files() == files_) return;
+  files_ = recorder_.files();
+  spdlog::info("recording goes on in {}", recorder_.file().string());
 }
 
 // After every message that the recorder was given: `messages` of them, reports or batches, are
@@ -151,8 +158,12 @@ void Recording::watch() {
 // On stdout, at the end of a run. Of a thread that still waits nothing more can be known.
 std::string Recording::summary() const {
   if (complete_) {
-    return fmt::format("recorded {} messages, {:.1f} MB, in {}\n", recorder_.messages(),
-                       1e-6 * static_cast<double>(recorder_.bytes()), file_);
+    const std::string last =
+        recorder_.files() > 1
+            ? fmt::format(" and {} more, to {}", recorder_.files() - 1, recorder_.file().string())
+            : "";
+    return fmt::format("recorded {} messages, {:.1f} MB, in {}{}\n", recorder_.messages(),
+                       1e-6 * static_cast<double>(recorder_.bytes()), file_, last);
   }
   const std::string why = hangs_             ? "the disk takes nothing"
                           : health_.failed() ? health_.state()

@@ -28,7 +28,7 @@ class Recording {
  public:
   // Throws RecordError when the file cannot be made, is no regular file, or is there already and
   // not to be written over.
-  Recording(const std::filesystem::path& file, bool over, const Scene& scene,
+  Recording(const std::filesystem::path& file, const RecordingOptions& options, const Scene& scene,
             const PoseReader& poses, RecordingHealth& health);
   ~Recording();
   Recording(const Recording&) = delete;
@@ -53,10 +53,12 @@ class Recording {
   void record_all();
   void wait_for_the_disk() const;
   void count(std::uint64_t messages);
+  void tell_of_new_files();
   [[nodiscard]] std::uint64_t missing() const noexcept;
 
   const Scene& scene_;
-  std::string file_;
+  std::string file_;         // the first
+  std::uint64_t files_ = 1;  // that the log knows of
   const PoseReader& poses_;
   RecordingHealth& health_;
   ReportQueue queue_;

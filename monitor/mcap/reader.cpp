@@ -152,26 +152,47 @@ void McapReader::open_chunk(const Record& record) {
     if (chunk_cut_off_) return cut_off(record.offset);
     return damage(record.offset, "a chunk whose content does not fit its length");
   }
-  if (!compression.empty()) return refuse_compression(compression);
-  chunk_ = chunk_cut_off_ ? fields.rest() : fields.get_raw(length);
-  chunk_end_ = offset_;
-  if (chunk_cut_off_) return;
-  if (!fields.ok() || uncompressed != length) {
+  const std::optional<McapCompression> how = mcap_compression(compression);
+  if (!how) return refuse_compression(compression);
+  const auto stored = chunk_cut_off_ ? fields.rest() : fields.get_raw(length);
+  if (!fields.ok()) {
     return damage(record.offset, "a chunk whose content does not fit its length");
+  }
+  chunk_offset_ = record.offset;
+  chunk_is_stored_ = *how == McapCompression::kStored;
+  chunk_end_ = offset_;
+  chunk_ = chunk_is_stored_ ? stored : decompressed(record, *how, stored, uncompressed);
+  if (chunk_cut_off_ || done_) return;
+  if (chunk_.size() != uncompressed) {
+    return damage(record.offset,
+                  chunk_is_stored_
+                      ? "a chunk whose content does not fit its length"
+                      : fmt::format("a chunk whose {} data makes no sense", compression));
   }
   if (crc != 0 && crc != mcap_crc(0, chunk_)) {
     damage(record.offset, "the checksum of the chunk does not match its content");
   }
 }
 
-// zstd and lz4 would be two dependencies more; the official tool decompresses files.
+// All of it, or what there is of a chunk that is cut off.
+std::span<const std::byte> McapReader::decompressed(const Record& record, McapCompression how,
+                                                    std::span<const std::byte> stored,
+                                                    std::uint64_t size) {
+  if (size > kLargestMcapRecord) {
+    damage(record.offset, too_large(size));
+    return {};
+  }
+  decompress(how, stored, static_cast<std::size_t>(size), decompressed_);
+  return decompressed_;
+}
+
 void McapReader::refuse_compression(const std::string& compression) {
   done_ = true;
   readable_ = false;
   chunk_cut_off_ = false;
   error_ = fmt::format(
-      "{} has compressed chunks ({}), which Clearance does not read. Rewrite it with the "
-      "command-line tool of mcap.dev: mcap decompress IN.mcap -o OUT.mcap",
+      "{} has chunks compressed by '{}'; expected zstd, lz4 or none. Rewrite it with the "
+      "command-line tool of mcap.dev: mcap compress IN.mcap -o OUT.mcap",
       path_.string(), compression);
 }
 
@@ -180,7 +201,8 @@ void McapReader::take_from_chunk(McapMessage& message, bool& found) {
   McapFields fields(chunk_);
   const auto kind = static_cast<McapKind>(fields.get<std::uint8_t>());
   const auto body = fields.get_raw(fields.get<std::uint64_t>());
-  const std::uint64_t offset = chunk_end_ - chunk_.size();
+  // Inside of compressed data there are no places that mean anything to a reader.
+  const std::uint64_t offset = chunk_is_stored_ ? chunk_end_ - chunk_.size() : chunk_offset_;
   if (!fields.ok()) {
     if (chunk_cut_off_) return cut_off(file_.size());
     return damage(offset, "a record in a chunk that is longer than the chunk");

@@ -1,8 +1,8 @@
 // Reads MCAP files of any origin and in any state: streamed from the front up to the end or the
 // damage, or, for a window of time, through the index.
 //
-// Uncompressed chunks and files without chunks are read; compressed chunks are refused by name.
-// Padding and unknown records are skipped. No length in the file is trusted beyond the file's size.
+// Chunks may be compressed by zstd or LZ4; others are refused by name. Padding and unknown records
+// are skipped. No length in the file is trusted beyond the file's size, nor beyond 1 GiB.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,14 @@
 #include <string>
 #include <vector>
 
+#include "monitor/mcap/compression.hpp"
 #include "monitor/mcap/file.hpp"
 #include "monitor/mcap/format.hpp"
 
 namespace clearance {
+
+// A length that a flipped bit made huge must not allocate that much.
+inline constexpr std::uint64_t kLargestMcapRecord = std::uint64_t{1} << 30;  // in memory at once
 
 // One message; its payload is a view into the reader.
 struct McapMessage {
@@ -97,6 +101,10 @@ class McapReader {
   // One record outside chunks; sets `found` when it is a message of the window.
   void take(const Record& record, McapMessage& message, bool& found);
   void open_chunk(const Record& record);
+  [[nodiscard]] std::span<const std::byte> decompressed(const Record& record, McapCompression how,
+                                                        std::span<const std::byte> stored,
+                                                        std::uint64_t size);
+  [[nodiscard]] static std::string too_large(std::uint64_t bytes);
   void refuse_compression(const std::string& compression);
   void take_from_chunk(McapMessage& message, bool& found);
   void end_data(const Record& record);
@@ -122,8 +130,10 @@ class McapReader {
   std::string error_;
 
   std::vector<std::byte> body_;
-  std::span<const std::byte> chunk_;  // what is left of the open chunk; part of body_
-  std::uint64_t chunk_end_ = 0;       // its file offset
+  std::vector<std::byte> decompressed_;  // records of the open chunk, where they are compressed
+  std::span<const std::byte> chunk_;     // what is left of the open chunk; part of one of these
+  std::uint64_t chunk_offset_ = 0, chunk_end_ = 0;  // of its record in the file
+  bool chunk_is_stored_ = true;                     // not compressed
   bool chunk_cut_off_ = false;
 
   std::map<std::uint16_t, McapSchema> schemas_;

@@ -7,12 +7,10 @@
 #include "monitor/mcap/reader.hpp"
 
 namespace clearance {
-namespace {
 
-// A length that a flipped bit made huge must not allocate that much.
-constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 30;  // 1 GiB, in memory at once
-
-}  // namespace
+std::string McapReader::too_large(std::uint64_t bytes) {
+  return fmt::format("a record of {} bytes is more than this reader takes (1 GiB)", bytes);
+}
 
 // Reads the header of the next record. A file that ends between records, without its closing magic,
 // was cut off.
@@ -66,9 +64,8 @@ bool McapReader::read_body(const Record& record) {
     cut_off(record.offset);
     return false;
   }
-  if (record.length > kLargestRecord) {
-    damage(record.offset, fmt::format("a record of {} bytes is more than this reader takes (1 GiB)",
-                                      record.length));
+  if (record.length > kLargestMcapRecord) {
+    damage(record.offset, too_large(record.length));
     return false;
   }
   body_.resize(static_cast<std::size_t>(record.length));

@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// For the same reason as kLargestRecord; a larger summary is ignored and the file streamed.
+// For the same reason as kLargestMcapRecord; a larger summary is ignored and the file streamed.
 constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 28;  // 256 MiB: some 2 million chunks
 
 // Record 0x02. The place of the summary offsets is not needed.

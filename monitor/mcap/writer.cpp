@@ -208,23 +208,28 @@ void McapWriter::metadata(std::string_view name, const McapMap& values) {
   put_out(out_.view());
 }
 
-// Writes the open chunk with the indexes of its messages.
+// Writes the open chunk with the indexes of its messages. The checksum is of the records before
+// they are compressed.
 void McapWriter::flush() {
   if (!ok() || chunk_.size() == 0) return;
   out_.clear();
+  if (options_.compression == McapCompression::kZstd) compress_zstd(chunk_.view(), compressed_);
   McapChunkIndex index;
+  index.compression = name(compressed_.empty() ? McapCompression::kStored : McapCompression::kZstd);
+  const std::span<const std::byte> stored = compressed_.empty() ? chunk_.view() : compressed_;
   index.start_ns = chunk_start_ns_;
   index.end_ns = chunk_end_ns_;
   index.offset = offset_;
-  index.compressed = index.uncompressed = chunk_.size();
+  index.compressed = stored.size();
+  index.uncompressed = chunk_.size();
   const std::size_t record = out_.begin_record(McapKind::kChunk);
   out_.put(chunk_start_ns_);
   out_.put(chunk_end_ns_);
   out_.put(std::uint64_t{chunk_.size()});
   out_.put(mcap_crc(0, chunk_.view()));
-  out_.put_text("");  // not compressed
-  out_.put(std::uint64_t{chunk_.size()});
-  out_.put_raw(chunk_.view());
+  out_.put_text(index.compression);
+  out_.put(index.compressed);
+  out_.put_raw(stored);
   out_.end_record(record);
   index.length = out_.size();
   write_message_indexes(index);

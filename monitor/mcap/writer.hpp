@@ -1,5 +1,6 @@
-// Writes MCAP files: uncompressed chunks with message indexes, a summary and checksums, so that
-// every reader can seek in them, and a file that a crash cut off loses no more than its last chunk.
+// Writes MCAP files: chunks, compressed or not, with message indexes, a summary and checksums, so
+// that every reader can seek in them, and a file that a crash cut off loses no more than its last
+// chunk.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/mcap/compression.hpp"
 #include "monitor/mcap/format.hpp"
 
 namespace clearance {
@@ -22,7 +24,8 @@ struct McapWriterOptions {
   // first.
   std::size_t chunk_bytes = std::size_t{1} << 20;
   std::uint64_t chunk_span_ns = 200'000'000;
-  bool overwrite = true;  // false: an existing file is an error
+  McapCompression compression = McapCompression::kStored;  // or zstd
+  bool overwrite = true;                                   // false: an existing file is an error
 };
 
 // Errors are kept: after the first one nothing more is written, and error() says what happened to
@@ -39,7 +42,7 @@ class McapWriter {
   [[nodiscard]] bool ok() const noexcept { return error_.empty(); }
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] std::uint64_t messages() const noexcept { return statistics_.messages; }
-  // Of the file so far, with the chunk that is still in memory.
+  // Of the file so far, with the chunk that is still in memory, before it is compressed.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return offset_ + chunk_.size(); }
 
   // Equal schemas are written once. Returns the channel's id, from 1.
@@ -96,7 +99,8 @@ class McapWriter {
   McapBytes chunk_;                // its records
   std::uint64_t chunk_messages_ = 0;
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
-  McapBytes out_;  // scratch
+  std::vector<std::byte> compressed_;  // scratch
+  McapBytes out_;                      // scratch
 
   McapStatistics statistics_;
   std::vector<McapChunkIndex> chunk_indexes_;

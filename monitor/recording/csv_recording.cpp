@@ -152,7 +152,8 @@ class BatchWriter {
 
 // Rows of fixed objects are counted but not written: the cell gives their poses.
 CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::filesystem::path& out,
-                              const Scene* scene, const std::function<bool()>& stop) {
+                              const Scene* scene, const RecordingOptions& options,
+                              const std::function<bool()>& stop) {
   CsvRecordingResult result;
   Ids ids(scene);
   check(csv, ids, stop, result);
@@ -160,7 +161,7 @@ CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::files
 
   const Scene made = scene == nullptr ? scene_of(csv, ids.names()) : Scene{};
   const Scene& named = scene == nullptr ? made : *scene;
-  RecordingWriter writer(out, named.topics);
+  RecordingWriter writer(out, named.topics, options);
   result.begun = writer.ok();
   writer.catalogue(*make_catalogue(named), result.first_ns);
   BatchWriter batches(writer, named.revision);

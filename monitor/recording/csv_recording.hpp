@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "monitor/recording/options.hpp"
 
 namespace clearance {
 
@@ -27,6 +28,7 @@ struct CsvRecordingResult {
 // written. `stop` is asked every 1,024 rows: true ends it, with an error that says how far it came.
 [[nodiscard]] CsvRecordingResult record_csv(const std::filesystem::path& csv,
                                             const std::filesystem::path& out, const Scene* scene,
+                                            const RecordingOptions& options = {},
                                             const std::function<bool()>& stop = {});
 
 }  // namespace clearance

@@ -28,13 +28,30 @@ std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKi
 
 }  // namespace
 
-RecordingReader::RecordingReader(const std::filesystem::path& file, const McapWindow& window)
-    : mcap_(file, window) {}
+RecordingReader::RecordingReader(const std::vector<std::filesystem::path>& files,
+                                 const McapWindow& window)
+    : files_(files), window_(window) {
+  open_.push_back(std::make_unique<McapReader>(files_.front(), window_));
+}
+
+// A file is opened when the one before has ended.
+bool RecordingReader::next(RecordedMessage& message) {
+  while (!next_in_file(message)) {
+    if (!error().empty() || open_.size() == files_.size()) return false;
+    open_.push_back(std::make_unique<McapReader>(files_[open_.size()], window_));
+  }
+  return true;
+}
+
+double RecordingReader::progress() const noexcept {
+  return (static_cast<double>(open_.size() - 1) + open_.back()->progress()) /
+         static_cast<double>(files_.size());
+}
 
 // Each channel's kind is looked up once.
-bool RecordingReader::next(RecordedMessage& message) {
+bool RecordingReader::next_in_file(RecordedMessage& message) {
   McapMessage raw;
-  while (mcap_.next(raw)) {
+  while (open_.back()->next(raw)) {
     const auto [known, added] = kinds_.try_emplace(raw.channel);
     if (added) known->second = kind_of(*raw.channel);
     if (!known->second) continue;
@@ -46,11 +63,12 @@ bool RecordingReader::next(RecordedMessage& message) {
 }
 
 // Metadata written by the recorder; files of other origin have none.
-std::string RecordingReader::build() const {
-  const auto about = mcap_.metadata().find(std::string(kRecordingMetadata));
-  if (about == mcap_.metadata().end()) return {};
-  const auto build = about->second.find("build");
-  return build == about->second.end() ? std::string() : build->second;
+std::string RecordingReader::about(const std::string& key) const {
+  const McapReader& mcap = *open_.back();
+  const auto about = mcap.metadata().find(std::string(kRecordingMetadata));
+  if (about == mcap.metadata().end()) return {};
+  const auto value = about->second.find(key);
+  return value == about->second.end() ? std::string() : value->second;
 }
 
 // A file with a summary tells at once whether it has reports; without one, every message may be
@@ -67,7 +85,8 @@ RecordingOutline outline(const std::filesystem::path& file) {
   while (reader.next(message)) {
     if (std::exchange(first, false)) {
       found.first_ns = message.log_ns;
-      found.build = reader.build();  // stands in front
+      found.build = reader.about("build");  // stands in front
+      found.some_without_pairs = !reader.about("pairs_every").empty();
     }
     if (message.kind == TopicKind::kDistances) found.has_reports = true;
     if (message.kind == TopicKind::kCatalogue && !found.catalogue) {

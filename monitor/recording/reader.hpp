@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "monitor/mcap/reader.hpp"
 #include "monitor/recording/topic_schema.hpp"
@@ -26,23 +28,35 @@ struct RecordedMessage {
 // McapReader does.
 class RecordingReader {
  public:
-  explicit RecordingReader(const std::filesystem::path& file, const McapWindow& window = {});
+  explicit RecordingReader(const std::filesystem::path& file, const McapWindow& window = {})
+      : RecordingReader(std::vector{file}, window) {}
+  // Of one recording, in their order; at least one. Damage in one of them ends the reading.
+  explicit RecordingReader(const std::vector<std::filesystem::path>& files,
+                           const McapWindow& window = {});
 
   // Other topics are passed over.
   [[nodiscard]] bool next(RecordedMessage& message);
 
   // After next() returned false; see McapReader.
-  [[nodiscard]] const std::string& error() const noexcept { return mcap_.error(); }
-  [[nodiscard]] bool readable() const noexcept { return mcap_.readable(); }
-  [[nodiscard]] double progress() const noexcept { return mcap_.progress(); }
-  [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
-    return mcap_.summary();
+  [[nodiscard]] const std::string& error() const noexcept { return open_.back()->error(); }
+  [[nodiscard]] bool readable() const noexcept {
+    return open_.size() > 1 || open_.back()->readable();
   }
-  // Of the reports, as the metadata seen so far tell it; empty: they do not.
-  [[nodiscard]] std::string build() const;
+  // Share of the files that has been read, 0 to 1.
+  [[nodiscard]] double progress() const noexcept;
+  // Of the first file.
+  [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
+    return open_.front()->summary();
+  }
+  // What the metadata seen so far tell of the recording under this key; empty: nothing.
+  [[nodiscard]] std::string about(const std::string& key) const;
 
  private:
-  McapReader mcap_;
+  [[nodiscard]] bool next_in_file(RecordedMessage& message);
+
+  std::vector<std::filesystem::path> files_;
+  McapWindow window_;
+  std::vector<std::unique_ptr<McapReader>> open_;  // one after the other: channels stay valid
   std::map<const McapChannel*, std::optional<TopicKind>> kinds_;
 };
 
@@ -51,11 +65,13 @@ struct RecordingOutline {
   std::string error;  // not empty: the file cannot be read at all
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one
   bool has_reports = false;
-  std::string build;          // of the reports; empty: the recording does not say
-  std::int64_t first_ns = 0;  // log time of the first message
+  std::string build;                // of the reports; empty: the recording does not say
+  bool some_without_pairs = false;  // of the reports: RecordingOptions::pairs_every
+  std::int64_t first_ns = 0;        // log time of the first message
 };
 
-// Reads as far as it takes to know: a few messages of what our recorders write.
+// Reads as far as it takes to know: a few messages of what our recorders write. Of a recording of
+// several files, the first one.
 [[nodiscard]] RecordingOutline outline(const std::filesystem::path& file);
 
 }  // namespace clearance

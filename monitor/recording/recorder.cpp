@@ -24,9 +24,10 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
 
 // The catalogue comes first: it names the ids that every message after it uses.
 Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
-                   bool overwrite)
+                   const RecordingOptions& options)
     : scene_(scene),
-      writer_(file, scene.topics, {.overwrite = overwrite}),
+      options_(options),
+      writer_(file, scene.topics, options),
       batch_(make_batch(clearance_msg_kMaxPoses)),
       distances_(make_distances(scene)),
       zones_(scene.zones.size()),
@@ -45,14 +46,19 @@ void Recorder::poses(const PoseBatch& batch) {
                       std::vector<std::byte>(cdr.begin(), cdr.end())});
 }
 
-// Inputs stand in front of the report that they led to, in the order of use.
+// Inputs stand in front of the report that they led to, in the order of use. A file ends behind the
+// zones of a report, and the next one begins with the state of every zone.
 void Recorder::report(const Report& report, std::span<const SourceUse> sources,
                       std::int64_t publish_ns) {
   last_ns_ = report.now_ns;
   write_used(sources, report.now_ns);
-  to_wire(report, sources, publish_ns, *distances_);
-  writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
+  if (writer_.holds(TopicKind::kDistances)) {
+    to_wire(report, sources, publish_ns, *distances_);
+    if (!keeps_pairs(options_, report.cycle)) distances_->pairs._length = 0;
+    writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
+  }
   write_zones(report);
+  if (writer_.roll(report.now_ns)) zones_ = WrittenZones(scene_.zones.size());
 }
 
 // Batches may already wait that belong to later ticks: all up to the last one that this tick names.

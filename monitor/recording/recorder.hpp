@@ -20,9 +20,9 @@ namespace clearance {
 // full disk, a file that was deleted) nothing more is written and error() says why.
 class Recorder {
  public:
-  // Writes the catalogue. `overwrite` false: an existing file is an error.
+  // Writes the catalogue.
   Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
-           bool overwrite = false);
+           const RecordingOptions& options = {.overwrite = false});
 
   // A batch that a tick used, of poses or of joints, in the order of use; written in front of that
   // tick's report.
@@ -44,6 +44,9 @@ class Recorder {
   [[nodiscard]] const std::string& error() const noexcept { return writer_.error(); }
   [[nodiscard]] std::uint64_t messages() const noexcept { return writer_.messages(); }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return writer_.bytes(); }
+  // The file that is written, and how many there are by now.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return writer_.file(); }
+  [[nodiscard]] std::uint64_t files() const noexcept { return writer_.part(); }
 
  private:
   struct Waiting {  // a batch whose report has not come yet
@@ -59,6 +62,7 @@ class Recorder {
   void write_zones(const Report& report);
 
   const Scene& scene_;
+  RecordingOptions options_;
   RecordingWriter writer_;
   std::vector<Waiting> waiting_;
   Sample<clearance_msg_PoseBatch> batch_;

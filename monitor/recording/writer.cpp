@@ -1,26 +1,39 @@
-// Gives each of the six topics a channel at the start, so that channel ids do not depend on what
-// is written first.
+// Gives each of the six topics a channel at the start of a file, so that channel ids do not depend
+// on what is written first.
 #include "monitor/recording/writer.hpp"
+
+#include "monitor/files/numbered_file.hpp"
 
 namespace clearance {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
-                                 const McapWriterOptions& options)
-    : mcap_(file, options) {
+                                 const RecordingOptions& options)
+    : file_(file), topics_(topics), options_(options) {
+  open();
+}
+
+void RecordingWriter::open() {
+  mcap_.emplace(file_,
+                McapWriterOptions{.compression = options_.compress ? McapCompression::kZstd
+                                                                   : McapCompression::kStored,
+                                  .overwrite = options_.overwrite});
   for (const Topic& topic : kTopics) {
+    if (!holds(topic.kind)) continue;
     channels_[index(topic.kind)] =
-        mcap_.add_channel(topic_schema(topic.kind), topics.*topic.name, kCdrEncoding);
+        mcap_->add_channel(topic_schema(topic.kind), topics_.*topic.name, kCdrEncoding);
   }
 }
 
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.
 void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
-  McapMap about = {{"version", CLEARANCE_VERSION},
-                   {"scene", catalogue.scene},
-                   {"scene_revision", std::to_string(catalogue.scene_revision)},
-                   {"cell", catalogue.cell_yaml}};
-  if (!build.empty()) about["build"] = build;
-  mcap_.metadata(kRecordingMetadata, about);
+  about_ = {{"version", CLEARANCE_VERSION},
+            {"scene", catalogue.scene},
+            {"scene_revision", std::to_string(catalogue.scene_revision)},
+            {"cell", catalogue.cell_yaml}};
+  if (!build.empty()) about_["build"] = build;
+  if (options_.pairs_every > 1) about_["pairs_every"] = std::to_string(options_.pairs_every);
+  if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
+  mcap_->metadata(kRecordingMetadata, about_);
 }
 
 // The same content as metadata and as a message of the topic.
@@ -33,8 +46,41 @@ void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::i
 // MCAP times are unsigned; ours are never negative.
 void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                             std::span<const std::byte> cdr) {
-  mcap_.write(channels_[index(kind)], static_cast<std::uint64_t>(log_ns),
-              static_cast<std::uint64_t>(publish_ns), cdr);
+  if (!holds(kind)) return;
+  if (!began_ns_) began_ns_ = log_ns;
+  if (kind == TopicKind::kCatalogue) catalogue_.emplace(cdr.begin(), cdr.end());
+  mcap_->write(channels_[index(kind)], static_cast<std::uint64_t>(log_ns),
+               static_cast<std::uint64_t>(publish_ns), cdr);
+}
+
+bool RecordingWriter::is_due(std::int64_t log_ns) const noexcept {
+  const bool more_than_a_catalogue = mcap_->messages() > 1;
+  if (!ok() || !more_than_a_catalogue) return false;
+  const bool large = options_.roll_bytes > 0 && mcap_->bytes() >= options_.roll_bytes;
+  const bool long_enough = options_.roll_ns > 0 && log_ns - *began_ns_ >= options_.roll_ns;
+  return large || long_enough;
+}
+
+// The next file never replaces one that is there, unless the first one may. A file that could not
+// be closed ends the recording.
+bool RecordingWriter::roll(std::int64_t log_ns) {
+  if (!is_due(log_ns) || !mcap_->close()) return false;
+  messages_before_ += mcap_->messages();
+  bytes_before_ += mcap_->bytes();
+  file_ = next_number(file_);
+  if (!options_.overwrite) file_ = first_free(file_);
+  began_ns_.reset();
+  ++part_;
+  open();
+  if (!about_.empty()) {
+    about_["part"] = std::to_string(part_);
+    mcap_->metadata(kRecordingMetadata, about_);
+  }
+  if (catalogue_) {
+    const std::vector<std::byte> last = *catalogue_;
+    write(TopicKind::kCatalogue, log_ns, log_ns, std::span<const std::byte>(last));
+  }
+  return true;
 }
 
 }  // namespace clearance

@@ -1,28 +1,33 @@
-// A recording: an MCAP file of our six topics, with the cell that it was made with.
+// A recording: an MCAP file of our six topics, with the cell that it was made with; or several
+// files, one after the other.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "config/scene.hpp"
 #include "monitor/mcap/writer.hpp"
+#include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
 // Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
-// build, the one that made the reports (monitor/build_info/build_info.hpp), where that is known.
+// build, the one that made the reports (monitor/build_info/build_info.hpp), where that is known; of
+// a recording of several files `part`, from 1; pairs_every, where it is not 1.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Errors are kept, as McapWriter does. Not for several threads at once.
 class RecordingWriter {
  public:
   RecordingWriter(const std::filesystem::path& file, const Topics& topics,
-                  const McapWriterOptions& options = {});
+                  const RecordingOptions& options = {});
 
   // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
   // that makes the reports; empty: not known.
@@ -31,28 +36,50 @@ class RecordingWriter {
   // Only the metadata.
   void describe(const clearance_msg_Catalogue& catalogue, const std::string& build = {});
 
-  // `publish_ns`: the source's stamp where there is one.
+  // `publish_ns`: the source's stamp where there is one. Topics that are left out are not written.
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
              std::span<const std::byte> cdr);
   template <class T>
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns, const T& sample) {
-    write(kind, log_ns, publish_ns, encoder_.encode(sample));
+    if (holds(kind)) write(kind, log_ns, publish_ns, encoder_.encode(sample));
   }
+  [[nodiscard]] bool holds(TopicKind kind) const { return !options_.left_out.contains(kind); }
+
+  // Begins the next file, with the last catalogue, when this one is large or long enough. To be
+  // asked where a file may end: behind a report and what belongs to it. True: it did.
+  bool roll(std::int64_t log_ns);
 
   // What was written so far survives a crash.
-  void flush() { mcap_.flush(); }
+  void flush() { mcap_->flush(); }
   // As McapWriter::check.
-  bool check() { return mcap_.check(); }
-  bool close() { return mcap_.close(); }
-  [[nodiscard]] bool ok() const noexcept { return mcap_.ok(); }
-  [[nodiscard]] const std::string& error() const noexcept { return mcap_.error(); }
-  [[nodiscard]] std::uint64_t messages() const noexcept { return mcap_.messages(); }
-  [[nodiscard]] std::uint64_t bytes() const noexcept { return mcap_.bytes(); }
+  bool check() { return mcap_->check(); }
+  bool close() { return mcap_->close(); }
+  [[nodiscard]] bool ok() const noexcept { return mcap_->ok(); }
+  [[nodiscard]] const std::string& error() const noexcept { return mcap_->error(); }
+  // In all files.
+  [[nodiscard]] std::uint64_t messages() const noexcept {
+    return messages_before_ + mcap_->messages();
+  }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_before_ + mcap_->bytes(); }
+  // The one that is written.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  [[nodiscard]] std::uint64_t part() const noexcept { return part_; }
 
  private:
-  McapWriter mcap_;
+  void open();
+  [[nodiscard]] bool is_due(std::int64_t log_ns) const noexcept;
+
+  std::filesystem::path file_;
+  Topics topics_;
+  RecordingOptions options_;
+  std::optional<McapWriter> mcap_;
   std::array<std::uint16_t, kTopics.size()> channels_{};
   CdrEncoder encoder_;
+  std::uint64_t part_ = 1;
+  std::optional<std::int64_t> began_ns_;  // the first log time in this file
+  std::uint64_t messages_before_ = 0, bytes_before_ = 0;
+  McapMap about_;                                    // the last description
+  std::optional<std::vector<std::byte>> catalogue_;  // the last one, as CDR
 };
 
 }  // namespace clearance

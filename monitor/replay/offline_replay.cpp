@@ -51,13 +51,14 @@ std::string other_build(const std::string& recorded) {
 // One replay from its outline to its result.
 class Replay {
  public:
-  Replay(const Scene& scene, const std::filesystem::path& recording,
-         const OfflineReplayOptions& options, const RecordingOutline& outline)
+  Replay(const Scene& scene, TickFeed feed, const OfflineReplayOptions& options,
+         const RecordingOutline& outline)
       : scene_(scene),
         options_(options),
         has_reports_(outline.has_reports),
+        some_without_pairs_(outline.some_without_pairs),
         other_build_(other_build(outline.build)),
-        feed_(recording, scene, outline),
+        feed_(std::move(feed)),
         expectations_(scene, options.expect_min_distance, options.expect_no_zone),
         reference_(reference_of(scene, options)),
         zones_(scene),
@@ -76,7 +77,7 @@ class Replay {
   void compare(const TickInput& input, const Report& report);
   void compare_zones();
   void finish_reference();
-  [[nodiscard]] std::string nothing_in_window() const;
+  [[nodiscard]] std::string nothing_in_window();
   void note_counts();
   void show_progress();
   void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
@@ -86,7 +87,7 @@ class Replay {
 
   const Scene& scene_;
   const OfflineReplayOptions& options_;
-  bool has_reports_;
+  bool has_reports_, some_without_pairs_;
   std::string other_build_;  // what to say of it where something differs
   TickFeed feed_;
   Expectations expectations_;
@@ -108,6 +109,7 @@ class Replay {
 
 // Why the replay cannot be run at all; empty: it can.
 std::string Replay::refusal() const {
+  if (feed_.log() != nullptr && !feed_.damage().empty()) return feed_.damage();
   if (!expectations_.error().empty()) return expectations_.error();
   if (reference_ && !reference_->error().empty()) return reference_->error();
   if (!feed_.objects().any()) {
@@ -116,6 +118,11 @@ std::string Replay::refusal() const {
         "it was made for, or one with the same names";
     for (const std::string& note : feed_.objects().notes()) text += fmt::format("\n{}", note);
     return text;
+  }
+  if (has_reports_ && options_.tick_hz) {
+    return "the recording holds the reports of the daemon's ticks, which are replayed as they "
+           "were: "
+           "no other rate of ticks can be asked for";
   }
   if (!options_.compare) return {};
   if (!has_reports_) return "nothing to compare with: the recording holds no reports";
@@ -132,6 +139,9 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   if (!result_.error.empty()) return std::move(result_);
   result_.notes = feed_.objects().notes();
   run_ticks(on_tick);
+  if (feed_.log() != nullptr) {
+    for (const std::string& note : feed_.log()->notes()) result_.notes.push_back(note);
+  }
   result_.damage = feed_.damage();
   result_.batches = feed_.batches();
   if (!result_.stopped) judge_the_whole();
@@ -237,6 +247,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 // Only the first difference is reported: later ones are its consequences.
 void Replay::compare(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
+  if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
   const auto difference =
       report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
   ++result_.compared;
@@ -263,7 +274,8 @@ void Replay::compare_zones() {
 }
 
 // The reason why no tick was judged.
-std::string Replay::nothing_in_window() const {
+std::string Replay::nothing_in_window() {
+  if (result_.ticks == 0 && feed_.log() != nullptr) return std::exchange(result_.damage, {});
   if (result_.ticks == 0) {
     return result_.damage.empty() ? "the recording holds neither reports nor poses"
                                   : "nothing can be replayed: no tick is whole before the damage";
@@ -295,6 +307,8 @@ void Replay::note_counts() {
   };
   note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
   note(feed_.of_other_scenes(), "batches were made for another scene and left out");
+  note(feed_.silences(),
+       "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
   note(feed_.undecodable(), "messages do not decode as what their channel says and were left out");
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
     note(result_.rejected[cause],
@@ -316,13 +330,22 @@ void Replay::show_progress() {
 OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
                              const OfflineReplayOptions& options,
                              const std::function<void(const ReplayedTick&)>& on_tick) {
+  if (is_input_log(recording)) {
+    InputLogOptions log{.joint_topics = options.joint_topics, .joints = options.joints};
+    TickFeed feed(open_input_log(recording, scene, log), scene,
+                  options.tick_hz.value_or(scene.rate_hz));
+    return Replay(scene, std::move(feed), options, {}).run(on_tick);
+  }
   const RecordingOutline outlined = outline(recording);
   if (!outlined.error.empty()) {
     OfflineReplay failed;
     failed.error = outlined.error;
     return failed;
   }
-  return Replay(scene, recording, options, outlined).run(on_tick);
+  std::vector<std::filesystem::path> files{recording};
+  files.insert(files.end(), options.continued_in.begin(), options.continued_in.end());
+  TickFeed feed(files, scene, outlined, options.tick_hz.value_or(0.0));
+  return Replay(scene, std::move(feed), options, outlined).run(on_tick);
 }
 
 }  // namespace clearance

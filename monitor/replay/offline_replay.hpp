@@ -1,6 +1,6 @@
-// Runs Monitor::tick on a recording, without a clock and without DDS, and gets the same reports
-// again as fast as they can be computed. This is for a user's own tests, which
-// find_package(clearance) and link clearance::replay:
+// Runs Monitor::tick on a recording, a ROS 2 bag or a joint log, without a clock and without DDS,
+// and gets the same reports again as fast as they can be computed. This is for a user's own tests,
+// which find_package(clearance) and link clearance::replay:
 //
 //   #include <config/cell_file.hpp>
 //   #include <monitor/replay/offline_replay.hpp>
@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,6 +41,18 @@ struct OfflineReplayOptions {
   double end_s = std::numeric_limits<double>::infinity();
 
   std::optional<Comparison> compare = {};  // with the recorded reports and zones
+
+  // Where a recording of several files goes on, in their order.
+  std::vector<std::filesystem::path> continued_in = {};
+
+  // Ticks a second, where the recording holds no reports, which say when the ticks were; 0: only
+  // when something came. Not stated: the cell's rate for a bag or a joint log, 0 for recordings of
+  // ours.
+  std::optional<double> tick_hz = {};
+  // Of a bag (monitor/bags): topics of joint states; empty: all that are named joint_states.
+  std::vector<std::string> joint_topics = {};
+  // Of a bag or a joint log: positions of joints that it does not have, by name, rad or m.
+  std::map<std::string, double> joints = {};
 
   // Expectations begin when every moving object of the cell has been seen once.
   // Every pair's distance is certified to be at least this, m.
@@ -103,7 +116,9 @@ struct OfflineReplay {
   [[nodiscard]] std::string text() const;
 };
 
-// The same recording and cell give the same ticks, bit for bit.
+// The same recording and cell give the same ticks, bit for bit. `recording`: one of ours; a bag of
+// ROS 2 (MCAP, SQLite 3, or the folder of either); or joint positions as CSV (t_ns, a column a
+// joint).
 [[nodiscard]] OfflineReplay replay_offline(
     const Scene& scene, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},

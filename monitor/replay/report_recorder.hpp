@@ -18,11 +18,11 @@ class ReportRecorder {
 
   void add(const ReplayedTick& tick) {
     // The catalogue is stamped with the first tick: nothing else here has a time.
-    if (!recorder_) recorder_.emplace(file_, scene_, tick.report.now_ns, true);
+    if (!recorder_) recorder_.emplace(file_, scene_, tick.report.now_ns, RecordingOptions{});
     recorder_->report(tick.report, tick.sources);
   }
   bool close() {
-    if (!recorder_) recorder_.emplace(file_, scene_, 0, true);
+    if (!recorder_) recorder_.emplace(file_, scene_, 0, RecordingOptions{});
     return recorder_->close();
   }
   [[nodiscard]] std::string error() const { return recorder_ ? recorder_->error() : ""; }

@@ -3,6 +3,7 @@
 #include "monitor/replay/tick_feed.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "monitor/wire/convert.hpp"
 
@@ -13,18 +14,30 @@ namespace {
 // DDS, topics overtake each other.
 constexpr std::int64_t kReadAheadNs = 2'000'000'000;
 
+// After so long without a batch every pose is late, and more ticks show nothing new: a log may have
+// pauses of hours.
+constexpr std::int64_t kSilenceNs = 10'000'000'000;
+
 }  // namespace
 
-TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
-                   const RecordingOutline& outline)
-    : reader_(file),
+TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
+                   const RecordingOutline& outline, double tick_hz)
+    : reader_(files),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
       joint_names_(scene),
       sources_(scene),
-      by_report_(outline.has_reports) {}
+      by_report_(outline.has_reports),
+      tick_hz_(tick_hz) {}
 
-// Recordings with reports are replayed tick by tick as the daemon ran; others have a tick wherever
-// poses have a new time.
+TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
+    : log_(std::move(log)),
+      objects_(scene, nullptr),
+      joint_names_(scene),
+      sources_(scene),
+      by_report_(false),
+      tick_hz_(tick_hz) {}
+
+// Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
   tick.samples.clear();
   tick.joints.clear();
@@ -32,14 +45,27 @@ bool TickFeed::next(TickInput& tick) {
   tick.recorded = nullptr;
   tick.restart = false;
   tick.complete = true;
-  return by_report_ ? next_by_report(tick) : next_by_time(tick);
+  if (by_report_) return next_by_report(tick);
+  return tick_hz_ > 0.0 ? next_by_rate(tick) : next_by_time(tick);
 }
 
-// Reads one message into the queue of its kind.
 bool TickFeed::read_one() {
+  if (log_) {
+    LoggedBatch logged;
+    if (!log_->next(logged)) return false;
+    read_to_ns_ = logged.log_ns;
+    batches_waiting_.push_back({std::move(logged.batch), logged.log_ns});
+    return true;
+  }
   RecordedMessage message;
-  if (!reader_.next(message)) return false;
+  if (!reader_->next(message)) return false;
   read_to_ns_ = message.log_ns;
+  read_message(message);
+  return true;
+}
+
+// Into the queue of its kind.
+void TickFeed::read_message(const RecordedMessage& message) {
   if (message.kind == TopicKind::kPoses) read_batch(message);
   if (message.kind == TopicKind::kJointStates) read_joints(message);
   if (message.kind == TopicKind::kDistances) {
@@ -54,7 +80,6 @@ bool TickFeed::read_one() {
     Sample<clearance_msg_ZoneState> zone;
     if (decoder_.decode(message.cdr, zone)) zones_.push_back(*zone);
   }
-  return true;
 }
 
 // Decodes a batch and gives it the ids of the scene.
@@ -195,7 +220,38 @@ bool TickFeed::next_by_time(TickInput& tick) {
   tick.time.now_ns = batches_waiting_.front().log_ns;
   while (read_to_ns_ == tick.time.now_ns && read_one()) {
   }
-  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns == tick.time.now_ns) {
+  take_until_now(tick);
+  return true;
+}
+
+// The next batch is known before a tick is made that has none: behind the last one there are no
+// more.
+bool TickFeed::next_by_rate(TickInput& tick) {
+  while (batches_waiting_.empty()) {
+    if (!read_one()) return false;
+  }
+  const std::int64_t next_ns = batches_waiting_.front().log_ns;
+  const auto now_at = [this](std::uint64_t number) {
+    return began_ns_ + std::llround(static_cast<double>(number) * 1e9 / tick_hz_);
+  };
+  const bool silent = at_rate_ > 0 && next_ns - last_batch_ns_ > 2 * kSilenceNs &&
+                      now_at(at_rate_) - last_batch_ns_ > kSilenceNs;
+  if (at_rate_ == 0 || silent) {
+    began_ns_ = next_ns;
+    at_rate_ = 0;
+    if (silent) ++silences_;
+  }
+  tick.time.now_ns = now_at(at_rate_++);
+  while (read_to_ns_ <= tick.time.now_ns && read_one()) {
+  }
+  take_until_now(tick);
+  return true;
+}
+
+// In the order in which they came.
+void TickFeed::take_until_now(TickInput& tick) {
+  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns <= tick.time.now_ns) {
+    last_batch_ns_ = batches_waiting_.front().log_ns;
     const PoseBatch& batch = batches_waiting_.front().batch;
     add(batch, tick);
     const auto use = std::ranges::find(tick.sources, batch.source, &SourceUse::source);
@@ -206,7 +262,6 @@ bool TickFeed::next_by_time(TickInput& tick) {
     }
     batches_waiting_.pop_front();
   }
-  return true;
 }
 
 }  // namespace clearance

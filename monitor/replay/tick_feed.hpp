@@ -1,21 +1,26 @@
-// Reads a recording tick by tick: the poses that each tick of the daemon took in, and its time.
+// Reads a recording, or a log of somebody else's, tick by tick: the poses that each tick of the
+// daemon took in, and its time.
 //
 // Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
 // report names as used (by source and sequence number), wherever they stand in the file. Where it
-// holds none (pose logs), a tick is a distinct log time and gets the batches of that time in file
-// order.
+// holds none, ticks are at a fixed rate, as the daemon's are, from the first batch on, and each
+// gets the batches that came since the one before; or, without a rate, a tick is a distinct log
+// time and gets the batches of that time in file order.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "config/scene.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
@@ -40,7 +45,12 @@ struct TickInput {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  TickFeed(const std::filesystem::path& file, const Scene& scene, const RecordingOutline& outline);
+  // A recording of ours, in one file or several. `tick_hz`: unless it holds reports; 0: ticks at
+  // log times.
+  TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
+           const RecordingOutline& outline, double tick_hz = 0.0);
+  // Somebody else's.
+  TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 
   // The next tick; its content is valid until the next call. False at the end or the damage.
   [[nodiscard]] bool next(TickInput& tick);
@@ -50,14 +60,22 @@ class TickFeed {
   [[nodiscard]] const std::vector<clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
-  [[nodiscard]] const std::string& damage() const noexcept { return reader_.error(); }
-  [[nodiscard]] double progress() const noexcept { return reader_.progress(); }
+  [[nodiscard]] const std::string& damage() const noexcept {
+    return log_ ? log_->error() : reader_->error();
+  }
+  [[nodiscard]] double progress() const noexcept {
+    return log_ ? log_->progress() : reader_->progress();
+  }
+  // Null: a recording of ours.
+  [[nodiscard]] const InputLog* log() const noexcept { return log_.get(); }
 
   // Counts of what could not be used.
   [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
   [[nodiscard]] std::uint64_t not_in_the_file() const noexcept { return not_in_the_file_; }
   [[nodiscard]] std::uint64_t undecodable() const noexcept { return undecodable_; }
+  // How often nothing came for so long that ticks at a fixed rate were left out.
+  [[nodiscard]] std::uint64_t silences() const noexcept { return silences_; }
 
  private:
   struct Waiting {
@@ -70,10 +88,13 @@ class TickFeed {
   };
 
   [[nodiscard]] bool read_one();
+  void read_message(const RecordedMessage& message);
   void read_batch(const RecordedMessage& message);
   void read_joints(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] bool next_by_time(TickInput& tick);
+  [[nodiscard]] bool next_by_rate(TickInput& tick);
+  void take_until_now(TickInput& tick);
   [[nodiscard]] bool all_there(std::span<const SourceUse> sources) const;
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
@@ -81,11 +102,16 @@ class TickFeed {
   void add(const PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
 
-  RecordingReader reader_;
+  std::unique_ptr<InputLog> log_;          // or
+  std::optional<RecordingReader> reader_;  // this
   ObjectMap objects_;
   JointNames joint_names_;
   SourceNumbers sources_;
   bool by_report_;
+  double tick_hz_;             // 0: at log times
+  std::int64_t began_ns_ = 0;  // the first tick at that rate
+  std::int64_t last_batch_ns_ = 0;
+  std::uint64_t at_rate_ = 0;  // ticks since then
   CdrDecoder decoder_;
   Sample<clearance_msg_PoseBatch> wire_batch_;
   Sample<clearance_msg_JointStates> wire_joints_;
@@ -99,6 +125,7 @@ class TickFeed {
   std::int64_t read_to_ns_ = 0;
   std::uint64_t last_cycle_ = 0;
   std::uint64_t batches_ = 0, of_other_scenes_ = 0, not_in_the_file_ = 0, undecodable_ = 0;
+  std::uint64_t silences_ = 0;
 };
 
 }  // namespace clearance

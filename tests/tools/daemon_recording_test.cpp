@@ -25,7 +25,10 @@ class RecordingDaemon : public testing::Test {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   void start(const ChildOptions& options = {}) {
-    daemon.emplace(kDaemon, with({cell.path(), "--record", path("run.mcap")}, dds_arguments(dds)),
+    // Uncompressed, so that the file grows fast.
+    daemon.emplace(kDaemon,
+                   with({cell.path(), "--record", path("run.mcap"), "--record-uncompressed"},
+                        dds_arguments(dds)),
                    options);
     distances.settle();
   }

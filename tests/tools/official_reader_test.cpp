@@ -64,6 +64,7 @@ TEST_F(OfficialReader, SeeksThroughTheIndex) {
   EXPECT_EQ(late, read["second_half"]);
   EXPECT_GT(late, 200);
   EXPECT_GT(read["indexed"]["statistics"]["chunkCount"], 2);
+  EXPECT_EQ(json::array({"zstd"}), read["indexed"]["compressions"]);
   EXPECT_EQ(scene.yaml, read["indexed"]["metadata"][std::string(kRecordingMetadata)]["cell"]);
 }
 

@@ -2,26 +2,34 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "config/scene.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
 
 struct RecordArguments {
   std::string out;
-  std::string cell;      // empty: none
-  std::string from_csv;  // empty: record from DDS
-  double seconds = 0.0;  // 0: until stopped
+  std::string cell;                       // empty: none
+  std::string from_csv;                   // empty: record from DDS, or
+  std::string from_bag;                   // this
+  std::vector<std::string> joint_topics;  // of the bag
+  double seconds = 0.0;                   // 0: until stopped
   bool force = false;
+  RecordingArguments recording;
   DdsArguments dds;
 };
 
-// tools/record/from_csv.cpp, tools/record/subscribe.cpp. Both return the exit code. `scene` is the
+// tools/record/from_csv.cpp, from_log.cpp, subscribe.cpp. All return the exit code. `scene` is the
 // cell, or null when none was given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene,
                                   StopSignal& stop);
+// Of a bag, or joints as CSV.
+[[nodiscard]] int record_from_log(const RecordArguments& arguments, const std::string& log,
+                                  const Scene& scene, StopSignal& stop);
 [[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene,
                                   StopSignal& stop);
 

@@ -10,7 +10,8 @@ namespace clearance {
 
 int record_from_csv(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
   const CsvRecordingResult result =
-      record_csv(arguments.from_csv, arguments.out, scene, [&stop] { return stop.wait(0); });
+      record_csv(arguments.from_csv, arguments.out, scene,
+                 arguments.recording.options(arguments.force), [&stop] { return stop.wait(0); });
   if (!result.error.empty()) {
     print(stderr, "clearance-record: {}\n", result.error);
     if (result.begun) remove_unfinished("clearance-record", arguments.out);

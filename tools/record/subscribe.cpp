@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "monitor/app/print.hpp"
@@ -29,8 +30,9 @@ constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other to
 // Readers of all six topics; what they take goes into the recording byte for byte.
 class Subscription {
  public:
-  Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer)
-      : writer_(writer) {
+  Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer,
+               const RecordingOptions& options)
+      : writer_(writer), options_(options) {
     for (const Topic& topic : kTopics) {
       readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
@@ -99,11 +101,21 @@ class Subscription {
     bytes_.resize(ddsi_serdata_size(taken.sample));
     ddsi_serdata_to_ser(taken.sample, 0, bytes_.size(), bytes_.data());
     ++counts_[index(kind)];
-    look_into(kind);
+    const bool is_report = look_into(kind) && kind == TopicKind::kDistances;
+    if (is_report && !keeps_pairs(options_, report_->cycle)) {
+      return write_without_pairs(now_ns, taken.source_ns);
+    }
     writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
   }
 
-  void look_into(TopicKind kind) {
+  void write_without_pairs(std::int64_t now_ns, std::int64_t source_ns) {
+    const std::uint32_t pairs = std::exchange(report_->pairs._length, 0);
+    writer_.write(TopicKind::kDistances, now_ns, source_ns, *report_);
+    report_->pairs._length = pairs;
+  }
+
+  // False: it is of a kind of which nothing needs to be known, or does not decode.
+  bool look_into(TopicKind kind) {
     if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue_)) {
       writer_.describe(*catalogue_);
     } else if (kind == TopicKind::kPoses && decoder_.decode(bytes_, batch_)) {
@@ -113,10 +125,14 @@ class Subscription {
                  joints_->sequence_number);
     } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
+    } else {
+      return false;
     }
+    return true;
   }
 
   RecordingWriter& writer_;
+  RecordingOptions options_;
   std::array<dds_entity_t, kTopics.size()> readers_{};
   std::array<std::uint64_t, kTopics.size()> counts_{};
   std::vector<Taken> taken_;
@@ -146,6 +162,7 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
   while (writer.ok() && !stop.wait(0) && dds_time() < end_ns) {
     wait.wait(20'000'000);  // a signal is heard within 20 ms
     subscription.take_all();
+    writer.roll(dds_time());
     if (dds_time() - shown_ns < kSecond) continue;
     shown_ns = dds_time();
     writer.flush();
@@ -164,10 +181,11 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
                               ? arguments.dds.resolve(0, "")
                               : arguments.dds.resolve(scene->domain, scene->partition));
   const Topics topics = scene == nullptr ? Topics{} : scene->topics;
-  RecordingWriter writer(arguments.out, topics);
+  const RecordingOptions options = arguments.recording.options(arguments.force);
+  RecordingWriter writer(arguments.out, topics, options);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
   if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
-  Subscription subscription(participant, topics, writer);
+  Subscription subscription(participant, topics, writer, options);
   const std::int64_t end_ns = arguments.seconds > 0.0
                                   ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
                                   : std::numeric_limits<std::int64_t>::max();

@@ -5,13 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "config/single_robot_cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
 
 struct ReplayArguments {
-  std::string recording;
+  std::vector<std::string> recordings;  // at least one
+
+  [[nodiscard]] const std::string& recording() const { return recordings.front(); }
   double start_s = 0.0;
   double end_s = 1e18;
   bool progress = false;
@@ -25,7 +28,12 @@ struct ReplayArguments {
 
   // Offline.
   bool offline = false;
-  std::string cell;  // empty: the one in the recording
+  std::string cell;                   // empty: the one in the recording, or
+  SingleRobotOptions robot;           // this, if it has a URDF
+  std::vector<std::string> packages;  // NAME=DIRECTORY
+  std::optional<double> tick_hz;
+  std::vector<std::string> joint_topics;
+  std::vector<std::string> joints;  // NAME=POSITION
   std::string out;
   std::string csv;
   bool force = false;

@@ -1,11 +1,17 @@
+#include <fmt/format.h>
+
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -20,10 +26,32 @@ namespace {
 
 void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
 
+// The robot given, as a cell.
+std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
+  SingleRobotOptions robot = arguments.robot;
+  for (const std::string& text : arguments.packages) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      say(fmt::format("--package: found '{}'; expected NAME=DIRECTORY", text));
+      return std::nullopt;
+    }
+    robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  return read_single_robot(robot);
+}
+
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   if (!arguments.cell.empty()) return read_cell(arguments.cell);
-  const RecordingOutline found = outline(arguments.recording);
+  if (!arguments.robot.urdf.empty()) return read_robot(arguments);
+  if (is_input_log(arguments.recording())) {
+    say(
+        fmt::format("{} holds no cell; expected --urdf R.urdf and --srdf R.srdf of the robot that "
+                    "it is of, or --cell with a cell file that names it under 'robots:'",
+                    arguments.recording()));
+    return std::nullopt;
+  }
+  const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     say(found.error);
     return std::nullopt;
@@ -33,11 +61,35 @@ std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
     say("the recording holds no cell: give one with --cell");
     return std::nullopt;
   }
-  return parse_cell(yaml, arguments.recording);
+  return parse_cell(yaml, arguments.recording());
+}
+
+// NAME=POSITION, each once. False, after saying why, where one is not.
+bool read_joints(const std::vector<std::string>& texts, std::map<std::string, double>& joints) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    double position = 0.0;
+    const char* const end = text.data() + text.size();
+    const bool is_number = equals != std::string::npos && equals > 0 &&
+                           std::from_chars(text.data() + equals + 1, end, position).ptr == end &&
+                           equals + 1 < text.size() && std::isfinite(position);
+    if (!is_number) {
+      say(fmt::format("--joint: found '{}'; expected NAME=POSITION, in rad or m", text));
+      return false;
+    }
+    if (!joints.emplace(text.substr(0, equals), position).second) {
+      say(fmt::format("--joint: '{}' is given twice", text.substr(0, equals)));
+      return false;
+    }
+  }
+  return true;
 }
 
 OfflineReplayOptions options_of(const ReplayArguments& arguments) {
   OfflineReplayOptions options;
+  options.continued_in.assign(arguments.recordings.begin() + 1, arguments.recordings.end());
+  options.tick_hz = arguments.tick_hz;
+  options.joint_topics = arguments.joint_topics;
   options.start_s = arguments.start_s;
   options.end_s = arguments.end_s;
   if (arguments.compare) options.compare = Comparison::kBits;
@@ -128,6 +180,8 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
 }
 
 int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) {
+  std::map<std::string, double> joints;
+  if (!read_joints(arguments.joints, joints)) return kUsage;
   if (arguments.evaluate_all || !arguments.reference.empty()) {
     scene.evaluate_all = true;
     scene.budget = std::numeric_limits<std::uint32_t>::max();
@@ -137,11 +191,12 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
 
   ProgressBar bar(arguments.progress);
   OfflineReplayOptions options = options_of(arguments);
+  options.joints = joints;
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
   const OfflineReplay replay =
-      replay_offline(scene, arguments.recording, options,
+      replay_offline(scene, arguments.recording(), options,
                      [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
@@ -165,9 +220,11 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
     return kUsage;
   }
   for (const std::string& output : {arguments.out, arguments.csv}) {
-    if (!output_is_not_an_input("clearance-replay", output,
-                                {arguments.recording, arguments.cell, arguments.reference})) {
-      return kUsage;
+    for (const std::string& recording : arguments.recordings) {
+      if (!output_is_not_an_input("clearance-replay", output,
+                                  {recording, arguments.cell, arguments.reference})) {
+        return kUsage;
+      }
     }
     if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
   }
@@ -175,7 +232,7 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
   if (!cell) return kFailed;
   std::optional<Scene> scene = scene_or_errors(std::move(*cell));
   if (!scene) {
-    if (arguments.cell.empty())
+    if (arguments.cell.empty() && arguments.robot.urdf.empty())
       say("this is the cell as the recording keeps it, without its mesh files; give the cell file "
           "with --cell");
     return kBadCell;

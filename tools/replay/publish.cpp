@@ -161,6 +161,9 @@ class Publishing {
 
  private:
   [[nodiscard]] McapWindow window() const;
+  [[nodiscard]] std::vector<std::filesystem::path> files() const {
+    return {arguments_.recordings.begin(), arguments_.recordings.end()};
+  }
   bool wanted(const RecordedMessage& message) {
     topics_.insert(message.channel->topic);
     return arguments_.only.empty() ||
@@ -196,7 +199,7 @@ McapWindow Publishing::window() const {
 
 // Makes the writers of the channels at the beginning, and gives readers a moment to discover them.
 bool Publishing::prepare() {
-  RecordingReader reader(arguments_.recording, window());
+  RecordingReader reader(files(), window());
   RecordedMessage message;
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
@@ -238,7 +241,7 @@ bool Publishing::publish(const RecordedMessage& message) {
 
 int Publishing::run() {
   if (!prepare()) return kOk;
-  RecordingReader reader(arguments_.recording, window());
+  RecordingReader reader(files(), window());
   RecordedMessage message;
   while (reader.next(message)) {
     if (!wanted(message)) continue;
@@ -282,7 +285,7 @@ int Publishing::finish(const RecordingReader& reader) {
 }  // namespace
 
 int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
-  const RecordingOutline found = outline(arguments.recording);
+  const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;

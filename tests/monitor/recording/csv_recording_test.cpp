@@ -61,7 +61,7 @@ TEST_F(CsvRecording, StoppedHalfWayItSaysHowFarItCame) {
   for (int row = 0; row < 3000; ++row) log += std::to_string(row) + ",tool,1,2,3,1,0,0,0\n";
   write_text(folder / "log.csv", log);
   const auto stopped_when_asked = [this](int times) {
-    return record_csv(folder / "log.csv", folder / "a.mcap", nullptr,
+    return record_csv(folder / "log.csv", folder / "a.mcap", nullptr, {},
                       [times]() mutable { return --times == 0; });
   };
   const CsvRecordingResult checking = stopped_when_asked(2);

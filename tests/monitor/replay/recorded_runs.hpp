@@ -40,9 +40,10 @@ struct Run {
 };
 
 // Source 'arm' sends the hand, 'cell' the tool; each has none, one or two batches a tick.
-inline void record_run(const Scene& scene, const std::filesystem::path& file, const Run& run = {}) {
+inline void record_run(const Scene& scene, const std::filesystem::path& file, const Run& run = {},
+                       const RecordingOptions& options = {.overwrite = false}) {
   Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart);
+  Recorder recorder(file, scene, kStart, options);
   Random random(run.seed);
   std::uint64_t sequence[2] = {0, 0};
   for (int tick = 0; tick < run.ticks; ++tick) {

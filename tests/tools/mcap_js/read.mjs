@@ -4,7 +4,11 @@ import { open, readFile } from "node:fs/promises";
 
 import { parseIDL } from "@foxglove/omgidl-parser";
 import { MessageReader } from "@foxglove/omgidl-serialization";
+import { isLoaded, decompress as decompressZstd } from "@foxglove/wasm-zstd";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
+
+await isLoaded;
+const decompressHandlers = { zstd: (bytes, size) => decompressZstd(bytes, Number(size)) };
 
 class Decoder {
   #readers = new Map();
@@ -37,7 +41,7 @@ class Reading {
 }
 
 async function readStreamed(file) {
-  const reader = new McapStreamReader({ validateCrcs: true });
+  const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
   const reading = new Reading();
   const channels = new Map();
   const schemas = new Map();
@@ -67,7 +71,7 @@ async function readIndexed(file, window) {
       return buffer;
     },
   };
-  const reader = await McapIndexedReader.Initialize({ readable });
+  const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   const reading = new Reading();
   for await (const message of reader.readMessages({ validateCrcs: true, ...window })) {
     const channel = reader.channelsById.get(message.channelId);
@@ -78,6 +82,7 @@ async function readIndexed(file, window) {
     reading.metadata[metadata.name] = Object.fromEntries(metadata.metadata);
   }
   reading.statistics = reader.statistics;
+  reading.compressions = [...new Set(reader.chunkIndexes.map((chunk) => chunk.compression))];
   await handle.close();
   return reading;
 }

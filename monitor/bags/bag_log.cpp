@@ -1,0 +1,261 @@
+// Batches wait until the bag has been read two seconds further: recorders write messages of several
+// topics only nearly in the order of their times.
+#include "monitor/bags/bag_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "config/spelling.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::int64_t kDisorderNs = 2'000'000'000;
+// Batches that wait at most, however near their times are.
+constexpr std::size_t kMostWaiting = 1 << 16;
+// In the year 2116.
+constexpr std::int64_t kLastTimeNs = std::int64_t{1} << 62;
+// A stamp that is this far from when its message was recorded is of another clock.
+constexpr std::int64_t kOtherClockNs = 10'000'000'000;
+
+std::string last_name_of(const std::string& topic) { return topic.substr(topic.rfind('/') + 1); }
+
+std::set<std::uint32_t> links_of(const Scene& scene) {
+  std::set<std::uint32_t> links;
+  for (const Robot& robot : scene.robots) {
+    for (const RobotLink& link : robot.links) links.insert(link.object);
+  }
+  return links;
+}
+
+}  // namespace
+
+BagLog::BagLog(const std::filesystem::path& path, const Scene& scene,
+               const InputLogOptions& options)
+    : scene_(scene),
+      options_(options),
+      names_(scene),
+      path_(path),
+      bag_(open_bag(path)),
+      heard_(scene.variables.size()),
+      given_(scene, options.joints) {
+  error_ = given_.error();
+  ended_ = !error_.empty();
+  const std::set<std::uint32_t> links = links_of(scene);
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].fixed && !links.contains(i)) frames_[scene.objects[i].name] = i;
+  }
+  for (const Robot& robot : scene.robots) {
+    if (robot.base.kind == RobotBase::Kind::kWorld) {
+      world_from_root_link_[robot.links.front().name] = robot.base.base_from_root;
+    }
+  }
+}
+
+const std::string& BagLog::error() const noexcept {
+  return bag_->error().empty() ? error_ : bag_->error();
+}
+
+// Without a batch in all of the bag, that is the error.
+bool BagLog::next(LoggedBatch& batch) {
+  read_ahead();
+  if (waiting_.empty()) {
+    if (!given_out_ && error().empty()) error_ = nothing_of_use();
+    return false;
+  }
+  const auto first = waiting_.begin();
+  // What comes later than that is not put back in order.
+  last_ns_ = std::max(last_ns_, first->first);
+  given_out_ = true;
+  batch = {std::move(first->second), last_ns_};
+  waiting_.erase(first);
+  return true;
+}
+
+void BagLog::read_ahead() {
+  BagMessage message;
+  while (!ended_ && (waiting_.empty() || (read_to_ns_ < waiting_.begin()->first + kDisorderNs &&
+                                          waiting_.size() < kMostWaiting))) {
+    ended_ = !bag_->next(message);
+    if (ended_) break;
+    // Of a hostile bag, too, times can be added and taken from each other.
+    message.log_ns = std::clamp(message.log_ns, std::int64_t{0}, kLastTimeNs);
+    take(message);
+  }
+}
+
+BagLog::Use BagLog::use_of(const BagTopic& topic) const {
+  if (topic.encoding != "cdr") return Use::kNothing;
+  if (topic.type == kRosTransforms) {
+    const std::string name = last_name_of(topic.name);
+    return name == "tf" ? Use::kTransforms
+                        : (name == "tf_static" ? Use::kStaticTransforms : Use::kNothing);
+  }
+  if (topic.type != kRosJointState) return Use::kNothing;
+  const std::vector<std::string>& asked = options_.joint_topics;
+  const bool used = asked.empty() ? last_name_of(topic.name) == "joint_states"
+                                  : std::ranges::find(asked, topic.name) != asked.end();
+  return used ? Use::kJoints : Use::kNothing;
+}
+
+void BagLog::take(const BagMessage& message) {
+  const auto [entry, added] = topics_.try_emplace(message.topic->name);
+  Topic& topic = entry->second;
+  if (added) {
+    topic.type = message.topic->type;
+    topic.use = use_of(*message.topic);
+  }
+  ++topic.messages;
+  read_to_ns_ = std::max(read_to_ns_, message.log_ns);
+  switch (topic.use) {
+    case Use::kJoints:
+      return take_joints(message, topic);
+    case Use::kTransforms:
+    case Use::kStaticTransforms:
+      return take_transforms(message, topic);
+    case Use::kNothing:
+      return;
+  }
+}
+
+std::int64_t BagLog::stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic& topic) {
+  if (stamp_ns == 0) {
+    ++topic.unstamped;
+    return log_ns;
+  }
+  if (std::abs(stamp_ns - log_ns) <= kOtherClockNs) return stamp_ns;
+  if (topic.of_another_clock++ == 0) topic.clock_difference_ns = stamp_ns - log_ns;
+  return log_ns;
+}
+
+// Positions without names, and names without positions, say nothing.
+void BagLog::take_joints(const BagMessage& message, Topic& topic) {
+  const std::optional<RosJointState> state = ros_joint_state(message.payload);
+  if (!state) {
+    ++topic.undecodable;
+    return;
+  }
+  const std::int64_t stamp_ns = stamp_of(state->stamp_ns, message.log_ns, topic);
+  const bool has_velocities = !state->name.empty() && state->velocity.size() == state->name.size();
+  PoseBatch batch;
+  for (std::size_t i = 0; i < std::min(state->name.size(), state->position.size()); ++i) {
+    const std::uint32_t variable = names_.find(state->name[i]);
+    if (variable == JointNames::kUnused) continue;
+    if (variable == JointNames::kUnknown) {
+      unknown_joints_.insert(state->name[i]);
+      continue;
+    }
+    heard_[variable] = true;
+    if (options_.joints.contains(state->name[i])) continue;
+    JointSample& sample = batch.joints.emplace_back();
+    sample.variable = variable;
+    sample.stamp_ns = stamp_ns;
+    sample.position = state->position[i];
+    sample.has_velocity = has_velocities;
+    if (has_velocities) sample.velocity = state->velocity[i];
+  }
+  if (batch.joints.empty()) {
+    ++topic.empty;
+    return;
+  }
+  topic.rate.note(scene_, batch);
+  wait(message.topic->name, message.log_ns, std::move(batch));
+}
+
+// Transforms that never change hold whenever anything comes.
+void BagLog::take_transforms(const BagMessage& message, Topic& topic) {
+  const auto transforms = ros_transforms(message.payload);
+  if (!transforms) {
+    ++topic.undecodable;
+    return;
+  }
+  for (const RosTransform& transform : *transforms) {
+    tree_.set(transform, topic.use == Use::kStaticTransforms);
+  }
+  PoseBatch batch;
+  for (const auto& [frame, object] : frames_) {
+    if (const auto sample = tracked(object, message.log_ns, topic))
+      batch.samples.push_back(*sample);
+  }
+  if (batch.samples.empty()) return;
+  topic.rate.note(scene_, batch);
+  wait(message.topic->name, message.log_ns, std::move(batch));
+}
+
+std::optional<PoseSample> BagLog::tracked(std::uint32_t object, std::int64_t log_ns, Topic& topic) {
+  const auto place = tree_.find(scene_.objects[object].name);
+  if (!place) return std::nullopt;
+  roots_met_.insert(place->root);
+  PoseSample sample;
+  sample.object = object;
+  sample.stamp_ns = place->stamp_ns ? stamp_of(*place->stamp_ns, log_ns, topic) : log_ns;
+  const auto robot = world_from_root_link_.find(place->root);
+  sample.world_from_object = robot == world_from_root_link_.end()
+                                 ? place->root_from_frame
+                                 : compose(robot->second, place->root_from_frame);
+  return sample;
+}
+
+void BagLog::wait(const std::string& source, std::int64_t log_ns, PoseBatch batch) {
+  batch.source = SourceName(source);
+  batch.sequence_number = ++sequence_[source];
+  waiting_.emplace(log_ns, std::move(batch));
+  if (!given_.empty()) waiting_.emplace(log_ns, given_.at(log_ns));
+}
+
+// What there is instead, so that it can be asked for.
+std::string BagLog::nothing_of_use() const {
+  std::string there;
+  for (const auto& [name, topic] : topics_) {
+    there += fmt::format("{}{} ({}, {} messages)", there.empty() ? "" : ", ", name, topic.type,
+                         topic.messages);
+  }
+  std::string joints;
+  for (const std::string& joint : unknown_joints_) joints += (joints.empty() ? "" : ", ") + joint;
+  if (!joints.empty()) {
+    return fmt::format(
+        "{} has nothing that moves this cell: its joint states are of joints that the cell's "
+        "robots "
+        "do not have: {}; theirs are {}",
+        path_.string(), joints, fmt::join(joint_names(scene_), ", "));
+  }
+  return fmt::format(
+      "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
+      "objects. Expected a topic joint_states of type {} with its joints' names, or one that "
+      "--joint-topic names; there are {}",
+      path_.string(), kRosJointState, there.empty() ? "no messages" : there);
+}
+
+std::vector<std::string> BagLog::notes() const {
+  std::vector<std::string> notes;
+  if (!given_out_) return notes;  // error() says it
+  for (const auto& [name, topic] : topics_) {
+    const auto note = [&, &topic_name = name](std::uint64_t count, const std::string& what) {
+      if (count > 0) notes.push_back(fmt::format("{} messages of {} {}", count, topic_name, what));
+    };
+    topic.rate.add_note("messages of " + name, notes);
+    note(topic.undecodable, "do not decode as " + topic.type + " and were left out");
+    note(topic.empty, "have no position of a joint of this cell");
+    note(topic.unstamped, "have no stamp: the time when they were recorded is used");
+    note(
+        topic.of_another_clock,
+        fmt::format("have stamps of another clock ({:+.1f} s): the time when they were recorded is "
+                    "used",
+                    static_cast<double>(topic.clock_difference_ns) * 1e-9));
+  }
+  for (const std::string& joint : unknown_joints_) {
+    notes.push_back(fmt::format("joint '{}' of the bag is not in the cell: left out{}", joint,
+                                did_you_mean(joint, joint_names(scene_))));
+  }
+  note_unheard(scene_, heard_, options_.joints, notes);
+  for (const std::string& root : roots_met_) {
+    if (world_from_root_link_.contains(root) || root == "world") continue;
+    notes.push_back(fmt::format("frame '{}' is taken to be the cell's world", root));
+  }
+  return notes;
+}
+
+}  // namespace clearance

@@ -1,0 +1,58 @@
+// Joint positions kept as CSV: t_ns, and a column for every joint, named as the joint is.
+//
+// Times in whole nanoseconds, not going back; rad or m. A column NAME/velocity, if there is one, is
+// that joint's velocity. Other columns are left out. Plain or gzip.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "monitor/bags/given_joints.hpp"
+#include "monitor/bags/input_log.hpp"
+#include "monitor/bags/input_rate.hpp"
+#include "monitor/csv/table.hpp"
+
+namespace clearance {
+
+// All rows are of one source, 'csv'.
+class JointCsvLog final : public InputLog {
+ public:
+  JointCsvLog(const std::filesystem::path& file, const Scene& scene,
+              const InputLogOptions& options);
+
+  [[nodiscard]] bool next(LoggedBatch& batch) override;
+  [[nodiscard]] const std::string& error() const noexcept override { return error_; }
+  [[nodiscard]] bool readable() const noexcept override { return sequence_ > 0; }
+  [[nodiscard]] double progress() const noexcept override { return error_.empty() ? 0.0 : 1.0; }
+  [[nodiscard]] std::vector<std::string> notes() const override;
+
+ private:
+  struct Joint {
+    std::uint32_t variable = 0;
+    std::size_t column = 0;  // of the table
+    std::optional<std::size_t> velocity;
+  };
+
+  void choose_columns();
+
+  const Scene& scene_;
+  std::filesystem::path file_;
+  std::vector<std::string> header_;
+  std::vector<std::string_view> columns_;  // into header_
+  std::vector<Joint> joints_;
+  std::vector<std::string> left_out_;
+  GivenJoints given_;
+  std::map<std::string, double> given_positions_;
+  std::vector<bool> heard_;  // by variable
+  std::optional<CsvTable> table_;
+  std::optional<LoggedBatch> given_batch_;
+  InputRate rate_;
+  std::uint64_t sequence_ = 0;
+  std::string error_;
+};
+
+}  // namespace clearance

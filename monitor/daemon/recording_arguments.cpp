@@ -1,0 +1,76 @@
+#include "monitor/daemon/recording_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "config/spelling.hpp"
+#include "monitor/app/options.hpp"
+
+namespace clearance {
+namespace {
+
+// As the cell calls them. Without the catalogue nothing else could be read.
+constexpr std::array<std::pair<std::string_view, TopicKind>, 5> kTopicKeys = {
+    {{"poses", TopicKind::kPoses},
+     {"joint_states", TopicKind::kJointStates},
+     {"distances", TopicKind::kDistances},
+     {"zones", TopicKind::kZones},
+     {"health", TopicKind::kHealth}}};
+
+std::string is_topic(const std::string& text) {
+  std::vector<std::string> keys;
+  for (const auto& [key, kind] : kTopicKeys) keys.emplace_back(key);
+  if (std::ranges::find(keys, text) != keys.end()) return {};
+  return fmt::format("found '{}'; expected {}", text, one_of(keys));
+}
+
+}  // namespace
+
+void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
+  const char* const kRecording = "Recording";
+  app.add_option(
+         prefix + "without", without,
+         "Leave this topic out: poses, joint_states, distances, zones or health; repeatable. "
+         "Without poses and joint states nothing can be replayed")
+      ->check(is_topic)
+      ->allow_extra_args(false)
+      ->group(kRecording);
+  app.add_option(prefix + "every", pairs_every,
+                 "Keep every N-th report as it is, and those between without their pairs: a replay "
+                 "still knows every tick")
+      ->check(whole_number(1, 1'000'000'000))
+      ->capture_default_str()
+      ->group(kRecording);
+  app.add_option(prefix + "roll-mb", roll_mb,
+                 "Go on in NAME-2.mcap and so on when a file has so many MB; 0: never")
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->group(kRecording);
+  app.add_option(prefix + "roll-s", roll_s, "The same when it spans so many seconds; 0: never")
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->group(kRecording);
+  app.add_flag(prefix + "uncompressed", uncompressed, "Do not compress (zstd)")->group(kRecording);
+}
+
+RecordingOptions RecordingArguments::options(bool overwrite) const {
+  constexpr double kMost = 9e18;  // fits into 63 bits
+  RecordingOptions options{
+      .overwrite = overwrite,
+      .compress = !uncompressed,
+      .left_out = {},
+      .pairs_every = pairs_every,
+      .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),
+      .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost)))};
+  for (const auto& [key, kind] : kTopicKeys) {
+    if (std::ranges::find(without, key) != without.end()) options.left_out.insert(kind);
+  }
+  return options;
+}
+
+}  // namespace clearance

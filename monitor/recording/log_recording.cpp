@@ -1,0 +1,64 @@
+// The first batch is read before the file is made: a log without any leaves no recording behind.
+#include "monitor/recording/log_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "monitor/recording/writer.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+// Batches larger than a message may be do not come: a cell has at most so many objects and joints.
+void write(const LoggedBatch& logged, const Scene& scene, RecordingWriter& writer,
+           clearance_msg_PoseBatch& poses) {
+  const PoseBatch& batch = logged.batch;
+  const std::int64_t stamp_ns =
+      batch.joints.empty() ? batch.samples.front().stamp_ns : batch.joints.front().stamp_ns;
+  if (batch.joints.empty()) {
+    to_wire(batch, poses);
+    writer.write(TopicKind::kPoses, logged.log_ns, stamp_ns, poses);
+  } else {
+    writer.write(TopicKind::kJointStates, logged.log_ns, stamp_ns,
+                 *make_joint_states(batch, scene));
+  }
+}
+
+}  // namespace
+
+LogRecordingResult record_log(const std::filesystem::path& log, const std::filesystem::path& out,
+                              const Scene& scene, const InputLogOptions& log_options,
+                              const RecordingOptions& options, const std::function<bool()>& stop) {
+  LogRecordingResult result;
+  const std::unique_ptr<InputLog> input = open_input_log(log, scene, log_options);
+  LoggedBatch batch;
+  bool more = input->next(batch);
+  if (!more) {
+    result.error = input->error();
+    result.notes = input->notes();
+    return result;
+  }
+  RecordingWriter writer(out, scene.topics, options);
+  result.begun = writer.ok();
+  result.first_ns = batch.log_ns;
+  writer.catalogue(*make_catalogue(scene), result.first_ns);
+  Sample<clearance_msg_PoseBatch> poses = make_batch(clearance_msg_kMaxPoses);
+  for (; more && writer.ok(); more = input->next(batch)) {
+    if (stop && stop()) {
+      result.error = fmt::format("stopped after {} batches of {}", result.batches, log.string());
+      break;
+    }
+    writer.roll(batch.log_ns);
+    write(batch, scene, writer, *poses);
+    ++result.batches;
+    result.last_ns = batch.log_ns;
+  }
+  result.damage = input->error();
+  result.notes = input->notes();
+  if (!writer.close() && result.error.empty()) result.error = writer.error();
+  return result;
+}
+
+}  // namespace clearance

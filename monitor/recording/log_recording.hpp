@@ -1,0 +1,35 @@
+// Recordings made of what others logged: bags of ROS 2, joint positions as CSV (monitor/bags).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/options.hpp"
+
+namespace clearance {
+
+// Times in ns, when the log was recorded.
+struct LogRecordingResult {
+  std::string error;   // empty: the recording is complete, as far as the log could be read
+  std::string damage;  // not empty: where the log stopped making sense
+  bool begun = false;  // `out` was written to: where there is an error, it is not complete
+  std::uint64_t batches = 0;
+  std::int64_t first_ns = 0, last_ns = 0;
+  std::vector<std::string> notes;  // what was left out, and why
+};
+
+// Every message that moves something of the scene becomes a batch, at the time at which it was
+// recorded: a replay of `out` makes the same reports as one of the log. `stop` is asked before
+// every message: true ends it, with an error that says how far it came.
+[[nodiscard]] LogRecordingResult record_log(const std::filesystem::path& log,
+                                            const std::filesystem::path& out, const Scene& scene,
+                                            const InputLogOptions& log_options = {},
+                                            const RecordingOptions& options = {},
+                                            const std::function<bool()>& stop = {});
+
+}  // namespace clearance

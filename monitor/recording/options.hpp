@@ -1,0 +1,32 @@
+// What a recording is to hold, and in how many files.
+#pragma once
+
+#include <cstdint>
+#include <set>
+
+#include "monitor/wire/topics.hpp"
+
+namespace clearance {
+
+struct RecordingOptions {
+  bool overwrite = true;  // false: an existing file is an error
+  bool compress = true;   // chunks, by zstd
+  // Not the catalogue, which is needed to read the others. Without poses and joint states nothing
+  // can be replayed, without reports no tick is compared.
+  std::set<TopicKind> left_out = {};
+  // Every so many-th report is kept as it is; those between without their pairs, which are most of
+  // it. A replay still knows every tick and makes the same reports.
+  std::uint64_t pairs_every = 1;
+  // A new file begins when one is so large (bytes), or spans so much (ns); 0: never. Each can be
+  // read by itself.
+  std::uint64_t roll_bytes = 0;
+  std::int64_t roll_ns = 0;
+};
+
+// Whether the report of this cycle keeps its pairs.
+[[nodiscard]] inline bool keeps_pairs(const RecordingOptions& options,
+                                      std::uint64_t cycle) noexcept {
+  return options.pairs_every <= 1 || cycle % options.pairs_every == 0;
+}
+
+}  // namespace clearance

@@ -1,0 +1,31 @@
+#include <cstdio>
+
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/recording/log_recording.hpp"
+#include "tools/record/arguments.hpp"
+
+namespace clearance {
+
+int record_from_log(const RecordArguments& arguments, const std::string& log, const Scene& scene,
+                    StopSignal& stop) {
+  const LogRecordingResult result =
+      record_log(log, arguments.out, scene, {.joint_topics = arguments.joint_topics, .joints = {}},
+                 arguments.recording.options(arguments.force), [&stop] { return stop.wait(0); });
+  for (const std::string& note : result.notes) {
+    print(stderr, "clearance-record: {}\n", note);
+  }
+  if (!result.error.empty()) {
+    print(stderr, "clearance-record: {}\n", result.error);
+    if (result.begun) remove_unfinished("clearance-record", arguments.out);
+    return kFailed;
+  }
+  print(stdout, "{}: {} batches, {:.3f} s\n", arguments.out, result.batches,
+        static_cast<double>(result.last_ns - result.first_ns) * 1e-9);
+  if (result.damage.empty()) return kOk;
+  print(stderr, "clearance-record: {}\n", result.damage);
+  return kIncomplete;
+}
+
+}  // namespace clearance
