@@ -1,0 +1,284 @@
+#include "core/curved/direction_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/curved/cap.hpp"
+#include "core/curved/direction_programme.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr int kIterations = 60;
+constexpr int kTrials = 12;
+// Of one direction: what a programme takes.
+constexpr std::size_t kFunctions = 5;
+
+// One of the functions whose least is the distance along a direction: a pair of pieces, or, where
+// `fixed`, points that stay where they are.
+struct Function {
+  SupportPair at;
+  bool fixed = false;
+  PlaneMatrix radii_a, radii_b;  // m
+  double weight = 0.0;
+};
+
+class DirectionSearch {
+ public:
+  DirectionSearch(CurvedPair& pair, const Vec3& n, ActivePieces& active) noexcept
+      : pair_(pair), n_(n), active_(active) {
+    for (std::size_t i = 0; i < active.count; ++i) add_pieces(active.pieces[i]);
+  }
+
+  DirectionSearchEnd run() noexcept {
+    at_ = pair_.support(n_);
+    ++end_.supports;
+    test_caps_on_axis();
+    while (!done_ && end_.iterations < kIterations) {
+      ++end_.iterations;
+      place();
+      step();
+    }
+    keep_active();
+    return end_;
+  }
+
+ private:
+  // ---- the functions ----
+  [[nodiscard]] bool has(const PiecePair& pieces) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!functions_[i].fixed && functions_[i].at.pieces == pieces) return true;
+    }
+    return false;
+  }
+  Function& next_place() noexcept {
+    if (count_ < kFunctions) return functions_[count_++];
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < count_; ++i) {
+      if (functions_[i].weight < functions_[least].weight) least = i;
+    }
+    return functions_[least];
+  }
+  void add_pieces(const PiecePair& pieces) noexcept {
+    if (has(pieces)) return;
+    Function& f = next_place();
+    f = {};
+    f.at.pieces = pieces;
+  }
+  void add_fixed(const SupportPair& at) noexcept {
+    Function& f = next_place();
+    f = {};
+    f.at = at;
+    f.fixed = true;
+  }
+  void keep_weighted() noexcept {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (functions_[i].weight > 0.0) functions_[kept++] = functions_[i];
+    }
+    count_ = kept;
+  }
+
+  // ---- at one direction ----
+  // Tangents along the rim that turns fastest, so that its radius stays out of what lies across.
+  void set_tangents() noexcept {
+    double fastest = 0.0;
+    Vec3 along = Vec3::Zero();
+    const auto look = [&](const PieceSource& source, const Vec3& m, bool of_a) {
+      if (source.body->kind != CurvedBody::Kind::kTruncatedCone) return;
+      const Azimuth azimuth = azimuth_of(source, m);
+      const double turn =
+          std::max(source.body->discs[0].radius, source.body->discs[1].radius) / azimuth.across;
+      if (!(turn > fastest)) return;
+      fastest = turn;
+      const Vec3 own(-azimuth.to.y(), azimuth.to.x(), 0.0);
+      along = of_a ? own : pair_.direction_to_a(own);
+    };
+    look(pair_.a, n_, true);
+    look(pair_.b, -pair_.direction_to_b(n_), false);
+    if (fastest == 0.0) {
+      int least = 0;
+      n_.cwiseAbs().minCoeff(&least);
+      along = n_.cross(Vec3::Unit(least));
+    }
+    tangents_.x = (along - along.dot(n_) * n_).normalized();
+    tangents_.y = n_.cross(tangents_.x);
+    tangents_in_b_ = {pair_.direction_to_b(tangents_.x), pair_.direction_to_b(tangents_.y)};
+  }
+
+  void place(Function& f) noexcept {
+    if (f.fixed) {
+      f.at.apart = n_.dot(f.at.points.difference());
+      return;
+    }
+    f.at = pair_.support_of(f.at.pieces, n_);
+    f.radii_a = radii_of_curvature(pair_.a, f.at.pieces.a, n_, tangents_);
+    f.radii_b =
+        radii_of_curvature(pair_.b, f.at.pieces.b, -pair_.direction_to_b(n_), tangents_in_b_);
+  }
+
+  void place() noexcept {
+    set_tangents();
+    add_pieces(at_.pieces);
+    for (std::size_t i = 0; i < count_; ++i) place(functions_[i]);
+  }
+
+  // ---- the step ----
+  [[nodiscard]] PlaneMatrix curvature(const PlaneMatrix Function::*radii) const noexcept {
+    PlaneMatrix sum;
+    for (std::size_t i = 0; i < count_; ++i) sum.add(functions_[i].weight, functions_[i].*radii);
+    return sum;
+  }
+  [[nodiscard]] PlaneMatrix hessian(const PlaneMatrix& a, const PlaneMatrix& b) const noexcept {
+    PlaneMatrix q = a;
+    q.add(1.0, b);
+    const double shift = shift_;
+    q.xx += shift;
+    q.yy += shift;
+    return q;
+  }
+  void set_weights_if_none() noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) sum += functions_[i].weight;
+    if (sum > 0.0) return;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!functions_[i].fixed && functions_[i].at.pieces == at_.pieces) functions_[i].weight = 1.0;
+    }
+  }
+
+  // The curvature is that of the active functions, by their weights; those are found with it.
+  PlaneStep solve() noexcept {
+    std::array<PlaneFunction, kFunctions> functions{};
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Vec3 w = functions_[i].at.points.difference();
+      functions[i] = {functions_[i].at.apart - at_.apart,
+                      Vec2(w.dot(tangents_.x), w.dot(tangents_.y))};
+    }
+    set_weights_if_none();
+    PlaneStep found;
+    const int rounds = count_ == 1 ? 1 : 3;
+    for (int round = 0; round < rounds; ++round) {
+      radii_a_ = curvature(&Function::radii_a);
+      radii_b_ = curvature(&Function::radii_b);
+      found = highest_least(functions, count_, hessian(radii_a_, radii_b_));
+      for (std::size_t i = 0; i < count_; ++i) functions_[i].weight = found.weights[i];
+    }
+    return found;
+  }
+
+  // The points of the active pieces, each moved along as its direction is turned by `step`.
+  void add_points(const PlaneStep& found) noexcept {
+    Vec3 a = Vec3::Zero(), own_b = Vec3::Zero();
+    for (std::size_t i = 0; i < count_; ++i) {
+      a += found.weights[i] * functions_[i].at.points.a;
+      own_b += found.weights[i] * functions_[i].at.points.own_b;
+    }
+    const Vec2 on_a = radii_a_ * found.step, on_b = radii_b_ * found.step;
+    a += on_a.x() * tangents_.x + on_a.y() * tangents_.y;
+    own_b -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
+    pair_.add_points(a, own_b);
+  }
+
+  [[nodiscard]] Vec3 turned(const Vec2& step) const noexcept {
+    return (n_ + step.x() * tangents_.x + step.y() * tangents_.y).normalized();
+  }
+
+  void step() noexcept {
+    shift_ = std::max(at_.apart, 0.5 * pair_.bounds.upper);
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const PlaneStep found = solve();
+      add_points(found);
+      if (pair_.is_tight()) {
+        done_ = true;
+        return;
+      }
+      const Vec3 next = turned(found.step);
+      if (over_caps(next)) return;
+      const SupportPair there = pair_.support(next);
+      ++end_.supports;
+      if (there.apart > at_.apart) {
+        n_ = next;
+        at_ = there;
+        keep_weighted();
+        stalled_ = there.apart - at_.apart <= 0.0;
+        return;
+      }
+      if (next == n_ || (found.value <= 0x1p-54 * pair_.size && trial > 2)) break;
+      if (has(there.pieces)) {
+        add_fixed(there);
+        shift_ = std::max(2.0 * shift_, 0x1p-40 * pair_.size);
+      } else {
+        add_pieces(there.pieces);
+        for (std::size_t i = 0; i < count_; ++i) place(functions_[i]);
+      }
+    }
+    done_ = true;
+  }
+
+  // ---- caps ----
+  [[nodiscard]] static Vec2 across(const Vec3& m) noexcept { return {m.x(), m.y()}; }
+
+  // Does the way to `next` pass the axis? Then the cap may be the closest.
+  bool over_caps(const Vec3& next) noexcept {
+    const auto passes = [](const Vec3& m, const Vec3& to) {
+      return across(m).dot(across(to)) <= 0.0 || across(to).norm() <= 0x1p-40;
+    };
+    if (pair_.a.body->kind == CurvedBody::Kind::kTruncatedCone && passes(n_, next) &&
+        try_cap(true, next)) {
+      return true;
+    }
+    return pair_.b.body->kind == CurvedBody::Kind::kTruncatedCone &&
+           passes(-pair_.direction_to_b(n_), -pair_.direction_to_b(next)) && try_cap(false, next);
+  }
+  void test_caps_on_axis() noexcept { (void)over_caps(n_); }
+
+  // True: the search is at an end or goes on from the axis.
+  bool try_cap(bool of_a, const Vec3& towards) noexcept {
+    const double along = of_a ? towards.z() : -pair_.direction_to_b(towards).z();
+    bool& tried = tried_[(of_a ? 0 : 2) + (along > 0.0 ? 1 : 0)];
+    if (tried) return false;
+    tried = true;
+    const CapTest test = test_cap(pair_, of_a, towards);
+    ++end_.supports;
+    if (pair_.is_tight()) {
+      done_ = true;
+      return true;
+    }
+    if (!(test.support.apart > at_.apart)) return false;
+    n_ = test.normal;
+    at_ = test.support;
+    count_ = 0;
+    return true;
+  }
+
+  void keep_active() noexcept {
+    active_.count = 0;
+    for (std::size_t i = 0; i < count_ && active_.count < 3; ++i) {
+      if (!functions_[i].fixed && functions_[i].weight > 0.0) {
+        active_.pieces[active_.count++] = functions_[i].at.pieces;
+      }
+    }
+  }
+
+  CurvedPair& pair_;
+  Vec3 n_;
+  ActivePieces& active_;
+  SupportPair at_{};
+  Tangents tangents_{}, tangents_in_b_{};
+  std::array<Function, kFunctions> functions_{};
+  std::size_t count_ = 0;
+  PlaneMatrix radii_a_, radii_b_;
+  double shift_ = 0.0;
+  bool done_ = false, stalled_ = false;
+  std::array<bool, 4> tried_{};
+  DirectionSearchEnd end_;
+};
+
+}  // namespace
+
+DirectionSearchEnd search_direction(CurvedPair& pair, const Vec3& n,
+                                    ActivePieces& active) noexcept {
+  return DirectionSearch(pair, n, active).run();
+}
+
+}  // namespace clearance
