@@ -40,52 +40,63 @@ struct CapView {
 struct Nearest {
   Vec3 own;
   Vec2 in_plane;
+  std::array<std::int32_t, 3> pieces{};
+  std::size_t count = 0;
+};
+
+// A support point and the piece it is of.
+struct PieceOfSet {
+  Vec3 own = Vec3::Zero();
+  std::int32_t piece = 0;
 };
 
 // All vertices of the support set of a polyhedron along m, as a linear function v decides: the
 // least of it.
-Vec3 least_vertex(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
+PieceOfSet least_vertex(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
   const ConvexPolyhedron& body = *view.other().body->polyhedron;
   const double top = m.dot(support_point(view.other(), farthest_piece(view.other(), m), m));
   double least = kInfinity;
-  Vec3 found = Vec3::Zero();
-  for (const Vec3& vertex : body.anchors) {
+  PieceOfSet found;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.anchors.size()); ++i) {
+    const Vec3& vertex = body.anchors[static_cast<std::size_t>(i)];
     if (m.dot(vertex) < top - tolerance) continue;
     const double value = v.dot(view.in_plane(vertex));
     if (value < least) {
       least = value;
-      found = vertex;
+      found = {vertex, i};
     }
   }
   return found;
 }
 
 // The same of a truncated cone.
-Vec3 least_on_cone(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
+PieceOfSet least_on_cone(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
   const PieceSource& other = view.other();
   const Azimuth azimuth = azimuth_of(other, m);
   if (azimuth.across <= kParallel) {
-    const Disc& disc = other.body->discs[m.z() > 0.0 ? 1 : 0];
+    const std::int32_t piece = m.z() > 0.0 ? 1 : 0;
+    const Disc& disc = other.body->discs[static_cast<std::size_t>(piece)];
     const Vec3 centre(0.0, 0.0, disc.height);
     const Vec2 zero = view.in_plane(centre);
     const Vec2 x = view.in_plane(centre + Vec3::UnitX()) - zero;
     const Vec2 y = view.in_plane(centre + Vec3::UnitY()) - zero;
     const Vec2 to = Vec2(-v.dot(x), -v.dot(y)).normalized();
-    return {disc.radius * to.x(), disc.radius * to.y(), disc.height};
+    return {Vec3(disc.radius * to.x(), disc.radius * to.y(), disc.height), piece};
   }
   const Vec3 low = support_point(other, 0, m), high = support_point(other, 1, m);
   const double at_low = m.dot(low), at_high = m.dot(high);
-  if (at_low < at_high - tolerance) return high;
-  if (at_high < at_low - tolerance) return low;
-  return v.dot(view.in_plane(low)) < v.dot(view.in_plane(high)) ? low : high;
+  const bool level = std::abs(at_high - at_low) <= tolerance;
+  const bool is_high =
+      level ? v.dot(view.in_plane(high)) < v.dot(view.in_plane(low)) : at_high > at_low;
+  return is_high ? PieceOfSet{high, 1} : PieceOfSet{low, 0};
 }
 
-Vec3 least_of_support_set(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
+PieceOfSet least_of_support_set(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
   switch (view.other().body->kind) {
     case CurvedBody::Kind::kPolyhedron:
       return least_vertex(view, m, tolerance, v);
     case CurvedBody::Kind::kEllipsoid:
-      return support_point(view.other(), 0, m);
+      return {support_point(view.other(), 0, m), 0};
     case CurvedBody::Kind::kTruncatedCone:
       break;
   }
@@ -96,28 +107,29 @@ Nearest nearest_of_support_set(const CapView& view) {
   const Vec3 m = view.to_cap(view.normal);
   const double tolerance = view.pair.gap_tolerance();
   std::array<PlaneFunction, 5> points{};
-  std::array<Vec3, 5> own;
+  std::array<PieceOfSet, 5> own;
   std::size_t count = 0;
-  Nearest nearest{Vec3::Zero(), Vec2(1.0, 0.0)};
+  Nearest nearest{Vec3::Zero(), Vec2(1.0, 0.0), {}, 0};
   for (int round = 0; round < 32; ++round) {
     own[count] = least_of_support_set(view, m, tolerance, nearest.in_plane);
-    points[count] = {0.0, view.in_plane(own[count])};
+    points[count] = {0.0, view.in_plane(own[count].own)};
     const double gain =
         round == 0 ? kInfinity
                    : nearest.in_plane.dot(nearest.in_plane - points[count].slope);
     ++count;
     if (!(gain > 0x1p-52 * view.pair.size * nearest.in_plane.norm())) break;
     const PlaneStep step = highest_least(points, count, {1.0, 0.0, 1.0});
-    nearest = {Vec3::Zero(), Vec2::Zero()};
+    nearest = {Vec3::Zero(), Vec2::Zero(), {}, 0};
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (!(step.weights[i] > 0.0)) continue;
-      nearest.own += step.weights[i] * own[i];
+      nearest.own += step.weights[i] * own[i].own;
+      nearest.pieces[kept] = own[i].piece;
       nearest.in_plane += step.weights[i] * points[i].slope;
       own[kept] = own[i];
       points[kept++] = points[i];
     }
-    count = kept;
+    count = nearest.count = kept;
     if (nearest.in_plane.norm() <= view.disc.radius) break;
   }
   return nearest;
@@ -150,6 +162,12 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
                         : Vec2(nearest.in_plane * (view.disc.radius / across)),
            nearest.own);
   test.support = pair.support(view.normal);
+  const auto own_piece = static_cast<std::int32_t>(piece);
+  test.count = nearest.count;
+  for (std::size_t i = 0; i < nearest.count; ++i) {
+    test.pieces[i] = of_a ? PiecePair{own_piece, nearest.pieces[i]}
+                          : PiecePair{nearest.pieces[i], own_piece};
+  }
   return test;
 }
 

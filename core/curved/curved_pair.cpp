@@ -40,13 +40,15 @@ SupportPair CurvedPair::support(const Vec3& n) noexcept {
   return found;
 }
 
-void CurvedPair::add_points(const Vec3& on_a, const Vec3& own_b) noexcept {
+PointPair CurvedPair::add_points(const Vec3& on_a, const Vec3& own_b) noexcept {
   PointPair points{pulled_inside(*a.body, on_a), pulled_inside(*b.body, own_b), {}};
   points.b = point_to_a(points.own_b);
   const double apart = points.difference().norm();
-  if (!(apart < bounds.upper)) return;
-  bounds.upper = apart;
-  bounds.points = points;
+  if (apart < bounds.upper) {
+    bounds.upper = apart;
+    bounds.points = points;
+  }
+  return points;
 }
 
 double CurvedPair::error() const noexcept {

@@ -60,8 +60,9 @@ class CurvedPair {
   SupportPair support(const Vec3& n) noexcept;
   [[nodiscard]] SupportPair support_of(const PiecePair& pieces, const Vec3& n) const noexcept;
 
-  // Points of the bodies bound the distance from above; they are pulled inside first.
-  void add_points(const Vec3& a, const Vec3& own_b) noexcept;
+  // Points of the bodies bound the distance from above; they are pulled inside first. Returns what
+  // they have become.
+  PointPair add_points(const Vec3& a, const Vec3& own_b) noexcept;
 
   // Nothing better is to be had from doubles.
   [[nodiscard]] bool is_tight() const noexcept {

@@ -10,15 +10,14 @@ namespace clearance {
 namespace {
 
 constexpr int kIterations = 60;
-constexpr int kTrials = 12;
+constexpr int kTrials = 16;
+constexpr int kPointRounds = 4;
 // Of one direction: what a programme takes.
 constexpr std::size_t kFunctions = 5;
 
-// One of the functions whose least is the distance along a direction: a pair of pieces, or, where
-// `fixed`, points that stay where they are.
+// One of the functions whose least is the distance along a direction: of a pair of pieces.
 struct Function {
   SupportPair at;
-  bool fixed = false;
   PlaneMatrix radii_a, radii_b;  // m
   double weight = 0.0;
 };
@@ -47,7 +46,7 @@ class DirectionSearch {
   // ---- the functions ----
   [[nodiscard]] bool has(const PiecePair& pieces) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
-      if (!functions_[i].fixed && functions_[i].at.pieces == pieces) return true;
+      if (functions_[i].at.pieces == pieces) return true;
     }
     return false;
   }
@@ -64,12 +63,6 @@ class DirectionSearch {
     Function& f = next_place();
     f = {};
     f.at.pieces = pieces;
-  }
-  void add_fixed(const SupportPair& at) noexcept {
-    Function& f = next_place();
-    f = {};
-    f.at = at;
-    f.fixed = true;
   }
   void keep_weighted() noexcept {
     std::size_t kept = 0;
@@ -107,10 +100,6 @@ class DirectionSearch {
   }
 
   void place(Function& f) noexcept {
-    if (f.fixed) {
-      f.at.apart = n_.dot(f.at.points.difference());
-      return;
-    }
     f.at = pair_.support_of(f.at.pieces, n_);
     f.radii_a = radii_of_curvature(pair_.a, f.at.pieces.a, n_, tangents_);
     f.radii_b =
@@ -142,7 +131,7 @@ class DirectionSearch {
     for (std::size_t i = 0; i < count_; ++i) sum += functions_[i].weight;
     if (sum > 0.0) return;
     for (std::size_t i = 0; i < count_; ++i) {
-      if (!functions_[i].fixed && functions_[i].at.pieces == at_.pieces) functions_[i].weight = 1.0;
+      if (functions_[i].at.pieces == at_.pieces) functions_[i].weight = 1.0;
     }
   }
 
@@ -166,17 +155,26 @@ class DirectionSearch {
     return found;
   }
 
-  // The points of the active pieces, each moved along as its direction is turned by `step`.
-  void add_points(const PlaneStep& found) noexcept {
-    Vec3 a = Vec3::Zero(), own_b = Vec3::Zero();
+  // The points of the active pieces, each moved along as its direction is turned by `step`; `again`:
+  // and once more by what is left across that direction, since rims are not straight.
+  void add_points(const PlaneStep& found, int again = 0) noexcept {
+    PointPair points;
     for (std::size_t i = 0; i < count_; ++i) {
-      a += found.weights[i] * functions_[i].at.points.a;
-      own_b += found.weights[i] * functions_[i].at.points.own_b;
+      points.a += found.weights[i] * functions_[i].at.points.a;
+      points.own_b += found.weights[i] * functions_[i].at.points.own_b;
     }
-    const Vec2 on_a = radii_a_ * found.step, on_b = radii_b_ * found.step;
-    a += on_a.x() * tangents_.x + on_a.y() * tangents_.y;
-    own_b -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
-    pair_.add_points(a, own_b);
+    Vec2 turn = found.step;
+    for (int round = 0;; ++round) {
+      const Vec2 on_a = radii_a_ * turn, on_b = radii_b_ * turn;
+      points.a += on_a.x() * tangents_.x + on_a.y() * tangents_.y;
+      points.own_b -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
+      points = pair_.add_points(points.a, points.own_b);
+      if (round >= again || pair_.is_tight()) return;
+      const Vec3 w = points.difference();
+      const PlaneFunction rest{0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) -
+                                        at_.apart * found.step};
+      turn = highest_least({rest}, 1, hessian(radii_a_, radii_b_)).step;
+    }
   }
 
   [[nodiscard]] Vec3 turned(const Vec2& step) const noexcept {
@@ -185,34 +183,44 @@ class DirectionSearch {
 
   void step() noexcept {
     shift_ = std::max(at_.apart, 0.5 * pair_.bounds.upper);
-    for (int trial = 0; trial < kTrials; ++trial) {
-      const PlaneStep found = solve();
-      add_points(found);
-      if (pair_.is_tight()) {
-        done_ = true;
-        return;
-      }
+    PlaneStep found = solve();
+    add_points(found);
+    for (int trial = 0; trial < kTrials && !pair_.is_tight(); ++trial) {
       const Vec3 next = turned(found.step);
       if (over_caps(next)) return;
+      if (next == n_ || found.value <= 0x1p-53 * pair_.size) break;
       const SupportPair there = pair_.support(next);
       ++end_.supports;
       if (there.apart > at_.apart) {
         n_ = next;
         at_ = there;
         keep_weighted();
-        stalled_ = there.apart - at_.apart <= 0.0;
         return;
       }
-      if (next == n_ || (found.value <= 0x1p-54 * pair_.size && trial > 2)) break;
       if (has(there.pieces)) {
-        add_fixed(there);
-        shift_ = std::max(2.0 * shift_, 0x1p-40 * pair_.size);
-      } else {
-        add_pieces(there.pieces);
-        for (std::size_t i = 0; i < count_; ++i) place(functions_[i]);
+        shorten(found, there.apart);
+        continue;
       }
+      add_pieces(there.pieces);
+      for (std::size_t i = 0; i < count_; ++i) place(functions_[i]);
+      found = solve();
+      add_points(found);
     }
+    if (!pair_.is_tight()) add_points(found, kPointRounds);
     done_ = true;
+  }
+
+  // To where a parabola through what is known along the step is highest: its value and slope here,
+  // its value there.
+  void shorten(PlaneStep& found, double there) const noexcept {
+    double slope = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Vec3 w = functions_[i].at.points.difference();
+      slope += found.weights[i] *
+               (w.dot(tangents_.x) * found.step.x() + w.dot(tangents_.y) * found.step.y());
+    }
+    const double highest = 0.5 * slope / (slope - (there - at_.apart));
+    found.step *= std::isfinite(highest) ? std::clamp(highest, 0.05, 0.5) : 0.5;
   }
 
   // ---- caps ----
@@ -248,13 +256,14 @@ class DirectionSearch {
     n_ = test.normal;
     at_ = test.support;
     count_ = 0;
+    for (std::size_t i = 0; i < test.count; ++i) add_pieces(test.pieces[i]);
     return true;
   }
 
   void keep_active() noexcept {
     active_.count = 0;
     for (std::size_t i = 0; i < count_ && active_.count < 3; ++i) {
-      if (!functions_[i].fixed && functions_[i].weight > 0.0) {
+      if (functions_[i].weight > 0.0) {
         active_.pieces[active_.count++] = functions_[i].at.pieces;
       }
     }
@@ -269,7 +278,7 @@ class DirectionSearch {
   std::size_t count_ = 0;
   PlaneMatrix radii_a_, radii_b_;
   double shift_ = 0.0;
-  bool done_ = false, stalled_ = false;
+  bool done_ = false;
   std::array<bool, 4> tried_{};
   DirectionSearchEnd end_;
 };

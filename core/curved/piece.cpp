@@ -8,8 +8,9 @@
 namespace clearance {
 namespace {
 
-// Below this, a direction is the axis of a truncated cone, and which way it leans is noise.
-constexpr double kOnAxis = 1e-18;
+// Below this, a direction is the axis of a truncated cone, and which way it leans is noise. What
+// the support point of a disc then falls short is in CurvedPair::error().
+constexpr double kOnAxis = 0x1p-51;
 
 double disc_value(const Disc& disc, const Vec3& m, double across) noexcept {
   return disc.height * m.z() + disc.radius * across;
