@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/curved/depth.hpp"
 #include "core/curved/start.hpp"
 #include "core/numerics/error_constants.hpp"
 
@@ -29,25 +30,25 @@ bool is_usable(const CurvedTrackingState& state, const CurvedBody& a,
   return true;
 }
 
-DistanceResult conclude(const CurvedPair& pair, bool meet) noexcept {
+// `depth`: the bodies' cores overlap by at least this, where that is known; m.
+DistanceResult conclude(const CurvedPair& pair, double depth) noexcept {
   const CurvedBounds& bounds = pair.bounds;
   const double error = pair.error(), radii = pair.a.body->radius + pair.b.body->radius;
-  const double rounding = 0x1p-52 * (radii + std::abs(bounds.upper));
+  const double upper = std::min(bounds.upper, -depth);
+  const double rounding = 0x1p-52 * (radii + std::abs(upper));
   DistanceResult r;
   r.normal = bounds.normal;
   r.lower = (bounds.lower - error) - radii - rounding;
-  r.upper = ((meet ? 0.0 : bounds.upper) + error) - radii + rounding;
-  r.distance = std::clamp((meet ? bounds.lower : bounds.upper) - radii, r.lower, r.upper);
+  r.upper = (upper + error) - radii + rounding;
+  const double best = bounds.lower < 0.0 ? bounds.lower : bounds.upper;
+  r.distance = std::clamp(best - radii, r.lower, r.upper);
   r.point_on_a = bounds.points.a + pair.a.body->radius * r.normal;
   r.point_on_b = bounds.points.b - pair.b.body->radius * r.normal;
   const bool converged = r.upper - r.lower <= kConvergedCurvedGap * (pair.size + radii);
-  if (r.upper < 0.0) {
-    r.status = DistanceStatus::kOverlapping;
-  } else if (!(r.lower > 0.0)) {
-    r.status = meet || converged ? DistanceStatus::kTouching : DistanceStatus::kIterationLimit;
-  } else {
-    r.status = converged ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
-  }
+  r.status = !converged        ? DistanceStatus::kIterationLimit
+             : r.lower > 0.0   ? DistanceStatus::kConverged
+             : r.upper < 0.0   ? DistanceStatus::kOverlapping
+                               : DistanceStatus::kTouching;
   return r;
 }
 
@@ -57,20 +58,24 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
                                const RelativePose& a_from_b, CurvedTrackingState& state) noexcept {
   CurvedPair pair(a, b, a_from_b);
   if (!is_usable(state, a, b)) state = {};
-  CurvedStart start{state.normal};
-  if (state.normal.isZero()) start = start_direction(pair);
-  DirectionSearchEnd end;
-  if (!start.meet) {
-    end = search_direction(pair, start.normal, state.active);
-    if (!pair.is_tight() && !state.normal.isZero()) {
-      state = {};
-      start = start_direction(pair);
-      if (!start.meet) end = search_direction(pair, start.normal, state.active);
-    }
+  int supports = 0;
+  if (!state.normal.isZero()) {
+    supports += search_direction(pair, state.normal, state.active).supports;
+  }
+  if (!pair.is_tight()) {
+    state.active = {};
+    const CurvedStart start = start_direction(pair);
+    if (!start.meet) supports += search_direction(pair, start.normal, state.active).supports;
+  }
+  double depth = -kInfinity;
+  if (!pair.is_tight() && pair.bounds.lower < 0.0) {
+    const DepthBounds found = bound_depth(pair);
+    depth = found.lower;
+    supports += found.supports;
   }
   state.normal = pair.bounds.normal;
-  DistanceResult r = conclude(pair, start.meet);
-  r.iterations = static_cast<std::uint16_t>(end.supports);
+  DistanceResult r = conclude(pair, depth);
+  r.iterations = static_cast<std::uint16_t>(supports);
   return r;
 }
 

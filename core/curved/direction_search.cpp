@@ -121,7 +121,10 @@ class DirectionSearch {
   [[nodiscard]] PlaneMatrix hessian(const PlaneMatrix& a, const PlaneMatrix& b) const noexcept {
     PlaneMatrix q = a;
     q.add(1.0, b);
-    const double shift = shift_;
+    // Where the bodies overlap the shift is negative, as long as that leaves q positive definite.
+    const double x = q.xx + shift_, y = q.yy + shift_;
+    const bool definite = x > 0.0 && x * y - q.xy * q.xy > 0x1p-6 * x * y;
+    const double shift = shift_ > 0.0 || definite ? shift_ : -shift_;
     q.xx += shift;
     q.yy += shift;
     return q;
@@ -182,7 +185,9 @@ class DirectionSearch {
   }
 
   void step() noexcept {
-    shift_ = std::max(at_.apart, 0.5 * pair_.bounds.upper);
+    shift_ = at_.apart < -0x1p-40 * pair_.size ? at_.apart
+                                               : std::max(at_.apart, 0.5 * pair_.bounds.upper);
+    shift_ = shift_ == 0.0 ? 0x1p-50 * pair_.size : shift_;
     PlaneStep found = solve();
     add_points(found);
     for (int trial = 0; trial < kTrials && !pair_.is_tight(); ++trial) {
