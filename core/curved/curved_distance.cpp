@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/curved/conclusion.hpp"
 #include "core/curved/depth.hpp"
+#include "core/curved/half_space.hpp"
 #include "core/curved/start.hpp"
 #include "core/numerics/error_constants.hpp"
 
 namespace clearance {
 namespace {
-
-// Bounds of bodies that have converged are within this of each other, by the pair's size.
-constexpr double kConvergedCurvedGap = 1e-13;
 
 bool is_usable(const CurvedTrackingState& state, const CurvedBody& a,
                const CurvedBody& b) noexcept {
@@ -30,32 +30,52 @@ bool is_usable(const CurvedTrackingState& state, const CurvedBody& a,
   return true;
 }
 
-// `depth`: the bodies' cores overlap by at least this, where that is known; m.
-DistanceResult conclude(const CurvedPair& pair, double depth) noexcept {
+// `depth`: the bodies without radii overlap by at least this, where that is known; m.
+CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   const CurvedBounds& bounds = pair.bounds;
-  const double error = pair.error(), radii = pair.a.body->radius + pair.b.body->radius;
-  const double upper = std::min(bounds.upper, -depth);
-  const double rounding = 0x1p-52 * (radii + std::abs(upper));
+  CurvedConclusion found;
+  found.lower = bounds.lower;
+  found.upper = std::min(bounds.upper, -depth);
+  found.error = pair.error();
+  found.size = pair.size;
+  found.radius_a = pair.a.body->radius;
+  found.radius_b = pair.b.body->radius;
+  found.normal = bounds.normal;
+  found.point_on_a = bounds.points.a;
+  found.point_on_b = bounds.points.b;
+  return found;
+}
+
+DistanceResult of_unknown(DistanceStatus status) noexcept {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   DistanceResult r;
-  r.normal = bounds.normal;
-  r.lower = (bounds.lower - error) - radii - rounding;
-  r.upper = (upper + error) - radii + rounding;
-  const double best = bounds.lower < 0.0 ? bounds.lower : bounds.upper;
-  r.distance = std::clamp(best - radii, r.lower, r.upper);
-  r.point_on_a = bounds.points.a + pair.a.body->radius * r.normal;
-  r.point_on_b = bounds.points.b - pair.b.body->radius * r.normal;
-  const bool converged = r.upper - r.lower <= kConvergedCurvedGap * (pair.size + radii);
-  r.status = !converged        ? DistanceStatus::kIterationLimit
-             : r.lower > 0.0   ? DistanceStatus::kConverged
-             : r.upper < 0.0   ? DistanceStatus::kOverlapping
-                               : DistanceStatus::kTouching;
+  r.distance = kNaN;
+  r.lower = -kInfinity;
+  r.upper = kInfinity;
+  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kNaN);
+  r.status = status;
   return r;
+}
+
+bool is_good(const RelativePose& pose) noexcept {
+  return pose.rotation.allFinite() && pose.translation.norm() <= kLargestCoordinate;
+}
+
+bool is_bounded(const CurvedBody& body) noexcept {
+  return body.kind != CurvedBody::Kind::kPolyhedron || body.polyhedron->bounded();
 }
 
 }  // namespace
 
 DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
                                const RelativePose& a_from_b, CurvedTrackingState& state) noexcept {
+  if (!is_good(a_from_b)) return of_unknown(DistanceStatus::kBadPose);
+  if (!is_bounded(a) || !is_bounded(b)) {
+    if (!is_half_space(is_bounded(a) ? b : a) || (!is_bounded(a) && !is_bounded(b))) {
+      return of_unknown(DistanceStatus::kIterationLimit);
+    }
+    return distance_of_half_space(a, b, a_from_b);
+  }
   CurvedPair pair(a, b, a_from_b);
   if (!is_usable(state, a, b)) state = {};
   int supports = 0;
@@ -74,7 +94,7 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
     supports += found.supports;
   }
   state.normal = pair.bounds.normal;
-  DistanceResult r = conclude(pair, depth);
+  DistanceResult r = conclude(conclusion_of(pair, depth));
   r.iterations = static_cast<std::uint16_t>(supports);
   return r;
 }

@@ -1,0 +1,34 @@
+#include "core/curved/conclusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+DistanceStatus status_of(const DistanceResult& r, double size) noexcept {
+  if (!(r.upper - r.lower <= kConvergedCurvedGap * size)) return DistanceStatus::kIterationLimit;
+  if (r.lower > 0.0) return DistanceStatus::kConverged;
+  return r.upper < 0.0 ? DistanceStatus::kOverlapping : DistanceStatus::kTouching;
+}
+
+}  // namespace
+
+DistanceResult conclude(const CurvedConclusion& found) noexcept {
+  const double radii = found.radius_a + found.radius_b;
+  // The sum of the radii, the error and what is left: 2 ulps of each.
+  const auto rounding = [&](double bound) { return 0x1p-51 * (radii + std::abs(bound)); };
+  // The points say best how far bodies are apart, and directions how deep they overlap.
+  const double best = found.lower < 0.0 ? found.lower : found.upper;
+  DistanceResult r;
+  r.lower = found.lower - found.error - radii - rounding(found.lower);
+  r.upper = found.upper + found.error - radii + rounding(found.upper);
+  r.distance = std::clamp(best - radii, r.lower, r.upper);
+  r.normal = found.normal;
+  r.point_on_a = found.point_on_a + found.radius_a * found.normal;
+  r.point_on_b = found.point_on_b - found.radius_b * found.normal;
+  r.status = status_of(r, found.size + radii);
+  return r;
+}
+
+}  // namespace clearance

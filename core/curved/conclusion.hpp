@@ -1,0 +1,22 @@
+// From bounds of the bodies without their radii to the answer.
+#pragma once
+
+#include "core/distance_result.hpp"
+
+namespace clearance {
+
+struct CurvedConclusion {
+  double lower = -kInfinity, upper = kInfinity;  // signed, as computed
+  double error = 0.0;                            // m: neither bound is off by more
+  double size = 0.0;                             // m: of the bodies and what is between them
+  double radius_a = 0.0, radius_b = 0.0;         // m
+  Vec3 normal = Vec3::Zero();                    // unit, from A to B; this and the points: frame A
+  Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
+};
+
+// Bounds that have converged are within this of each other, by the pair's size.
+inline constexpr double kConvergedCurvedGap = 1e-13;
+
+[[nodiscard]] DistanceResult conclude(const CurvedConclusion& found) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,61 @@
+#include "core/curved/half_space.hpp"
+
+#include <cmath>
+
+#include "core/curved/conclusion.hpp"
+#include "core/curved/piece.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance {
+namespace {
+
+// As of CurvedPair::error(), of the body's reach; of the plane's offset, and of the offset between
+// the origins. The facet's normal is rounded, too: 1 of each.
+constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOffset = 13;
+
+Vec3 farthest_point(const CurvedBody& body, const Vec3& m) noexcept {
+  const PieceSource source{&body};
+  return support_point(source, farthest_piece(source, m), m);
+}
+
+double error_of(double reach, double plane, const RelativePose& pose) noexcept {
+  const double offset = pose.translation.norm();
+  return kUlp * (kUlpsOfBody * reach + kUlpsOfPlane * plane + kUlpsOfOffset * offset) +
+         pose.translation_error + pose.rotation_error * kRoundedUp * (reach + offset) + kUnderflow;
+}
+
+}  // namespace
+
+bool is_half_space(const CurvedBody& body) noexcept {
+  return body.kind == CurvedBody::Kind::kPolyhedron && body.polyhedron->facets.size() == 1;
+}
+
+DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
+                                      const RelativePose& a_from_b) noexcept {
+  const bool of_a = is_half_space(a);
+  const CurvedBody &plane = of_a ? a : b, &body = of_a ? b : a;
+  const Facet& facet = plane.polyhedron->facets.front();
+  const Mat3& turn = a_from_b.rotation;
+  CurvedConclusion found;
+  Vec3 to_body = facet.normal, point;  // frame A
+  if (of_a) {
+    point = turn * farthest_point(body, -(turn.transpose() * facet.normal)) + a_from_b.translation;
+    found.lower = facet.normal.dot(point) - facet.offset;
+  } else {
+    to_body = turn * facet.normal;
+    point = farthest_point(body, -to_body);
+    found.lower = to_body.dot(point - a_from_b.translation) - facet.offset;
+  }
+  const Vec3 on_plane = point - found.lower * to_body;
+  found.upper = found.lower;
+  found.normal = of_a ? to_body : Vec3(-to_body);
+  found.point_on_a = of_a ? on_plane : point;
+  found.point_on_b = of_a ? point : on_plane;
+  found.radius_a = a.radius;
+  found.radius_b = b.radius;
+  found.error = error_of(body.reach, std::abs(facet.offset), a_from_b);
+  found.size = body.reach + std::abs(facet.offset) + a_from_b.translation.norm();
+  return conclude(found);
+}
+
+}  // namespace clearance
