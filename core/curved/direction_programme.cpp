@@ -17,7 +17,7 @@ class Dual {
 
   [[nodiscard]] PlaneStep solve() noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
-      take({i}, {1.0});
+      one(i);
       for (std::size_t j = 0; j < i; ++j) {
         two(i, j);
         for (std::size_t k = 0; k < j; ++k) three(i, j, k);
@@ -27,11 +27,17 @@ class Dual {
   }
 
  private:
+  void one(std::size_t i) noexcept { take(f_[i].slope, f_[i].value, {i}, {1.0}); }
+
+  // The step is not summed up from the weighted slopes, which may be long and cancel: along the
+  // difference of both it is where they are equal, and across they agree.
   void two(std::size_t i, std::size_t j) noexcept {
-    const Vec2 slope = f_[j].slope - f_[i].slope;
-    const double part =
-        -(f_[i].slope.dot(slope) + (f_[j].value - f_[i].value)) / slope.squaredNorm();
-    if (part > 0.0 && part < 1.0) take({i, j}, {1.0 - part, part});
+    const Vec2 slope = f_[j].slope - f_[i].slope, across(-slope.y(), slope.x());
+    const double square = slope.squaredNorm(), value = f_[j].value - f_[i].value;
+    const double part = -(f_[i].slope.dot(slope) + value) / square;
+    if (!(part > 0.0 && part < 1.0)) return;
+    const Vec2 step = (f_[i].slope.dot(across) / square) * across - (value / square) * slope;
+    take(step, f_[i].value + part * value, {i, j}, {1.0 - part, part});
   }
 
   // The step where all three are equal, and its weights.
@@ -43,19 +49,13 @@ class Dual {
     const Vec2 rest = step - f_[i].slope;
     const double to_j = (rest.x() * v.y() - rest.y() * v.x()) / area;
     const double to_k = (u.x() * rest.y() - u.y() * rest.x()) / area;
-    if (to_j > 0.0 && to_k > 0.0 && to_j + to_k < 1.0) {
-      take({i, j, k}, {1.0 - to_j - to_k, to_j, to_k});
-    }
+    if (!(to_j > 0.0 && to_k > 0.0 && to_j + to_k < 1.0)) return;
+    take(step, f_[i].value - to_j * du - to_k * dv, {i, j, k}, {1.0 - to_j - to_k, to_j, to_k});
   }
 
   template <std::size_t N>
-  void take(const std::size_t (&at)[N], const double (&weights)[N]) noexcept {
-    Vec2 step = Vec2::Zero();
-    double value = 0.0;
-    for (std::size_t n = 0; n < N; ++n) {
-      step += weights[n] * f_[at[n]].slope;
-      value += weights[n] * f_[at[n]].value;
-    }
+  void take(const Vec2& step, double value, const std::size_t (&at)[N],
+            const double (&weights)[N]) noexcept {
     const double dual = value + 0.5 * step.squaredNorm();
     if (!(dual < best_dual_)) return;
     best_dual_ = dual;

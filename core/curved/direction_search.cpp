@@ -12,6 +12,7 @@ namespace {
 constexpr int kIterations = 60;
 constexpr int kTrials = 16;
 constexpr int kPointRounds = 4;
+constexpr int kBlindSteps = 8;
 // Of one direction: what a programme takes.
 constexpr std::size_t kFunctions = 5;
 
@@ -193,10 +194,10 @@ class DirectionSearch {
     for (int trial = 0; trial < kTrials && !pair_.is_tight(); ++trial) {
       const Vec3 next = turned(found.step);
       if (over_caps(next)) return;
-      if (next == n_ || found.value <= 0x1p-53 * pair_.size) break;
+      if (next == n_) break;
       const SupportPair there = pair_.support(next);
       ++end_.supports;
-      if (there.apart > at_.apart) {
+      if (there.apart > at_.apart || is_blind(found, there)) {
         n_ = next;
         at_ = there;
         keep_weighted();
@@ -213,6 +214,13 @@ class DirectionSearch {
     }
     if (!pair_.is_tight()) add_points(found, kPointRounds);
     done_ = true;
+  }
+
+  // A step that rounding hides: it may still bring the points to each other.
+  bool is_blind(const PlaneStep& found, const SupportPair& there) noexcept {
+    const double noise = 0x1p-50 * pair_.size;
+    if (found.value > noise || there.apart < at_.apart - noise) return false;
+    return blind_++ < kBlindSteps;
   }
 
   // To where a parabola through what is known along the step is highest: its value and slope here,
@@ -284,6 +292,7 @@ class DirectionSearch {
   PlaneMatrix radii_a_, radii_b_;
   double shift_ = 0.0;
   bool done_ = false;
+  int blind_ = 0;
   std::array<bool, 4> tried_{};
   DirectionSearchEnd end_;
 };
