@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kIterations = 60;
 constexpr int kTrials = 16;
-constexpr int kPointRounds = 4;
+constexpr int kPointRounds = 12;
 constexpr int kBlindSteps = 8;
 // Of one direction: what a programme takes.
 constexpr std::size_t kFunctions = 5;
@@ -192,6 +192,8 @@ class DirectionSearch {
     PlaneStep found = solve();
     add_points(found);
     for (int trial = 0; trial < kTrials && !pair_.is_tight(); ++trial) {
+      // Half a right angle at once: farther away, other pieces count.
+      found.step /= std::max(1.0, found.step.norm());
       const Vec3 next = turned(found.step);
       if (over_caps(next)) return;
       if (next == n_) break;
