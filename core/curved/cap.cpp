@@ -91,7 +91,8 @@ PieceOfSet least_on_cone(const CapView& view, const Vec3& m, double tolerance, c
   return is_high ? PieceOfSet{high, 1} : PieceOfSet{low, 0};
 }
 
-PieceOfSet least_of_support_set(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
+PieceOfSet least_of_support_set(const CapView& view, const Vec3& m, double tolerance,
+                                const Vec2& v) {
   switch (view.other().body->kind) {
     case CurvedBody::Kind::kPolyhedron:
       return least_vertex(view, m, tolerance, v);
@@ -114,8 +115,7 @@ Nearest nearest_of_support_set(const CapView& view) {
     own[count] = least_of_support_set(view, m, tolerance, nearest.in_plane);
     points[count] = {0.0, view.in_plane(own[count].own)};
     const double gain =
-        round == 0 ? kInfinity
-                   : nearest.in_plane.dot(nearest.in_plane - points[count].slope);
+        round == 0 ? kInfinity : nearest.in_plane.dot(nearest.in_plane - points[count].slope);
     ++count;
     if (!(gain > 0x1p-52 * view.pair.size * nearest.in_plane.norm())) break;
     const PlaneStep step = highest_least(points, count, {1.0, 0.0, 1.0});
@@ -158,15 +158,14 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
           Vec2(nearest.own.x() / other_across, nearest.own.y() / other_across);
     }
   }
-  view.add(test.closest ? nearest.in_plane
-                        : Vec2(nearest.in_plane * (view.disc.radius / across)),
+  view.add(test.closest ? nearest.in_plane : Vec2(nearest.in_plane * (view.disc.radius / across)),
            nearest.own);
   test.support = pair.support(view.normal);
   const auto own_piece = static_cast<std::int32_t>(piece);
   test.count = nearest.count;
   for (std::size_t i = 0; i < nearest.count; ++i) {
-    test.pieces[i] = of_a ? PiecePair{own_piece, nearest.pieces[i]}
-                          : PiecePair{nearest.pieces[i], own_piece};
+    test.pieces[i] =
+        of_a ? PiecePair{own_piece, nearest.pieces[i]} : PiecePair{nearest.pieces[i], own_piece};
   }
   return test;
 }

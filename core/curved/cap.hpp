@@ -10,7 +10,7 @@
 namespace clearance {
 
 struct CapTest {
-  bool closest = false;  // the other body's support set lies over the cap: the bounds say so
+  bool closest = false;   // the other body's support set lies over the cap: the bounds say so
   SupportPair support{};  // else where a search from the axis begins
   Vec3 normal = Vec3::Zero();
   std::array<PiecePair, 3> pieces{};  // those that its nearest point lies on

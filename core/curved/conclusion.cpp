@@ -14,6 +14,11 @@ DistanceStatus status_of(const DistanceResult& r, double size) noexcept {
 
 }  // namespace
 
+Vec3 between(const Vec3& on_a, const Vec3& on_b, double radius_a, double radius_b) noexcept {
+  const double radii = radius_a + radius_b;
+  return on_a + (radii > 0.0 ? radius_a / radii : 0.5) * (on_b - on_a);
+}
+
 DistanceResult conclude(const CurvedConclusion& found) noexcept {
   const double radii = found.radius_a + found.radius_b;
   // The sum of the radii, the error and what is left: 2 ulps of each.

@@ -17,6 +17,10 @@ struct CurvedConclusion {
 // Bounds that have converged are within this of each other, by the pair's size.
 inline constexpr double kConvergedCurvedGap = 1e-13;
 
+// A point of both bodies where their radii make them overlap, as the points say.
+[[nodiscard]] Vec3 between(const Vec3& on_a, const Vec3& on_b, double radius_a,
+                           double radius_b) noexcept;
+
 [[nodiscard]] DistanceResult conclude(const CurvedConclusion& found) noexcept;
 
 }  // namespace clearance

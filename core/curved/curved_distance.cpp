@@ -41,8 +41,9 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   found.radius_a = pair.a.body->radius;
   found.radius_b = pair.b.body->radius;
   found.normal = bounds.normal;
-  found.point_on_a = bounds.points.a;
-  found.point_on_b = bounds.points.b;
+  const PointPair& points = depth > 0.0 ? bounds.deepest : bounds.points;
+  found.point_on_a = points.a;
+  found.point_on_b = points.b;
   return found;
 }
 
@@ -74,7 +75,7 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
     if (!is_half_space(is_bounded(a) ? b : a) || (!is_bounded(a) && !is_bounded(b))) {
       return of_unknown(DistanceStatus::kIterationLimit);
     }
-    return distance_of_half_space(a, b, a_from_b);
+    return distance_of_half_space(a, b, a_from_b, state.shared);
   }
   CurvedPair pair(a, b, a_from_b);
   if (!is_usable(state, a, b)) state = {};
@@ -94,6 +95,7 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
     supports += found.supports;
   }
   state.normal = pair.bounds.normal;
+  state.shared = between(pair.bounds.points.a, pair.bounds.points.b, a.radius, b.radius);
   DistanceResult r = conclude(conclusion_of(pair, depth));
   r.iterations = static_cast<std::uint16_t>(supports);
   return r;

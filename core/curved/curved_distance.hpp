@@ -16,10 +16,11 @@ namespace clearance {
 struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A; 0: none
   ActivePieces active;
+  Vec3 shared = Vec3::Zero();  // where the bodies overlap, a point of both, frame A
 };
 
 // noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer
-// says; of bodies that overlap, `lower` is minus the least depth found, and `upper` 0.
+// says. Unbounded bodies are half-spaces, and one of a pair at most; of others nothing is known.
 [[nodiscard]] DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
                                              const RelativePose& a_from_b,
                                              CurvedTrackingState& state) noexcept;

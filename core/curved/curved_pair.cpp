@@ -56,8 +56,7 @@ double CurvedPair::error() const noexcept {
   const double farthest = std::max(0.0, std::min(bounds.upper, size));
   const double turned =
       std::min(b.body->reach, a.body->reach + offset + kStretched * farthest) * kRoundedUp;
-  const double ulps =
-      kUlpsOfA * a.body->reach + kUlpsOfB * b.body->reach + kUlpsOfOffset * offset;
+  const double ulps = kUlpsOfA * a.body->reach + kUlpsOfB * b.body->reach + kUlpsOfOffset * offset;
   return kUlp * ulps + pose_.translation_error + pose_.rotation_error * turned + kUnderflow;
 }
 

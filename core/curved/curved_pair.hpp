@@ -34,6 +34,7 @@ struct CurvedBounds {
   double lower = -kInfinity, upper = kInfinity;
   Vec3 normal = Vec3::Zero();  // of `lower`, in frame A, from A to B
   PointPair points{};          // of `upper`
+  PointPair deepest{};         // where the bodies overlap: that meet when B is moved by its depth
 };
 
 class CurvedPair {

@@ -138,12 +138,12 @@ class DepthSearch {
     const double best = depth();
     taken_off_ = std::min(ball_, 0.5 * std::max(best, 0.0));
     const Vec3 x = n.unitOrthogonal(), y = n.cross(x).normalized();
-    std::array<Corner, 6> corners{corner(n),        corner(x), corner(y), corner(Vec3(-n)),
-                                  corner(Vec3(-x)), corner(Vec3(-y))};
+    std::array<Corner, 6> corners{corner(n),        corner(x),        corner(y),
+                                  corner(Vec3(-n)), corner(Vec3(-x)), corner(Vec3(-y))};
     count_ = 0;
     for (std::size_t octant = 0; octant < 8; ++octant) {
-      stack_[count_++] = {{corners[octant & 1 ? 3 : 0], corners[octant & 2 ? 4 : 1],
-                           corners[octant & 4 ? 5 : 2]}};
+      stack_[count_++] = {
+          {corners[octant & 1 ? 3 : 0], corners[octant & 2 ? 4 : 1], corners[octant & 4 ? 5 : 2]}};
     }
     while (count_ > 0) {
       if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
@@ -161,8 +161,7 @@ class DepthSearch {
     std::size_t from = 0;
     double longest = -1.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double side =
-          (t.corners[(i + 1) % 3].normal - t.corners[i].normal).squaredNorm();
+      const double side = (t.corners[(i + 1) % 3].normal - t.corners[i].normal).squaredNorm();
       if (side > longest) {
         longest = side;
         from = i;

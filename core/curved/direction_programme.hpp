@@ -17,7 +17,7 @@ struct PlaneFunction {
 
 struct PlaneStep {
   Vec2 step = Vec2::Zero();
-  double value = 0.0;             // the least of the functions there
+  double value = 0.0;               // the least of the functions there
   std::array<double, 5> weights{};  // >= 0, sum 1: of the functions that are active, three at most
 };
 

@@ -159,9 +159,9 @@ class DirectionSearch {
     return found;
   }
 
-  // The points of the active pieces, each moved along as its direction is turned by `step`; `again`:
-  // and once more by what is left across that direction, since rims are not straight.
-  void add_points(const PlaneStep& found, int again = 0) noexcept {
+  // The points of the active pieces, each moved along as its direction is turned by `step`;
+  // `again`: and once more by what is left across that direction, since rims are not straight.
+  PointPair add_points(const PlaneStep& found, int again = 0) noexcept {
     PointPair points;
     for (std::size_t i = 0; i < count_; ++i) {
       points.a += found.weights[i] * functions_[i].at.points.a;
@@ -173,10 +173,10 @@ class DirectionSearch {
       points.a += on_a.x() * tangents_.x + on_a.y() * tangents_.y;
       points.own_b -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
       points = pair_.add_points(points.a, points.own_b);
-      if (round >= again || pair_.is_tight()) return;
+      if (round >= again || pair_.is_tight()) return points;
       const Vec3 w = points.difference();
-      const PlaneFunction rest{0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) -
-                                        at_.apart * found.step};
+      const PlaneFunction rest{
+          0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) - at_.apart * found.step};
       turn = highest_least({rest}, 1, hessian(radii_a_, radii_b_)).step;
     }
   }
@@ -214,7 +214,10 @@ class DirectionSearch {
       found = solve();
       add_points(found);
     }
-    if (!pair_.is_tight()) add_points(found, kPointRounds);
+    if (!pair_.is_tight()) {
+      const PointPair last = add_points(found, kPointRounds);
+      if (at_.apart < 0.0 && at_.apart >= pair_.bounds.lower) pair_.bounds.deepest = last;
+    }
     done_ = true;
   }
 

@@ -9,8 +9,9 @@ namespace clearance {
 
 [[nodiscard]] bool is_half_space(const CurvedBody& body) noexcept;
 
-// A or B is a half-space, the other one is bounded.
+// A or B is a half-space, the other one is bounded. `shared`: as of CurvedTrackingState.
 [[nodiscard]] DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
-                                                    const RelativePose& a_from_b) noexcept;
+                                                    const RelativePose& a_from_b,
+                                                    Vec3& shared) noexcept;
 
 }  // namespace clearance

@@ -6,7 +6,7 @@
 namespace clearance {
 
 struct CurvedStart {
-  Vec3 normal;       // unit, frame A
+  Vec3 normal;        // unit, frame A
   bool meet = false;  // the bodies share a point, up to rounding: `bounds` has it
 };
 
