@@ -12,7 +12,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
+OrderedJson json_of(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
 // One pose, all pairs of parts.
 struct UnionAnswer {
@@ -55,7 +55,7 @@ OrderedJson figures(const UnionAnswer& answer, bool parts) {
   const DistanceResult& r = answer.nearest;
   const bool overlapping = r.distance < 0.0;
   const auto positive = [](double value) { return std::max(0.0, value); };
-  const auto world = [&](const Vec3& p) { return entry(transform(answer.world_from_a, p)); };
+  const auto world = [&](const Vec3& p) { return json_of(transform(answer.world_from_a, p)); };
   OrderedJson out;
   out["distance"] = positive(r.distance);
   out["lower"] = positive(answer.lower);
@@ -67,7 +67,7 @@ OrderedJson figures(const UnionAnswer& answer, bool parts) {
     out["penetration_lower"] = positive(-r.upper);
     out["penetration_upper"] = positive(-r.lower);
   }
-  out["normal"] = entry(rotation_matrix(answer.world_from_a.orientation) * r.normal);
+  out["normal"] = json_of(rotation_matrix(answer.world_from_a.orientation) * r.normal);
   out["status"] = name(r.status);
   out["iterations"] = r.iterations;
   return out;
@@ -93,7 +93,8 @@ OrderedJson CurvedAnswerer::answer(const CurvedCase& question) {
   out["id"] = question.id;
   for (const UnionAnswer& answer : answers) {
     not_converged_ += answer.nearest.status == DistanceStatus::kIterationLimit ? 1 : 0;
-    for (const auto& [key, value] : figures(answer, pairs > 1).items()) {
+    const OrderedJson step = figures(answer, pairs > 1);
+    for (const auto& [key, value] : step.items()) {
       if (question.motion) {
         out[key].push_back(value);
       } else {
