@@ -14,6 +14,11 @@ DistanceStatus status_of(const DistanceResult& r, double size) noexcept {
 
 }  // namespace
 
+Vec3 radial_direction(const CurvedConclusion& found) noexcept {
+  const Vec3 apart = found.point_on_b - found.point_on_a;
+  return found.lower > 0.0 && !apart.isZero(0.0) ? unit_along(apart) : found.normal;
+}
+
 Vec3 between(const Vec3& on_a, const Vec3& on_b, double radius_a, double radius_b) noexcept {
   const double radii = radius_a + radius_b;
   return on_a + (radii > 0.0 ? radius_a / radii : 0.5) * (on_b - on_a);
@@ -30,8 +35,9 @@ DistanceResult conclude(const CurvedConclusion& found) noexcept {
   r.upper = found.upper + found.error - radii + rounding(found.upper);
   r.distance = std::clamp(best - radii, r.lower, r.upper);
   r.normal = found.normal;
-  r.point_on_a = found.point_on_a + found.radius_a * found.normal;
-  r.point_on_b = found.point_on_b - found.radius_b * found.normal;
+  const Vec3 radial = radial_direction(found);
+  r.point_on_a = found.point_on_a + found.radius_a * radial;
+  r.point_on_b = found.point_on_b - found.radius_b * radial;
   r.status = status_of(r, found.size + radii);
   return r;
 }

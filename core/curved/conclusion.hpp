@@ -14,6 +14,10 @@ struct CurvedConclusion {
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
 };
 
+// From A to B as radii are put on: along the points where the bodies without radii are apart, so
+// that what is left of the witness points is as long as the distance.
+[[nodiscard]] Vec3 radial_direction(const CurvedConclusion& found) noexcept;
+
 // Bounds that have converged are within this of each other, by the pair's size.
 inline constexpr double kConvergedCurvedGap = 1e-13;
 

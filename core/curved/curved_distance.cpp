@@ -47,6 +47,17 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   return found;
 }
 
+// A point of both: of bodies that overlap by little, and of which no common point has been found,
+// halfway between the deepest ones.
+void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& state) noexcept {
+  const CurvedBounds& bounds = pair.bounds;
+  const bool common = !(depth > 0.0) || bounds.upper <= pair.gap_tolerance();
+  const PointPair& points = common ? bounds.points : bounds.deepest;
+  state.own_point_on_b = (depth > 0.0 ? bounds.deepest : bounds.points).own_b;
+  state.shared = common ? between(points.a, points.b, pair.a.body->radius, pair.b.body->radius)
+                        : Vec3(0.5 * (points.a + points.b));
+}
+
 DistanceResult of_unknown(DistanceStatus status) noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   DistanceResult r;
@@ -75,7 +86,7 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
     if (!is_half_space(is_bounded(a) ? b : a) || (!is_bounded(a) && !is_bounded(b))) {
       return of_unknown(DistanceStatus::kIterationLimit);
     }
-    return distance_of_half_space(a, b, a_from_b, state.shared);
+    return distance_of_half_space(a, b, a_from_b, state);
   }
   CurvedPair pair(a, b, a_from_b);
   if (!is_usable(state, a, b)) state = {};
@@ -95,7 +106,7 @@ DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
     supports += found.supports;
   }
   state.normal = pair.bounds.normal;
-  state.shared = between(pair.bounds.points.a, pair.bounds.points.b, a.radius, b.radius);
+  keep_points(pair, depth, state);
   DistanceResult r = conclude(conclusion_of(pair, depth));
   r.iterations = static_cast<std::uint16_t>(supports);
   return r;

@@ -16,7 +16,9 @@ namespace clearance {
 struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A; 0: none
   ActivePieces active;
-  Vec3 shared = Vec3::Zero();  // where the bodies overlap, a point of both, frame A
+  // Of the last query: the point of B without its radius, in frame B; and where the bodies overlap,
+  // a point of both, frame A.
+  Vec3 own_point_on_b = Vec3::Zero(), shared = Vec3::Zero();
 };
 
 // noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer

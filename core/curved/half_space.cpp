@@ -31,7 +31,8 @@ bool is_half_space(const CurvedBody& body) noexcept {
 }
 
 DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
-                                      const RelativePose& a_from_b, Vec3& shared) noexcept {
+                                      const RelativePose& a_from_b,
+                                      CurvedTrackingState& state) noexcept {
   const bool of_a = is_half_space(a);
   const CurvedBody &plane = of_a ? a : b, &body = of_a ? b : a;
   const Facet& facet = plane.polyhedron->facets.front();
@@ -55,7 +56,8 @@ DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
   found.radius_b = b.radius;
   found.error = error_of(body.reach, std::abs(facet.offset), a_from_b);
   found.size = body.reach + std::abs(facet.offset) + a_from_b.translation.norm();
-  shared =
+  state.own_point_on_b = turn.transpose() * (found.point_on_b - a_from_b.translation);
+  state.shared =
       found.lower < 0.0 ? point : between(found.point_on_a, found.point_on_b, a.radius, b.radius);
   return conclude(found);
 }

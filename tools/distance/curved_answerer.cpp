@@ -18,18 +18,26 @@ OrderedJson json_of(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.
 struct UnionAnswer {
   DistanceResult nearest;
   double lower = kInfinity, upper = kInfinity;
-  Pose world_from_a;  // of the nearest part
-  Vec3 shared = Vec3::Zero();
+  Vec3 normal, on_a, on_b;  // of the nearest parts; where they overlap, both points are the same
 };
 
+// The point of B is placed by B's own pose: through A's frame it would have a rounding error that
+// grows with the distance.
 void add(UnionAnswer& answer, const DistanceResult& r, const Pose& world_from_a,
-         const CurvedTrackingState& state) {
+         const Pose& world_from_b, double radius_b, const CurvedTrackingState& state) {
   answer.lower = std::min(answer.lower, r.lower);
   answer.upper = std::min(answer.upper, r.upper);
-  if (answer.world_from_a.position.allFinite() && r.distance >= answer.nearest.distance) return;
+  if (r.distance >= answer.nearest.distance) return;
   answer.nearest = r;
-  answer.world_from_a = world_from_a;
-  answer.shared = state.shared;
+  answer.normal = rotation_matrix(world_from_a.orientation) * r.normal;
+  if (r.distance < 0.0) {
+    answer.on_a = answer.on_b = transform(world_from_a, state.shared);
+    return;
+  }
+  answer.on_a = transform(world_from_a, r.point_on_a);
+  const Vec3 own = transform(world_from_b, state.own_point_on_b);
+  const Vec3 to_a = unit_along(Vec3(answer.on_a - own));
+  answer.on_b = own + radius_b * (to_a.isZero(0.0) ? Vec3(-answer.normal) : to_a);
 }
 
 UnionAnswer nearest_of_parts(const CurvedCase& question, const Pose& pose_a, const Pose& pose_b,
@@ -45,7 +53,8 @@ UnionAnswer nearest_of_parts(const CurvedCase& question, const Pose& pose_a, con
       const Pose world_from_b = whole_b ? pose_b : compose(pose_b, b.body_from_part);
       const RelativePose a_from_b = relative_pose(world_from_a, world_from_b);
       CurvedTrackingState& state = states[pair++];
-      add(answer, curved_distance(a.shape, b.shape, a_from_b, state), world_from_a, state);
+      const DistanceResult r = curved_distance(a.shape, b.shape, a_from_b, state);
+      add(answer, r, world_from_a, world_from_b, b.shape.radius, state);
     }
   }
   return answer;
@@ -53,21 +62,19 @@ UnionAnswer nearest_of_parts(const CurvedCase& question, const Pose& pose_a, con
 
 OrderedJson figures(const UnionAnswer& answer, bool parts) {
   const DistanceResult& r = answer.nearest;
-  const bool overlapping = r.distance < 0.0;
   const auto positive = [](double value) { return std::max(0.0, value); };
-  const auto world = [&](const Vec3& p) { return json_of(transform(answer.world_from_a, p)); };
   OrderedJson out;
   out["distance"] = positive(r.distance);
   out["lower"] = positive(answer.lower);
   out["upper"] = positive(answer.upper);
-  out["witness_a"] = world(overlapping ? answer.shared : r.point_on_a);
-  out["witness_b"] = world(overlapping ? answer.shared : r.point_on_b);
+  out["witness_a"] = json_of(answer.on_a);
+  out["witness_b"] = json_of(answer.on_b);
   if (!parts) {
     out["penetration"] = positive(-r.distance);
     out["penetration_lower"] = positive(-r.upper);
     out["penetration_upper"] = positive(-r.lower);
   }
-  out["normal"] = json_of(rotation_matrix(answer.world_from_a.orientation) * r.normal);
+  out["normal"] = json_of(answer.normal);
   out["status"] = name(r.status);
   out["iterations"] = r.iterations;
   return out;
