@@ -51,7 +51,8 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
 // halfway between the deepest ones.
 void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& state) noexcept {
   const CurvedBounds& bounds = pair.bounds;
-  const bool common = !(depth > 0.0) || bounds.upper <= pair.gap_tolerance();
+  const bool common = !(depth > 0.0) || bounds.upper <= pair.gap_tolerance() ||
+                      bounds.deepest.difference().norm() > 2.0 * bounds.upper;
   const PointPair& points = common ? bounds.points : bounds.deepest;
   state.own_point_on_b = (depth > 0.0 ? bounds.deepest : bounds.points).own_b;
   state.shared = common ? between(points.a, points.b, pair.a.body->radius, pair.b.body->radius)

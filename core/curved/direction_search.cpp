@@ -216,7 +216,8 @@ class DirectionSearch {
     }
     if (!pair_.is_tight()) {
       const PointPair last = add_points(found, kPointRounds);
-      if (at_.apart < 0.0 && at_.apart >= pair_.bounds.lower) pair_.bounds.deepest = last;
+      const bool deepest = at_.apart >= pair_.bounds.lower - pair_.gap_tolerance();
+      if (at_.apart < 0.0 && deepest) pair_.bounds.deepest = last;
     }
     done_ = true;
   }
