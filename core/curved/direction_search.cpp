@@ -214,6 +214,8 @@ class DirectionSearch {
       found = solve();
       add_points(found);
     }
+    // The step that the bounds no longer need makes the direction as good as they are.
+    if (pair_.is_tight()) pair_.bounds.normal = turned(found.step);
     if (!pair_.is_tight()) {
       const PointPair last = add_points(found, kPointRounds);
       const bool deepest = at_.apart >= pair_.bounds.lower - pair_.gap_tolerance();
