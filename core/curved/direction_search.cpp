@@ -186,9 +186,7 @@ class DirectionSearch {
   }
 
   void step() noexcept {
-    shift_ = at_.apart < -0x1p-40 * pair_.size ? at_.apart
-                                               : std::max(at_.apart, 0.5 * pair_.bounds.upper);
-    shift_ = shift_ == 0.0 ? 0x1p-50 * pair_.size : shift_;
+    set_shift();
     PlaneStep found = solve();
     add_points(found);
     for (int trial = 0; trial < kTrials && !pair_.is_tight(); ++trial) {
@@ -222,6 +220,15 @@ class DirectionSearch {
       if (at_.apart < 0.0 && deepest) pair_.bounds.deepest = last;
     }
     done_ = true;
+  }
+
+  // What the sphere's own curvature adds: how far apart the bodies are, or nearly so as long as the
+  // direction is far off.
+  void set_shift() noexcept {
+    const double farthest = std::min(pair_.bounds.upper, at_.points.difference().norm());
+    const bool overlap = at_.apart < -0x1p-40 * pair_.size;
+    shift_ = overlap ? at_.apart : std::max(at_.apart, 0.5 * farthest);
+    if (shift_ == 0.0) shift_ = 0x1p-50 * pair_.size;
   }
 
   // A step that rounding hides: it may still bring the points to each other.
