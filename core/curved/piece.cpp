@@ -12,6 +12,9 @@ namespace {
 // the support point of a disc then falls short is in CurvedPair::error().
 constexpr double kOnAxis = 0x1p-51;
 
+// Squares of lengths and of directions neither over- nor underflow: kLeastExtent, kOnAxis.
+double length_across(const Vec3& v) noexcept { return std::sqrt(v.x() * v.x() + v.y() * v.y()); }
+
 double disc_value(const Disc& disc, const Vec3& m, double across) noexcept {
   return disc.height * m.z() + disc.radius * across;
 }
@@ -21,7 +24,7 @@ Vec3 pulled_into_cone(const CurvedBody& body, Vec3 point) noexcept {
   point.z() = std::clamp(point.z(), low.height, high.height);
   const double part = (point.z() - low.height) / (high.height - low.height);
   const double limit = (1.0 - part) * low.radius + part * high.radius;
-  const double across = std::hypot(point.x(), point.y());
+  const double across = length_across(point);
   if (across > limit) point.head<2>() *= limit / across;
   return point;
 }
@@ -29,7 +32,7 @@ Vec3 pulled_into_cone(const CurvedBody& body, Vec3 point) noexcept {
 }  // namespace
 
 Azimuth azimuth_of(const PieceSource& source, const Vec3& m) noexcept {
-  const double across = std::hypot(m.x(), m.y());
+  const double across = length_across(m);
   if (!(across > kOnAxis)) return {kOnAxis, source.rim_azimuth};
   return {across, Vec2(m.x() / across, m.y() / across)};
 }
