@@ -24,8 +24,8 @@ enum class PairStatus : std::uint8_t {
   // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
   kCarried = 4,
   kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
-  // An object has never been seen, or is late without a stated maximum speed: all NaN,
-  // lower = -infinity, upper = +infinity.
+  // An object has never been seen, is late without a stated maximum speed, or is contradicted: all
+  // NaN, lower = -infinity, upper = +infinity.
   kUnknown = 6,
 };
 inline constexpr std::size_t kPairStatuses = 7;
@@ -70,14 +70,14 @@ enum class ZoneCause : std::uint8_t {
   kNear = 1,     // by distance, or not yet proved to be farther
   kLate = 2,     // what a late object may have moved unseen: on time, the pair would be outside
   kUnknown = 3,  // an object was never seen
-  kDiscontinuous = 4,  // nobody can say what was between the last two poses of an object
+  kDiscontinuous = 4,  // what was between the last two poses of an object is not known
   kContradicted = 5,   // as kLate, since the poses of an object contradict each other or the cell
 };
 
 struct ZoneReport {
   // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
   // what came too near and was gone again between two ticks has entered, for this tick. An unknown
-  // pair's lower bound is -infinity: nobody can say that it is outside.
+  // pair's lower bound is -infinity: it cannot be proved to be outside.
   bool active = false;
   // Every pair was proved outside since the last tick, or evaluated, or proved to have been inside.
   bool certified = false;

@@ -1,5 +1,5 @@
 // The time that a tick is told. It only ever goes forwards, at the rate of this machine's steady
-// clock: nobody can step it.
+// clock, which cannot be stepped.
 #pragma once
 
 #include <cstdint>

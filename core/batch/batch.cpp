@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <new>
 #include <numeric>
 #include <vector>
@@ -144,12 +145,21 @@ class DistanceBatch::Rounds {
     slots_.enter(pair);
   }
 
+  // A body that has no place yet would cost more than one that is tracked, round after round: the
+  // result of the last one holds.
+  [[nodiscard]] bool is_still_nowhere(std::uint32_t pair) const noexcept {
+    if (results_[pair].status != DistanceStatus::kBadPose) return false;
+    const auto [a, b] = of_.pairs[pair];
+    return std::isnan(poses_[a].position.x()) || std::isnan(poses_[b].position.x());
+  }
+
   // In the order of the pairs. After more than one transition the features are others, or the pair
   // is not for vector code.
   void query_unassigned() noexcept {
     for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
       for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {
         const auto pair = word * kBits + static_cast<std::uint32_t>(std::countr_zero(bits));
+        if (is_still_nowhere(pair)) continue;
         query(pair);
         Residence& residence = residences_[pair];
         residence.add(rounds_, results_[pair].iterations != 1);

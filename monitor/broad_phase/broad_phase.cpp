@@ -162,7 +162,7 @@ double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const double urgent = urgent_[a] + urgent_[b];
   const double since = displacement_since_last_tick(*bodies_[a].state) +
                        displacement_since_last_tick(*bodies_[b].state);
-  const double zones = zone_levels_.outside_from(pair) + urgent;
+  const double zones = zone_levels_.largest_threshold(pair) + urgent;
   return std::max(std::max(horizon_, urgent), zones + since) + kSumError;
 }
 
@@ -194,7 +194,7 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
 
 // Z + U, m.
 double BroadPhase::zone_level(std::uint32_t pair) const noexcept {
-  return zone_levels_.outside_from(pair) + bodies_[object_a_[pair]].state->may_have_moved +
+  return zone_levels_.largest_threshold(pair) + bodies_[object_a_[pair]].state->may_have_moved +
          bodies_[object_b_[pair]].state->may_have_moved;
 }
 

@@ -20,7 +20,7 @@ std::int64_t units(double length) noexcept {
 }  // namespace
 
 MotionWheels::MotionWheels(std::size_t objects, std::size_t pairs)
-    : wheels_(objects), first_(objects * kLevels * kRing, kNobody), timers_(2 * pairs) {}
+    : wheels_(objects), first_(objects * kLevels * kRing, kNoIndex), timers_(2 * pairs) {}
 
 bool MotionWheels::set(std::uint32_t timer, std::uint32_t object, double displacement) noexcept {
   const double accumulated = wheels_[object].accumulated;
@@ -36,7 +36,7 @@ bool MotionWheels::set(std::uint32_t timer, std::uint32_t object, double displac
       (object * kLevels + static_cast<std::uint32_t>(level)) * kRing + place;
 
   timers_[timer] = {.next = first_[bucket], .before = kHead | bucket};
-  if (first_[bucket] != kNobody) timers_[first_[bucket]].before = timer;
+  if (first_[bucket] != kNoIndex) timers_[first_[bucket]].before = timer;
   first_[bucket] = timer;
   return true;
 }
@@ -49,7 +49,7 @@ void MotionWheels::cancel(std::uint32_t timer) noexcept {
   } else {
     timers_[at.before].next = at.next;
   }
-  if (at.next != kNobody) timers_[at.next].before = at.before;
+  if (at.next != kNoIndex) timers_[at.next].before = at.before;
   timers_[timer] = {};
 }
 
@@ -78,7 +78,7 @@ bool MotionWheels::take_due(std::uint32_t object, std::size_t most,
 
 bool MotionWheels::empty_bucket(std::uint32_t bucket, std::size_t most,
                                 std::vector<std::uint32_t>& pairs) noexcept {
-  while (first_[bucket] != kNobody) {
+  while (first_[bucket] != kNoIndex) {
     if (pairs.size() >= most) return false;
     const std::uint32_t timer = first_[bucket];
     cancel(timer);

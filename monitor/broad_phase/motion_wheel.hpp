@@ -45,12 +45,12 @@ class MotionWheels {
  private:
   static constexpr std::uint32_t kRing = 8;
   static constexpr std::uint32_t kLevels = 20;  // the widest bucket: 128 m
-  static constexpr std::uint32_t kNobody = ~0u;
+  static constexpr std::uint32_t kNoIndex = ~0u;
   static constexpr std::uint32_t kNotSet = ~0u;
   static constexpr std::uint32_t kHead = 1u << 31;  // `before` is a bucket, not a timer
 
   struct Timer {
-    std::uint32_t next = kNobody;
+    std::uint32_t next = kNoIndex;
     std::uint32_t before = kNotSet;
   };
   struct Wheel {

@@ -121,11 +121,11 @@ void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& de
 // Why the object's pairs are stale.
 void log_stale(const clearance_msg_InputAge& input) {
   if (input.contradicted) {
-    spdlog::warn("poses of {} contradict its last one or the cell: its pairs are stale",
+    spdlog::warn("poses of {} contradict each other or the cell: its pairs are unknown",
                  input.name);
   } else {
-    spdlog::warn("no pose of {} for {} ms: its pairs are stale", input.name,
-                 input.age_ns / 1'000'000);
+    spdlog::warn("the last pose of {} that could be used is {} ms old: its pairs are stale",
+                 input.name, input.age_ns / 1'000'000);
   }
 }
 
@@ -163,8 +163,8 @@ HealthLog::HealthLog(const Scene& scene)
 void HealthLog::log_clock(const clearance_msg_Health& health) {
   if (health.clock_steps > clock_steps_) {
     spdlog::warn(
-        "this machine's clock was stepped by {:+.3f} s: ages go on by a clock that was not, and "
-        "poses of other machines are late or refused until their clocks agree with it",
+        "this machine's clock was stepped by {:+.3f} s: ages go on by one that was not; sources of "
+        "this machine are late for half a second, sources of others keep their relation to it",
         1e-9 * static_cast<double>(health.clock_offset_ns - clock_offset_ns_));
   }
   clock_steps_ = health.clock_steps;

@@ -9,7 +9,7 @@ namespace {
 // A million batches are a quarter of an hour at 1 kHz: nobody loses so many in a row.
 constexpr std::uint64_t kCountsAnew = 1'000'000;
 // Of a writer that has left.
-constexpr std::uint64_t kNobody = 0;
+constexpr std::uint64_t kNoIndex = 0;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
   if (known != tallies_.end()) {
     SourceTally& tally = *known;
     if (tally.writer == writer) return {.tally = &tally};
-    const bool held = tally.writer != kNobody && monotonic_ns - tally.last_ns < kNameHeldNs;
+    const bool held = tally.writer != kNoIndex && monotonic_ns - tally.last_ns < kNameHeldNs;
     const std::uint64_t former = tally.writer;
     if (held) {
       Admission refusal = refuse(source, SourceRefusal::kOtherWriter, poses);
@@ -83,7 +83,7 @@ SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
     const std::int64_t silent = monotonic_ns - tally.last_ns;
     if (is_named(tally.source)) continue;
     const bool may_go =
-        tally.writer == kNobody || silent >= (spare ? kSparePlaceHeldNs : kPlaceHeldNs);
+        tally.writer == kNoIndex || silent >= (spare ? kSparePlaceHeldNs : kPlaceHeldNs);
     if (may_go && (longest == nullptr || tally.last_ns < longest->last_ns)) longest = &tally;
   }
   return longest;
@@ -91,7 +91,7 @@ SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
 
 void PoseSources::keep(std::span<const std::uint64_t> writers) {
   for (SourceTally& tally : tallies_) {
-    if (std::ranges::find(writers, tally.writer) == writers.end()) tally.writer = kNobody;
+    if (std::ranges::find(writers, tally.writer) == writers.end()) tally.writer = kNoIndex;
   }
 }
 

@@ -35,7 +35,7 @@ class ReportSink {
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 
-// Realtime for stamps that other machines compare; two that nobody can step: monotonic for
+// Realtime for stamps that other machines compare; two that cannot be stepped: monotonic for
 // deadlines, and steady, which goes on while the machine sleeps, for ages.
 class Clock {
  public:

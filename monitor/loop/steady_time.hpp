@@ -1,5 +1,5 @@
 // The tick's time from the clocks of this machine: CLOCK_REALTIME as it was at the first reading,
-// plus what CLOCK_BOOTTIME has gone on since, which nobody can step and which goes on while the
+// plus what CLOCK_BOOTTIME has gone on since, which cannot be stepped and goes on while the
 // machine sleeps.
 #pragma once
 

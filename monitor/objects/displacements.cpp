@@ -37,7 +37,7 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
     any = true;
     if (!object.known()) continue;
     unseen.add(object.may_have_moved);
-    // No pair is culled of an object whose displacement nobody can bound, short of a discontinuity.
+    // No pair is culled of an object whose displacement has no bound, short of a discontinuity.
     const double displacement = object.known_displacement();
     const double bounded = displacement < kInfinity ? displacement : 0.0;
     farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));

@@ -14,6 +14,13 @@ constexpr double kAtRest = 0.01;
 // By which the repetitions of an object that states no max_speed are judged, m/s.
 constexpr double kUsualSpeed = 1.0;
 
+// How long an anchor holds, in age limits: an object that is never slower than its speed and a
+// sixth is found out.
+constexpr std::int64_t kAnchorAgeLimits = 6;
+
+// Over how long twists are summed up, in age limits: over more, noise comes to something.
+constexpr std::int64_t kWayAgeLimits = 50;
+
 double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 
 double fastest_of(const Object& object) noexcept {
@@ -94,19 +101,53 @@ bool can_have_twist(const Object& object, const Landmarks& landmarks,
 
 void Repetition::add(bool same, std::int64_t stamp_ns, const PoseSample& sample,
                      const Object& object, const Landmarks& landmarks) noexcept {
-  const std::int64_t passed_ns = elapsed(last_ns_, stamp_ns);
+  const double passed = seconds(elapsed(last_ns_, stamp_ns));
   last_ns_ = stamp_ns;
   if (!same) since_ns_ = stamp_ns;
+  if (!same || elapsed(way_since_ns_, stamp_ns) > kWayAgeLimits * object.age_limit_ns) {
+    way_ = {};
+    way_since_ns_ = stamp_ns;
+  }
   const bool moves = same && sample.has_twist &&
                      !landmarks.are_slower(kAtRest * usual_speed_of(object),
                                            sample.world_from_object, sample.twist);
-  const double speed = moves ? landmarks.fastest(sample.world_from_object, sample.twist) : 0.0;
-  claimed_ = moves ? claimed_ + speed * seconds(passed_ns) : 0.0;
+  if (moves) {
+    way_.linear += passed * sample.twist.linear;
+    way_.angular += passed * sample.twist.angular;
+  } else {
+    way_ = {};
+  }
 }
 
-bool Repetition::frozen(const Object& object) const noexcept {
-  if (claimed_ > usual_speed_of(object) * seconds(object.age_limit_ns)) return true;
+bool Repetition::frozen(const Pose& pose, const Object& object,
+                        const Landmarks& landmarks) const noexcept {
+  const double farthest = usual_speed_of(object) * seconds(object.age_limit_ns);
+  if (!landmarks.are_slower(farthest, pose, way_)) return true;
   return object.frozen_limit_ns > 0 && elapsed(since_ns_, last_ns_) > object.frozen_limit_ns;
+}
+
+void Anchor::set(const Pose& pose, std::int64_t stamp_ns) noexcept {
+  pose_ = pose;
+  stamp_ns_ = stamp_ns;
+}
+
+bool Anchor::allows(const Pose& pose, std::int64_t stamp_ns, const Object& object,
+                    const Landmarks& landmarks) const noexcept {
+  return can_reach(object, landmarks, pose_, pose, elapsed(stamp_ns_, stamp_ns));
+}
+
+void Anchor::follow(const Pose& pose, std::int64_t stamp_ns, const Object& object) noexcept {
+  if (elapsed(stamp_ns_, stamp_ns) > kAnchorAgeLimits * object.age_limit_ns) set(pose, stamp_ns);
+}
+
+bool OtherPlace::add(const Pose& pose, std::int64_t stamp_ns, const Object& object,
+                     const Landmarks& landmarks) noexcept {
+  const bool stays = any_ && can_reach(object, landmarks, pose_, pose, elapsed(last_ns_, stamp_ns));
+  if (!stays) since_ns_ = stamp_ns;
+  any_ = true;
+  pose_ = pose;
+  last_ns_ = stamp_ns;
+  return elapsed(since_ns_, stamp_ns) >= kTakenAfterNs;
 }
 
 }  // namespace clearance

@@ -1,10 +1,13 @@
-// Whether a pose can be true of an object that was where the pose in use says, as far as the cell
+// Whether a pose can be true of an object that was where its last poses say, as far as the cell
 // states how fast the object moves.
 //
 // No point of an object with max_speed v goes farther than v (t + age limit) while t passes between
-// two stamps: the age limit is how far off in time the cell lets a pose be. Poses that exceed that
-// are refused, and the object is late at once, whatever the stamps say. Where the poses stay there,
-// they are taken when the object can have got there.
+// two stamps: the age limit is how far off in time the cell lets a pose be. That is held against
+// the pose in use, and against an older one, so that no row of steps comes to more. Which of two
+// poses that exclude each other is wrong, they do not tell: the later one is not used, and the
+// object is unknown until one agrees again and an age limit has passed since the last
+// contradiction. Where the poses stay at the other place, they are taken when the object can have
+// got there, or after ten seconds.
 #pragma once
 
 #include <array>
@@ -54,13 +57,49 @@ class Repetition {
   // `same`: the sample has the pose that is in use. `stamp_ns`: in the tick's time.
   void add(bool same, std::int64_t stamp_ns, const PoseSample& sample, const Object& object,
            const Landmarks& landmarks) noexcept;
-  // The twists claim that the object has gone farther than it does in an age limit, or the pose has
-  // come for longer than the cell says that one of this object may.
-  [[nodiscard]] bool frozen(const Object& object) const noexcept;
+  // The twists lead farther than the object goes in an age limit, or the pose has come for longer
+  // than the cell says that one of this object may.
+  [[nodiscard]] bool frozen(const Pose& pose, const Object& object,
+                            const Landmarks& landmarks) const noexcept;
 
  private:
   std::int64_t since_ns_ = 0, last_ns_ = 0;
-  double claimed_ = 0.0;  // m; 0 from when a twist says that it is as good as at rest
+  // Where the twists lead, m and rad, in sum, so that noise is none; zero from when one says that
+  // the object is as good as at rest.
+  Twist way_;
+  std::int64_t way_since_ns_ = 0;
+};
+
+// An older pose of the stream in use, from which the object cannot have gone too far either.
+class Anchor {
+ public:
+  // To the first pose of a stream.
+  void set(const Pose& pose, std::int64_t stamp_ns) noexcept;
+  [[nodiscard]] bool allows(const Pose& pose, std::int64_t stamp_ns, const Object& object,
+                            const Landmarks& landmarks) const noexcept;
+  // Of every other one that is taken.
+  void follow(const Pose& pose, std::int64_t stamp_ns, const Object& object) noexcept;
+
+ private:
+  Pose pose_;
+  std::int64_t stamp_ns_ = 0;
+};
+
+// Poses that stay at a place where the object cannot be.
+class OtherPlace {
+ public:
+  // Until when they have to stay there to be taken.
+  static constexpr std::int64_t kTakenAfterNs = 10'000'000'000;
+
+  // True: they have stayed long enough. Stamps are in the tick's time.
+  [[nodiscard]] bool add(const Pose& pose, std::int64_t stamp_ns, const Object& object,
+                         const Landmarks& landmarks) noexcept;
+  void clear() noexcept { any_ = false; }
+
+ private:
+  bool any_ = false;
+  Pose pose_;
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/objects/elapsed.hpp"
@@ -74,21 +75,32 @@ bool belongs_to_another(const Object& object, const PoseSample& sample, std::int
          elapsed(state.taken_ns, now_ns) <= std::max(object.age_limit_ns, kSilentNs);
 }
 
-// What is against the pose of a well-formed sample, given the one in use.
+// Whether the object can have come to this pose; if not, whether it has to be taken all the same.
+bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
+               TrackedObject& state) noexcept {
+  const std::int64_t passed_ns = elapsed(state.stamp_ns, stamp_ns);
+  if (can_reach(object, state.landmarks, state.pose, pose, passed_ns) &&
+      state.anchor.allows(pose, stamp_ns, object, state.landmarks)) {
+    return true;
+  }
+  if (!state.other_place.add(pose, stamp_ns, object, state.landmarks)) return false;
+  state.anchor.set(pose, stamp_ns);
+  return true;
+}
+
+// What is against a well-formed sample of the object's source, given those before it.
 std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
-                                    std::int64_t stamp_ns, TrackedObject& state) noexcept {
+                                    std::int64_t stamp_ns, const SampleLimits& limits,
+                                    TrackedObject& state) noexcept {
+  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
+  if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
   const Pose pose = as_queries_take_it(sample.world_from_object);
   const bool same = state.seen && same_pose(pose, state.pose);
   state.repetition.add(same, stamp_ns, sample, object, state.landmarks);
-  if (same) {
-    return state.repetition.frozen(object) ? std::optional(Reject::kFrozen) : std::nullopt;
-  }
-  const std::int64_t passed_ns = elapsed(state.stamp_ns, stamp_ns);
-  if (state.seen && !can_reach(object, state.landmarks, state.pose, pose, passed_ns)) {
-    return Reject::kTooFast;
-  }
+  if (same && state.repetition.frozen(pose, object, state.landmarks)) return Reject::kFrozen;
+  if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
   return std::nullopt;
 }
 
@@ -113,10 +125,14 @@ std::optional<Reject> refusal(const Object& object, const PoseSample& sample, st
     state.other_source = sample.source;
     return Reject::kOtherSource;
   }
-  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
-  if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
-  const auto cause = contradiction(object, sample, stamp_ns, state);
-  state.contradicted = cause.has_value();
+  const auto cause = contradiction(object, sample, stamp_ns, limits, state);
+  // Of poses that come in another order than they were made one is as good as the other.
+  const bool reordered =
+      cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= object.age_limit_ns;
+  if (cause && !reordered) {
+    state.contradicted_until_ns = limits.now_ns + object.age_limit_ns;
+    state.agrees_again = false;
+  }
   return cause;
 }
 
@@ -135,7 +151,12 @@ void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_n
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
   state.pose = as_queries_take_it(sample.world_from_object);
+  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
+  state.anchor.follow(state.pose, stamp_ns, object);
+  state.other_place.clear();
+  state.agrees_again = true;
   state.stamp_ns = stamp_ns;
+  if (state.source != sample.source) state.other_source = kNoSource;
   state.source = sample.source;
   state.taken_ns = now_ns;
   state.seen = true;
@@ -144,6 +165,7 @@ void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_n
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
   state.taken_ns = now_ns;
+  state.contradicted_until_ns = std::numeric_limits<std::int64_t>::min();
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
@@ -161,9 +183,12 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
+  state.contradicted = !state.agrees_again || now_ns <= state.contradicted_until_ns;
   state.late = state.contradicted || state.age_ns > object.age_limit_ns;
   const double age_s = static_cast<double>(state.age_ns) * 1e-9;
-  state.may_have_moved = state.late ? rounded_up(object.max_speed * age_s) : 0.0;
+  state.may_have_moved = state.contradicted ? kInfinity
+                         : state.late       ? rounded_up(object.max_speed * age_s)
+                                            : 0.0;
   state.unseen_since =
       state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "config/scene.hpp"
@@ -29,9 +30,9 @@ struct TrackedObject {
   // Since its stamp, m, at most: 0 unless late; infinity: no speed is stated.
   double may_have_moved = 0.0;
   double unseen_since = 0.0;  // the larger of that at the last tick, if known then, and now, m
-  // No point of it has moved farther than these: since the last tick (infinity: nobody can say),
-  // and in all, up to the last tick and up to now, leaving out the ticks in which nobody could. All
-  // m, set by displace().
+  // No point of it has moved farther than these: since the last tick (infinity: not known),
+  // and in all, up to the last tick and up to now, leaving out the ticks of which that is not
+  // known. All m, set by displace().
   double displacement = 0.0, accumulated_last_tick = 0.0, accumulated = 0.0;
   // At any instant since the last tick no point of it was farther than this from where it would
   // have been had it gone straight and evenly from its place then to its place now, m.
@@ -52,14 +53,18 @@ struct TrackedObject {
 
   // Who sends its poses, and when the last of them was taken, in the tick's time.
   std::uint32_t source = kNoSource;
-  bool source_is_stated = false;  // by the cell: nobody takes over
+  bool source_is_stated = false;  // by the cell: no other takes over
   std::int64_t taken_ns = 0;
   std::uint32_t other_source = kNoSource;  // the last that was refused since it is not that one
-  // What came last contradicts the pose in use or the cell: where the object is, only the pose
-  // before that and its speed tell.
+  // Poses have come that contradict the pose in use or the cell, not longer ago than the age limit
+  // or none since that does not: nothing is known of it.
   bool contradicted = false;
-  Repetition repetition;
+  bool agrees_again = true;  // a pose was taken after the last contradiction
+  std::int64_t contradicted_until_ns = std::numeric_limits<std::int64_t>::min();  // tick's time
   Landmarks landmarks;
+  Anchor anchor;
+  Repetition repetition;
+  OtherPlace other_place;
 
   Pose pose_last_tick;
   Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now
@@ -104,7 +109,7 @@ struct SampleLimits {
 void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
             std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Nobody can say how old the pose in use is: it is late until the next one comes.
+// The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Ends the tick's input: motion since the last tick, age and lateness.

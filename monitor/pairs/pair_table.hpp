@@ -3,7 +3,7 @@
 // An object pair owns consecutive part pairs, one for every part of the first with every part of
 // the second. A part pair's bounds are true for the poses at which the pair was last brought up to
 // date; how far both objects have moved since makes them true for those in use. So a pair
-// that nobody looks at costs nothing.
+// that is not looked at costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -123,7 +123,7 @@ void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
 void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,
            PairTable& table) noexcept;
 
-// Forgets a pair's bounds: nobody can say how far its objects have come.
+// Forgets a pair's bounds: how far its objects have come is not known.
 void forget(std::uint32_t pair, PairTable& table) noexcept;
 
 }  // namespace clearance

@@ -68,8 +68,7 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
 void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
     const PosedPart& part = evaluation.parts[body_parts_[i]];
-    const bool known = evaluation.objects[part.object].known();
-    world_from_body_[i] = known ? part.world_from_part : kNowhere;
+    world_from_body_[i] = evaluation.objects[part.object].seen ? part.world_from_part : kNowhere;
   }
   const auto one = [this, &evaluation](std::uint32_t i) noexcept {
     evaluate_group(groups_[i], evaluation);
@@ -83,7 +82,8 @@ void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept
   clearance::evaluate(known_, pool, evaluation);
 }
 
-// A pair that is not known has a body without a pose, which costs as good as nothing.
+// Also those that are not known: what was never seen has no pose, which costs as good as nothing,
+// and what is late is where it was.
 void PublishedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
   group.known = 0;

@@ -25,7 +25,7 @@ class RecordingWriter {
                   const McapWriterOptions& options = {});
 
   // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
-  // that makes the reports; empty: nobody knows.
+  // that makes the reports; empty: not known.
   void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
                  const std::string& build = {});
   // Only the metadata.

@@ -51,7 +51,7 @@ void RefreshQueue::refreshed(std::uint32_t pair, std::uint64_t cycle) noexcept {
 
 std::uint32_t RefreshQueue::stalest() const noexcept {
   if (links_[ahead_].next != ahead_) return links_[ahead_].next;
-  return links_[main_].next != main_ ? links_[main_].next : kNobody;
+  return links_[main_].next != main_ ? links_[main_].next : kNoIndex;
 }
 
 void RefreshQueue::set_aside(std::uint32_t pair, std::uint32_t object) noexcept {

@@ -19,7 +19,7 @@ namespace clearance {
 
 class RefreshQueue {
  public:
-  static constexpr std::uint32_t kNobody = ~0u;
+  static constexpr std::uint32_t kNoIndex = ~0u;
 
   RefreshQueue(std::size_t objects, std::size_t pairs);
 
@@ -29,7 +29,7 @@ class RefreshQueue {
   // Entered or not.
   void refreshed(std::uint32_t pair, std::uint64_t cycle) noexcept;
 
-  // kNobody: the queue is empty.
+  // kNoIndex: the queue is empty.
   [[nodiscard]] std::uint32_t stalest() const noexcept;
 
   // `pair` is in the queue and one of its objects, `object`, is out of sight.
@@ -53,10 +53,10 @@ class RefreshQueue {
  private:
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   struct Link {
-    std::uint32_t before = kNobody, next = kNobody;  // kNobody: not in a list
+    std::uint32_t before = kNoIndex, next = kNoIndex;  // kNoIndex: not in a list
   };
   [[nodiscard]] bool in_list(std::uint32_t pair) const noexcept {
-    return links_[pair].next != kNobody;
+    return links_[pair].next != kNoIndex;
   }
   void append(std::uint32_t pair, std::uint32_t list) noexcept;
   void unlink(std::uint32_t pair) noexcept;

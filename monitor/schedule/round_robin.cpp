@@ -65,7 +65,7 @@ void RoundRobin::evaluate_published(const PublishedPairs& published,
     const std::uint32_t pair = pairs[next_published_];
     if (!is_evaluated(pair, tick) && is_known(pair, tick)) {
       if (!evaluator.evaluate(pair)) {
-        // Nobody may wait for a pair that might always find too little left.
+        // No pair may wait for one that might always find too little left.
         if (!published_.is_sure()) ++next_published_;
         return published_.end_tick(part_pairs);
       }
@@ -82,7 +82,7 @@ void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
   std::uint32_t refreshed = 0, part_pairs = 0;
   for (std::uint32_t unknown = 0; refreshed < most && unknown < kMostSetAside;) {
     const std::uint32_t pair = queue_.stalest();
-    const bool left = pair != RefreshQueue::kNobody;
+    const bool left = pair != RefreshQueue::kNoIndex;
     const std::uint64_t last = left ? queue_.refreshed_cycle(pair) : tick.cycle;
     if (last == tick.cycle) return others_.all_refreshed();
     if (!is_known(pair, tick)) {

@@ -63,7 +63,7 @@ void Scheduler::evaluate(const Schedule& schedule, const Zones& zones, Culling& 
   budget.release(kept);
 
   round_robin_.refresh(published_, schedule.published_at_once, evaluator);
-  if (ran_out) {  // there is what nobody needed of those that were kept
+  if (ran_out) {  // some of those that were kept were not needed
     minimum_.evaluate(evaluator);
     urgency_.evaluate(evaluator);
   }

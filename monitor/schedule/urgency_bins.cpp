@@ -83,7 +83,7 @@ std::size_t UrgencyBins::bin_of(std::uint32_t pair, const std::vector<TrackedObj
   const std::uint32_t b = table.entries[pair].object_b;
   const double lower =
       table.entries[pair].least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
-  const double above = lower - std::max(levels_.outside_from(pair), 0.0);
+  const double above = lower - std::max(levels_.largest_threshold(pair), 0.0);
   if (!(above > 0.0)) return 0;
   const double speed = speed_of(a, objects[a]) + speed_of(b, objects[b]);
   const double ticks = above / (speed * period_s_);  // nothing moves: infinity

@@ -54,7 +54,8 @@ void ZoneCrossings::find(std::span<const std::uint32_t> seen, const Zones& zones
                          const Evaluation& evaluation) noexcept {
   for (; looked_at_ < seen.size(); ++looked_at_) {
     const std::uint32_t pair = seen[looked_at_];
-    if (!is_far(pair, levels_.outside_from(pair), evaluation)) look_at(pair, zones, evaluation);
+    if (!is_far(pair, levels_.largest_threshold(pair), evaluation))
+      look_at(pair, zones, evaluation);
   }
 }
 

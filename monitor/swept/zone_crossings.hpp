@@ -57,15 +57,15 @@ class ZoneCrossings {
     SweptBounds bounds;
   };
   // Most pairs are decided by less than what is known.
-  [[nodiscard]] static bool is_far(std::uint32_t pair, double outside_from,
+  [[nodiscard]] static bool is_far(std::uint32_t pair, double threshold,
                                    const Evaluation& evaluation) noexcept {
-    if (outside_from == -kInfinity) return true;  // of what?
+    if (threshold == -kInfinity) return true;  // of what?
     const PairEntry& entry = evaluation.table.entries[pair];
     const TrackedObject& a = evaluation.objects[entry.object_a];
     const TrackedObject& b = evaluation.objects[entry.object_b];
     const double displaced =
         2.0 * (a.displacement + b.displacement) + (a.unseen_since + b.unseen_since);
-    return rounded_down(entry.least_lower - rounded_up(displaced)) >= outside_from;
+    return rounded_down(entry.least_lower - rounded_up(displaced)) >= threshold;
   }
   void look_at(std::uint32_t pair, const Zones& zones, const Evaluation& evaluation) noexcept;
   static void decide(const Zones& zones, Evaluation& evaluation, Crossing& crossing) noexcept;

@@ -6,7 +6,7 @@ namespace clearance {
 
 ZoneHysteresis::ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept
     : was_active_(before.active),
-      outside_from_(ZoneLevels::outside_from(zone, before.active)),
+      threshold_(ZoneLevels::threshold(zone, before.active)),
       pair_(before.pair),
       swept_pair_(before.pair) {}
 

@@ -31,17 +31,17 @@ class ZoneHysteresis {
   void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
 
   // The least clearance that is outside, m.
-  [[nodiscard]] double outside_from() const noexcept { return outside_from_; }
+  [[nodiscard]] double threshold() const noexcept { return threshold_; }
 
  private:
   // The pair could neither enter the zone nor keep it active.
-  [[nodiscard]] bool outside(double clearance) const noexcept { return clearance >= outside_from_; }
+  [[nodiscard]] bool outside(double clearance) const noexcept { return clearance >= threshold_; }
   [[nodiscard]] bool proves(const Clearance& clearance, double margins,
                             const PairBounds& bounds) const noexcept;
   void take(const Clearance& clearance, std::uint32_t pair) noexcept;
 
   bool was_active_;
-  double outside_from_;
+  double threshold_;
   bool proved_ = true;
   Clearance least_;
   std::uint32_t pair_, swept_pair_;  // whose clearances those are

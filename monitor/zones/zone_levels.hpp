@@ -20,11 +20,11 @@ class ZoneLevels {
   explicit ZoneLevels(const Scene& scene);
 
   // The least clearance that is outside of a zone in this state, m.
-  [[nodiscard]] static double outside_from(const Zone& zone, bool active) noexcept;
+  [[nodiscard]] static double threshold(const Zone& zone, bool active) noexcept;
 
   // Z of a pair, m; -infinity: it has no zone.
-  [[nodiscard]] double outside_from(std::uint32_t pair) const noexcept {
-    return outside_from_.empty() ? -kInfinity : outside_from_[pair];
+  [[nodiscard]] double largest_threshold(std::uint32_t pair) const noexcept {
+    return largest_thresholds_.empty() ? -kInfinity : largest_thresholds_[pair];
   }
 
   // A zone of a pair, and both its objects' margins, rounded up, m.
@@ -54,7 +54,7 @@ class ZoneLevels {
   // By pair; none where there are no zones.
   std::vector<std::uint32_t> first_zone_;
   std::vector<Membership> zones_;
-  std::vector<double> outside_from_;  // m
+  std::vector<double> largest_thresholds_;  // m
   // By zone.
   std::vector<std::vector<Member>> members_;
   std::vector<double> most_margins_;

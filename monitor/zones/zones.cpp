@@ -17,11 +17,11 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
 
 // Whether the pair would be inside if all its poses had been on time: now, or since the last tick.
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
-             double outside_from) noexcept {
+             double threshold) noexcept {
   if (!a.known() || !b.known()) return false;
   const double unseen = a.unseen_since + b.unseen_since;
-  if (report.clearance + unseen < outside_from) return true;
-  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unseen < outside_from;
+  if (report.clearance + unseen < threshold) return true;
+  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unseen < threshold;
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ void Zones::begin_tick() noexcept {
 double Zones::undecided(std::uint32_t pair, double lower, double swept_lower) const noexcept {
   double farthest = -kInfinity;
   for (const ZoneLevels::Membership& in : levels_.zones_of(pair)) {
-    const double level = rounded_up(updates_[in.zone].outside_from() + in.margins);
+    const double level = rounded_up(updates_[in.zone].threshold() + in.margins);
     if (swept_lower < level && level <= lower) farthest = std::max(farthest, level);
   }
   return farthest;
@@ -67,7 +67,7 @@ void Zones::finish(std::span<const TrackedObject> objects, const Clearance& wait
     // invariant (monitor/broad_phase/README.md), so only what waits has to be said.
     if (added_[z] < scene_.zones[z].pairs.size()) {
       const auto least = [&](double lower) {
-        return std::min(ZoneLevels::outside_from(scene_.zones[z], true),
+        return std::min(ZoneLevels::threshold(scene_.zones[z], true),
                         rounded_down(lower - levels_.most_margins(z)));
       };
       update.add_rest({.now = least(waiting.now), .since = least(waiting.since)}, reports_[z].pair);
@@ -93,7 +93,7 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     report.cause_object = 0;
     if (!report.active || report.pair >= scene_.pairs.size()) continue;
     const std::uint32_t a = scene_.pairs[report.pair].first, b = scene_.pairs[report.pair].second;
-    const double level = ZoneLevels::outside_from(scene_.zones[z], !report.changed);
+    const double level = ZoneLevels::threshold(scene_.zones[z], !report.changed);
     if (is_near(report, objects[a], objects[b], level)) continue;
     const ZoneCause of_a = cause_of(objects[a]), of_b = cause_of(objects[b]);
     const bool is_a =

@@ -111,7 +111,7 @@ TEST_F(SteppedClock, PosesThatNoLongerComeAreLateWhateverTheClockSays) {
 TEST_F(SteppedClock, RobotOfTheSameMachineIsHeardAgainHalfASecondAfterAStep) {
   for (const std::int64_t ahead : {3600 * kSecond, std::int64_t{0}, -2 * kSecond}) {
     step(ahead);
-    EXPECT_TRUE(send_until(PairStatus::kStale, kSecond)) << ahead;
+    EXPECT_TRUE(send_until(PairStatus::kUnknown, kSecond)) << ahead;
     EXPECT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
     EXPECT_NEAR(static_cast<double>((*last)->clock_offset_ns), static_cast<double>(ahead), 1e6);
   }
@@ -139,11 +139,11 @@ TEST_F(DaemonInputs, ObjectBelongsToTheSourceThatSentItFirstAndTheOtherIsNamed) 
   })) << daemon->output();
 }
 
-TEST_F(DaemonInputs, PoseThatTheObjectCannotHaveReachedMakesItsPairsStaleAndIsNamed) {
+TEST_F(DaemonInputs, PoseThatTheObjectCannotHaveReachedMakesItsPairsUnknownAndIsNamed) {
   start();
   ASSERT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
   robot.move_by(Vec3(0, 20'000, 0));
-  EXPECT_TRUE(send_until(PairStatus::kStale, kSecond));
+  EXPECT_TRUE(send_until(PairStatus::kUnknown, kSecond));
   robot.move_by(Vec3::Zero());
   EXPECT_TRUE(send_until(PairStatus::kConverged, kSecond));
   EXPECT_TRUE(eventually([&] {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -111,6 +112,10 @@ Motion crowd(std::uint64_t seed) {
       }
     }
     motion.poses.push_back(poses);
+    // For a few rounds something is nowhere.
+    if (step % 8 >= 5) {
+      motion.poses.back()[3].position.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
   }
   return motion;
 }

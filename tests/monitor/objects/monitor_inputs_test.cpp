@@ -166,13 +166,15 @@ TEST(MonitorInputs, RefusedSamplesAreCountedByCauseAndNeverUsed) {
   EXPECT_EQ(monitor.rejected(0), (std::array<std::uint64_t, kRejects>{0, 1, 2, 1, 1}));
   EXPECT_EQ(monitor.rejected(1), (std::array<std::uint64_t, kRejects>{1}));
   EXPECT_EQ(report.rejected, (std::array<std::uint64_t, kRejects>{2, 1, 2, 1, 1}));
-  EXPECT_NEAR(report.minimum.distance, 0.8, 1e-12);
   EXPECT_EQ(report.newest_pose_ns, kStart);
+  EXPECT_EQ(report.unknown, 1u) << "its source dates poses ahead";
+  const Report& later = tick_with(monitor, 0, good, kStart + 22 * kTick);
+  EXPECT_NEAR(later.minimum.distance, 0.8, 1e-12);
 
   monitor.refuse(0, Reject::kWrongRevision);
   monitor.refuse(99, Reject::kWrongRevision);
   EXPECT_EQ(monitor.rejected(0)[static_cast<std::size_t>(Reject::kWrongRevision)], 1u);
-  const Report& next = monitor.tick({}, kStart + 2 * kTick);
+  const Report& next = monitor.tick({}, kStart + 23 * kTick);
   EXPECT_EQ(next.rejected[static_cast<std::size_t>(Reject::kWrongRevision)], 2u);
 }
 

@@ -111,6 +111,7 @@ TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
 TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
   const auto cell = parse_cell(warehouse_cell({.objects = 120, .seed = 3}), "warehouse.yaml");
   Scene scene = std::get<Scene>(cell);
+  for (Object& object : scene.objects) object.may_jump = true;
   scene.budget = 60;
   scene.refresh_s = 0.2;
   Scene everything = scene;

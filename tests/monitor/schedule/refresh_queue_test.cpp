@@ -7,7 +7,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::uint32_t kNobody = RefreshQueue::kNobody;
+constexpr std::uint32_t kNoIndex = RefreshQueue::kNoIndex;
 
 // Four objects, six pairs: 01 02 03 12 13 23.
 class RefreshQueueTest : public testing::Test {
@@ -47,7 +47,7 @@ class RefreshQueueTest : public testing::Test {
 using Pairs = std::vector<std::uint32_t>;
 
 TEST_F(RefreshQueueTest, NobodyIsStalestInAnEmptyOne) {
-  EXPECT_EQ(queue.stalest(), kNobody);
+  EXPECT_EQ(queue.stalest(), kNoIndex);
   EXPECT_EQ(queue.refreshed_cycle(3), 0u);
 }
 

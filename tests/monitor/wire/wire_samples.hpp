@@ -152,8 +152,13 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
   }
   reserve_sequence(health->inputs, random() % 6);
   for (std::uint32_t i = 0; i < health->inputs._maximum; ++i) {
-    health->inputs._buffer[health->inputs._length++] = {
-        i, any_text(random), static_cast<std::int64_t>(random()), random() % 2 != 0};
+    health->inputs._buffer[health->inputs._length++] = {i,
+                                                        any_text(random),
+                                                        static_cast<std::int64_t>(random()),
+                                                        random() % 2 != 0,
+                                                        random() % 2 != 0,
+                                                        "arm",
+                                                        "tracker"};
   }
 }
 

@@ -20,10 +20,10 @@ TEST(ZoneLevels, AreThoseOfThePairsFarthestThresholdWithBothMargins) {
   scene.zones[0].pairs = {0, 1};
   scene.zones[1].pairs = {1};
   const ZoneLevels levels(scene);
-  EXPECT_GT(levels.outside_from(0), 0.15 + 0.02);
-  EXPECT_NEAR(levels.outside_from(0), 0.17, 1e-12);
-  EXPECT_NEAR(levels.outside_from(1), 0.42, 1e-12);
-  EXPECT_EQ(levels.outside_from(2), -kInfinity);
+  EXPECT_GT(levels.largest_threshold(0), 0.15 + 0.02);
+  EXPECT_NEAR(levels.largest_threshold(0), 0.17, 1e-12);
+  EXPECT_NEAR(levels.largest_threshold(1), 0.42, 1e-12);
+  EXPECT_EQ(levels.largest_threshold(2), -kInfinity);
   EXPECT_FALSE(levels.has(2));
   ASSERT_EQ(levels.zones_of(1).size(), 2u);
   EXPECT_EQ(levels.members_of(0).size(), 3u);
@@ -33,13 +33,13 @@ TEST(ZoneLevels, AreThoseOfThePairsFarthestThresholdWithBothMargins) {
 TEST(ZoneLevels, GoByTheHysteresisOfAZone) {
   const Scene scene = three_balls();
   const Zone zone = test::zone_over(scene, 0.1, 0.15);
-  EXPECT_EQ(ZoneLevels::outside_from(zone, false), 0.1);
-  EXPECT_GT(ZoneLevels::outside_from(zone, true), 0.15);
+  EXPECT_EQ(ZoneLevels::threshold(zone, false), 0.1);
+  EXPECT_GT(ZoneLevels::threshold(zone, true), 0.15);
 }
 
 TEST(ZoneLevels, AreNoneInASceneWithoutZones) {
   const ZoneLevels levels(three_balls());
-  EXPECT_EQ(levels.outside_from(1), -kInfinity);
+  EXPECT_EQ(levels.largest_threshold(1), -kInfinity);
   EXPECT_TRUE(levels.zones_of(1).empty());
 }
 
