@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/curved/direction_programme.hpp"
+#include "core/curved/piece-inl.hpp"
 
 namespace clearance {
 namespace {
@@ -50,15 +51,15 @@ struct PieceOfSet {
   std::int32_t piece = 0;
 };
 
-// All vertices of the support set of a polyhedron along m, as a linear function v decides: the
-// least of it.
+// All vertices, rays' ends among them, of the support set of a polyhedron along m, as a linear
+// function v decides: the least of it.
 PieceOfSet least_vertex(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
-  const ConvexPolyhedron& body = *view.other().body->polyhedron;
+  const ConvexPolyhedron& body = *view.other().body;
   const double top = m.dot(support_point(view.other(), farthest_piece(view.other(), m), m));
   double least = kInfinity;
   PieceOfSet found;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.anchors.size()); ++i) {
-    const Vec3& vertex = body.anchors[static_cast<std::size_t>(i)];
+  for (std::int32_t i = 0; i < pieces_of(body); ++i) {
+    const Vec3 vertex = support_point(view.other(), i, m);
     if (m.dot(vertex) < top - tolerance) continue;
     const double value = v.dot(view.in_plane(vertex));
     if (value < least) {
@@ -75,7 +76,7 @@ PieceOfSet least_on_cone(const CapView& view, const Vec3& m, double tolerance, c
   const Azimuth azimuth = azimuth_of(other, m);
   if (azimuth.across <= kParallel) {
     const std::int32_t piece = m.z() > 0.0 ? 1 : 0;
-    const Disc& disc = other.body->discs[static_cast<std::size_t>(piece)];
+    const Disc& disc = other.body->curved.discs[static_cast<std::size_t>(piece)];
     const Vec3 centre(0.0, 0.0, disc.height);
     const Vec2 zero = view.in_plane(centre);
     const Vec2 x = view.in_plane(centre + Vec3::UnitX()) - zero;
@@ -93,12 +94,12 @@ PieceOfSet least_on_cone(const CapView& view, const Vec3& m, double tolerance, c
 
 PieceOfSet least_of_support_set(const CapView& view, const Vec3& m, double tolerance,
                                 const Vec2& v) {
-  switch (view.other().body->kind) {
-    case CurvedBody::Kind::kPolyhedron:
+  switch (view.other().body->curved.kind) {
+    case CurvedShape::Kind::kNone:
       return least_vertex(view, m, tolerance, v);
-    case CurvedBody::Kind::kEllipsoid:
+    case CurvedShape::Kind::kEllipsoid:
       return {support_point(view.other(), 0, m), 0};
-    case CurvedBody::Kind::kTruncatedCone:
+    case CurvedShape::Kind::kTruncatedCone:
       break;
   }
   return least_on_cone(view, m, tolerance, v);
@@ -142,7 +143,7 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
   const double along = of_a ? n.z() : -pair.direction_to_b(n).z();
   const std::size_t piece = along > 0.0 ? 1 : 0;
   const Vec3 axis(0.0, 0.0, along > 0.0 ? 1.0 : -1.0);
-  CapView view{pair, of_a, source.body->discs[piece], {}};
+  CapView view{pair, of_a, source.body->curved.discs[piece], {}};
   view.normal = of_a ? axis : Vec3(-pair.direction_to_a(axis));
   const Nearest nearest = nearest_of_support_set(view);
   const double across = nearest.in_plane.norm();
@@ -151,7 +152,7 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
   test.closest = across <= view.disc.radius;
   if (across > 0.0) source.rim_azimuth = nearest.in_plane / across;
   // Where the other body's cap is parallel, too, its rim's nearest point.
-  if (view.other().body->kind == CurvedBody::Kind::kTruncatedCone) {
+  if (view.other().body->curved.kind == CurvedShape::Kind::kTruncatedCone) {
     const double other_across = std::hypot(nearest.own.x(), nearest.own.y());
     if (other_across > 0.0) {
       view.other().rim_azimuth =

@@ -38,6 +38,7 @@ DistanceResult conclude(const CurvedConclusion& found) noexcept {
   const Vec3 radial = radial_direction(found);
   r.point_on_a = found.point_on_a + found.radius_a * radial;
   r.point_on_b = found.point_on_b - found.radius_b * radial;
+  r.path = DistancePath::kDirection;
   r.status = status_of(r, found.size + radii);
   return r;
 }

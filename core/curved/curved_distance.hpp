@@ -5,26 +5,21 @@
 // n. Every direction bounds the distance from below, and every pair of points from above.
 #pragma once
 
-#include "core/curved/curved_body.hpp"
-#include "core/curved/direction_search.hpp"
-#include "core/distance_result.hpp"
+#include "core/curved/tracking.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 
-// What a pair remembers: a hint and never a fact.
-struct CurvedTrackingState {
-  Vec3 normal = Vec3::Zero();  // frame A; 0: none
-  ActivePieces active;
-  // Of the last query: the point of B without its radius, in frame B; and where the bodies overlap,
-  // a point of both, frame A.
-  Vec3 own_point_on_b = Vec3::Zero(), shared = Vec3::Zero();
-};
-
 // noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer
-// says. Unbounded bodies are half-spaces, and one of a pair at most; of others nothing is known.
-[[nodiscard]] DistanceResult curved_distance(const CurvedBody& a, const CurvedBody& b,
+// says; the pose has to be a good one. `depth`: as DistanceOptions has it. Two polyhedra are
+// accepted as well, of which distance() says more; of two unbounded ones nothing is known.
+[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const RelativePose& a_from_b, TrackingState& state,
+                                             bool depth = true) noexcept;
+// The same, and a point of both bodies where they overlap.
+[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                              const RelativePose& a_from_b,
-                                             CurvedTrackingState& state) noexcept;
+                                             CurvedTrackingState& state,
+                                             bool depth = true) noexcept;
 
 }  // namespace clearance

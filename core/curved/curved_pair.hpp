@@ -39,7 +39,8 @@ struct CurvedBounds {
 
 class CurvedPair {
  public:
-  CurvedPair(const CurvedBody& a, const CurvedBody& b, const RelativePose& a_from_b) noexcept;
+  CurvedPair(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+             const RelativePose& a_from_b) noexcept;
 
   PieceSource a, b;
   CurvedBounds bounds;
@@ -60,6 +61,9 @@ class CurvedPair {
   // below; `bounds` takes note of it.
   SupportPair support(const Vec3& n) noexcept;
   [[nodiscard]] SupportPair support_of(const PiecePair& pieces, const Vec3& n) const noexcept;
+
+  // Makes n the direction of the lower bound, unless that would cost more than rounding.
+  void prefer(const Vec3& n) noexcept;
 
   // Points of the bodies bound the distance from above; they are pulled inside first. Returns what
   // they have become.

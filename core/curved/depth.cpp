@@ -16,10 +16,10 @@ constexpr double kTolerances[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0x
 constexpr std::size_t kDeepest = 400;
 
 // Every point of an ellipsoid's surface is on a ball of this radius that lies inside.
-double rolling_ball(const CurvedBody& body) noexcept {
-  if (body.kind != CurvedBody::Kind::kEllipsoid) return 0.0;
-  const double least = body.semi_axes.minCoeff();
-  return least * (least / body.semi_axes.maxCoeff());
+double rolling_ball(const ConvexPolyhedron& body) noexcept {
+  if (body.curved.kind != CurvedShape::Kind::kEllipsoid) return 0.0;
+  const double least = body.curved.semi_axes.minCoeff();
+  return least * (least / body.curved.semi_axes.maxCoeff());
 }
 
 // A direction, how far the bodies reach past each other along it, and the point of A - B that does;

@@ -6,6 +6,46 @@
 namespace clearance {
 namespace {
 
+// The step is not summed up from the weighted slopes, which may be long and cancel: along the
+// difference of both it is where they are equal, and across they agree.
+MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g) noexcept {
+  const Vec2 slope = g.slope - f.slope, across(-slope.y(), slope.x());
+  const double square = slope.squaredNorm(), value = g.value - f.value;
+  const double part = -(f.slope.dot(slope) + value) / square;
+  return {(f.slope.dot(across) / square) * across - (value / square) * slope,
+          {1.0 - part, part, 0.0}};
+}
+
+// The step where all three are equal, and its weights.
+MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g,
+                        const PlaneFunction& h) noexcept {
+  const Vec2 u = g.slope - f.slope, v = h.slope - f.slope;
+  const double du = f.value - g.value, dv = f.value - h.value;
+  const double area = u.x() * v.y() - u.y() * v.x();
+  const Vec2 step = Vec2(du * v.y() - dv * u.y(), dv * u.x() - du * v.x()) / area;
+  const Vec2 rest = step - f.slope;
+  const double to_g = (rest.x() * v.y() - rest.y() * v.x()) / area;
+  const double to_h = (u.x() * rest.y() - u.y() * rest.x()) / area;
+  return {step, {1.0 - to_g - to_h, to_g, to_h}};
+}
+
+// The change of variables that makes Q the identity: Q = L L^T; with s = L^-T r, Q becomes the
+// identity and a slope L^-1 slope.
+struct Scaling {
+  double xx, xy, yy;
+
+  explicit Scaling(const PlaneMatrix& q) noexcept
+      : xx(std::sqrt(q.xx)), xy(q.xy / xx), yy(std::sqrt(q.yy - xy * xy)) {}
+  [[nodiscard]] PlaneFunction operator()(const PlaneFunction& f) const noexcept {
+    const double x = f.slope.x() / xx;
+    return {f.value, Vec2(x, (f.slope.y() - xy * x) / yy)};
+  }
+  [[nodiscard]] Vec2 back(const Vec2& step) const noexcept {
+    const double y = step.y() / yy;
+    return {(step.x() - xy * y) / xx, y};
+  }
+};
+
 // In the plane's coordinates after the change of variables that makes Q the identity: the dual
 // problem is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of sum 1. It
 // is tried on all subsets of one to three functions. Each is a bound of the dual from above, so the
@@ -29,28 +69,20 @@ class Dual {
  private:
   void one(std::size_t i) noexcept { take(f_[i].slope, f_[i].value, {i}, {1.0}); }
 
-  // The step is not summed up from the weighted slopes, which may be long and cancel: along the
-  // difference of both it is where they are equal, and across they agree.
   void two(std::size_t i, std::size_t j) noexcept {
-    const Vec2 slope = f_[j].slope - f_[i].slope, across(-slope.y(), slope.x());
-    const double square = slope.squaredNorm(), value = f_[j].value - f_[i].value;
-    const double part = -(f_[i].slope.dot(slope) + value) / square;
+    const auto [step, weights] = meeting_of(f_[i], f_[j]);
+    const double part = weights[1];
     if (!(part > 0.0 && part < 1.0)) return;
-    const Vec2 step = (f_[i].slope.dot(across) / square) * across - (value / square) * slope;
-    take(step, f_[i].value + part * value, {i, j}, {1.0 - part, part});
+    take(step, f_[i].value + part * (f_[j].value - f_[i].value), {i, j}, {1.0 - part, part});
   }
 
-  // The step where all three are equal, and its weights.
   void three(std::size_t i, std::size_t j, std::size_t k) noexcept {
-    const Vec2 u = f_[j].slope - f_[i].slope, v = f_[k].slope - f_[i].slope;
-    const double du = f_[i].value - f_[j].value, dv = f_[i].value - f_[k].value;
-    const double area = u.x() * v.y() - u.y() * v.x();
-    const Vec2 step = Vec2(du * v.y() - dv * u.y(), dv * u.x() - du * v.x()) / area;
-    const Vec2 rest = step - f_[i].slope;
-    const double to_j = (rest.x() * v.y() - rest.y() * v.x()) / area;
-    const double to_k = (u.x() * rest.y() - u.y() * rest.x()) / area;
-    if (!(to_j > 0.0 && to_k > 0.0 && to_j + to_k < 1.0)) return;
-    take(step, f_[i].value - to_j * du - to_k * dv, {i, j, k}, {1.0 - to_j - to_k, to_j, to_k});
+    const auto [step, weights] = meeting_of(f_[i], f_[j], f_[k]);
+    const auto [of_i, of_j, of_k] = weights;
+    if (!(of_j > 0.0 && of_k > 0.0 && of_j + of_k < 1.0)) return;
+    const double value =
+        f_[i].value + of_j * (f_[j].value - f_[i].value) + of_k * (f_[k].value - f_[i].value);
+    take(step, value, {i, j, k}, {of_i, of_j, of_k});
   }
 
   template <std::size_t N>
@@ -73,17 +105,20 @@ class Dual {
 
 PlaneStep highest_least(const std::array<PlaneFunction, 5>& functions, std::size_t count,
                         const PlaneMatrix& q) noexcept {
-  // Q = L L^T; with s = L^-T r, Q becomes the identity and a slope L^-1 slope.
-  const double xx = std::sqrt(q.xx), xy = q.xy / xx, yy = std::sqrt(q.yy - xy * xy);
+  const Scaling scaling(q);
   std::array<PlaneFunction, 5> scaled{};
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec2& slope = functions[i].slope;
-    const double x = slope.x() / xx;
-    scaled[i] = {functions[i].value, Vec2(x, (slope.y() - xy * x) / yy)};
-  }
+  for (std::size_t i = 0; i < count; ++i) scaled[i] = scaling(functions[i]);
   PlaneStep found = Dual(scaled, count).solve();
-  const double y = found.step.y() / yy;
-  found.step = Vec2((found.step.x() - xy * y) / xx, y);
+  found.step = scaling.back(found.step);
+  return found;
+}
+
+MeetingPoint meeting_point(const std::array<PlaneFunction, 3>& functions, std::size_t count,
+                           const PlaneMatrix& q) noexcept {
+  const Scaling scaling(q);
+  const PlaneFunction f = scaling(functions[0]), g = scaling(functions[1]);
+  MeetingPoint found = count == 2 ? meeting_of(f, g) : meeting_of(f, g, scaling(functions[2]));
+  found.step = scaling.back(found.step);
   return found;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/curved/cap.hpp"
 #include "core/curved/direction_programme.hpp"
+#include "core/curved/piece-inl.hpp"
 
 namespace clearance {
 namespace {
@@ -79,10 +80,11 @@ class DirectionSearch {
     double fastest = 0.0;
     Vec3 along = Vec3::Zero();
     const auto look = [&](const PieceSource& source, const Vec3& m, bool of_a) {
-      if (source.body->kind != CurvedBody::Kind::kTruncatedCone) return;
+      if (source.body->curved.kind != CurvedShape::Kind::kTruncatedCone) return;
       const Azimuth azimuth = azimuth_of(source, m);
       const double turn =
-          std::max(source.body->discs[0].radius, source.body->discs[1].radius) / azimuth.across;
+          std::max(source.body->curved.discs[0].radius, source.body->curved.discs[1].radius) /
+          azimuth.across;
       if (!(turn > fastest)) return;
       fastest = turn;
       const Vec3 own(-azimuth.to.y(), azimuth.to.x(), 0.0);
@@ -102,9 +104,9 @@ class DirectionSearch {
 
   void place(Function& f) noexcept {
     f.at = pair_.support_of(f.at.pieces, n_);
-    f.radii_a = radii_of_curvature(pair_.a, f.at.pieces.a, n_, tangents_);
-    f.radii_b =
-        radii_of_curvature(pair_.b, f.at.pieces.b, -pair_.direction_to_b(n_), tangents_in_b_);
+    f.radii_a = radii_of_curvature(faced(pair_.a, n_), f.at.pieces.a, tangents_);
+    f.radii_b = radii_of_curvature(faced(pair_.b, -pair_.direction_to_b(n_)), f.at.pieces.b,
+                                   tangents_in_b_);
   }
 
   void place() noexcept {
@@ -213,8 +215,9 @@ class DirectionSearch {
       add_points(found);
     }
     // The step that the bounds no longer need makes the direction as good as they are.
-    if (pair_.is_tight()) pair_.bounds.normal = turned(found.step);
-    if (!pair_.is_tight()) {
+    if (pair_.is_tight()) {
+      pair_.prefer(turned(found.step));
+    } else {
       const PointPair last = add_points(found, kPointRounds);
       const bool deepest = at_.apart >= pair_.bounds.lower - pair_.gap_tolerance();
       if (at_.apart < 0.0 && deepest) pair_.bounds.deepest = last;
@@ -259,11 +262,11 @@ class DirectionSearch {
     const auto passes = [](const Vec3& m, const Vec3& to) {
       return across(m).dot(across(to)) <= 0.0 || across(to).norm() <= 0x1p-40;
     };
-    if (pair_.a.body->kind == CurvedBody::Kind::kTruncatedCone && passes(n_, next) &&
+    if (pair_.a.body->curved.kind == CurvedShape::Kind::kTruncatedCone && passes(n_, next) &&
         try_cap(true, next)) {
       return true;
     }
-    return pair_.b.body->kind == CurvedBody::Kind::kTruncatedCone &&
+    return pair_.b.body->curved.kind == CurvedShape::Kind::kTruncatedCone &&
            passes(-pair_.direction_to_b(n_), -pair_.direction_to_b(next)) && try_cap(false, next);
   }
   void test_caps_on_axis() noexcept { (void)over_caps(n_); }

@@ -11,31 +11,29 @@ namespace {
 
 // As of CurvedPair::error(), of the body's reach; of the plane's offset, and of the offset between
 // the origins. The facet's normal is rounded, too: 1 of each.
-constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOffset = 13;
+constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOrigins = 13;
 
-Vec3 farthest_point(const CurvedBody& body, const Vec3& m) noexcept {
-  const PieceSource source{&body};
+Vec3 farthest_point(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+  const PieceSource source{&body, body.bounding_radius};
   return support_point(source, farthest_piece(source, m), m);
 }
 
 double error_of(double reach, double plane, const RelativePose& pose) noexcept {
   const double offset = pose.translation.norm();
-  return kUlp * (kUlpsOfBody * reach + kUlpsOfPlane * plane + kUlpsOfOffset * offset) +
+  return kUlp * (kUlpsOfBody * reach + kUlpsOfPlane * plane + kUlpsOfOrigins * offset) +
          pose.translation_error + pose.rotation_error * kRoundedUp * (reach + offset) + kUnderflow;
 }
 
 }  // namespace
 
-bool is_half_space(const CurvedBody& body) noexcept {
-  return body.kind == CurvedBody::Kind::kPolyhedron && body.polyhedron->facets.size() == 1;
-}
+bool is_half_space(const ConvexPolyhedron& body) noexcept { return body.facets.size() == 1; }
 
-DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
+DistanceResult distance_of_half_space(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                       const RelativePose& a_from_b,
                                       CurvedTrackingState& state) noexcept {
   const bool of_a = is_half_space(a);
-  const CurvedBody &plane = of_a ? a : b, &body = of_a ? b : a;
-  const Facet& facet = plane.polyhedron->facets.front();
+  const ConvexPolyhedron &plane = of_a ? a : b, &body = of_a ? b : a;
+  const Facet& facet = plane.facets.front();
   const Mat3& turn = a_from_b.rotation;
   CurvedConclusion found;
   Vec3 to_body = facet.normal, point;  // frame A
@@ -54,8 +52,8 @@ DistanceResult distance_of_half_space(const CurvedBody& a, const CurvedBody& b,
   found.point_on_b = of_a ? point : on_plane;
   found.radius_a = a.radius;
   found.radius_b = b.radius;
-  found.error = error_of(body.reach, std::abs(facet.offset), a_from_b);
-  found.size = body.reach + std::abs(facet.offset) + a_from_b.translation.norm();
+  found.error = error_of(body.bounding_radius, std::abs(facet.offset), a_from_b);
+  found.size = body.bounding_radius + std::abs(facet.offset) + a_from_b.translation.norm();
   state.own_point_on_b = turn.transpose() * (found.point_on_b - a_from_b.translation);
   state.shared =
       found.lower < 0.0 ? point : between(found.point_on_a, found.point_on_b, a.radius, b.radius);

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/curved/curved_body.hpp"
+#include "core/convex_polyhedron.hpp"
 
 namespace clearance {
 
@@ -28,19 +28,29 @@ struct Tangents {
   Vec3 x, y;
 };
 
-// A body, and which way along its rim a direction leads that is its axis: there every point of the
-// disc is a support point, and this picks one.
+// A body as a query sees it.
 struct PieceSource {
-  const CurvedBody* body = nullptr;
+  const ConvexPolyhedron* body = nullptr;
+  double reach = 0.0;  // no point of a piece is farther from the frame's origin, m
+  // An unbounded polyhedron's rays count as edges of this length, m: every point that can be
+  // closest is in the hull of its anchors and what lies at the far ends from each of them.
+  double ray_length = 0.0;
+  // Which way along the rim a direction leads that is the body's axis: there every point of the
+  // disc is a support point, and this picks one.
   Vec2 rim_azimuth{1.0, 0.0};
 };
+
+// `within`: no point that can be closest is farther from the frame's origin, m.
+[[nodiscard]] PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept;
+
+// A polyhedron has a piece an anchor, and behind these as many for each of its rays.
+[[nodiscard]] std::int32_t pieces_of(const ConvexPolyhedron& body) noexcept;
 
 // How much of a direction is across the axis of a truncated cone, and which way (unit).
 struct Azimuth {
   double across;
   Vec2 to;
 };
-[[nodiscard]] Azimuth azimuth_of(const PieceSource& source, const Vec3& m) noexcept;
 
 // The piece that reaches farthest along m (unit): a vertex, a disc, or 0.
 [[nodiscard]] std::int32_t farthest_piece(const PieceSource& source, const Vec3& m) noexcept;
@@ -49,12 +59,7 @@ struct Azimuth {
 [[nodiscard]] Vec3 support_point(const PieceSource& source, std::int32_t piece,
                                  const Vec3& m) noexcept;
 
-// How that point moves when m turns: the second derivative of the piece's support function on the
-// tangents, in m. Positive semidefinite; its eigenvalues are the radii of curvature.
-[[nodiscard]] PlaneMatrix radii_of_curvature(const PieceSource& source, std::int32_t piece,
-                                             const Vec3& m, const Tangents& tangents) noexcept;
-
 // A point of the body, but for rounding, near a point that lies near its surface.
-[[nodiscard]] Vec3 pulled_inside(const CurvedBody& body, const Vec3& point) noexcept;
+[[nodiscard]] Vec3 pulled_inside(const ConvexPolyhedron& body, const Vec3& point) noexcept;
 
 }  // namespace clearance

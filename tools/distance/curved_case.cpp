@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 #include <variant>
+
+#include "core/shapes.hpp"
 
 namespace clearance {
 namespace {
@@ -19,7 +22,7 @@ double length(const Json& object, const char* key, const std::string& where) {
   return number(member(object, key, where), fmt::format("{}.{}", where, key));
 }
 
-CurvedShapeResult curved_shape(const Json& body, const std::string& where, double radius) {
+ShapeResult curved_shape(const Json& body, const std::string& where, double radius) {
   if (body.contains("ellipsoid")) {
     const Json& list = body["ellipsoid"];
     if (!list.is_array() || list.size() != 3) {
@@ -49,17 +52,15 @@ CurvedPart read_convex(const Json& body, const std::string& where) {
   if (!body.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
   if (!body.contains("ellipsoid") && !body.contains("cylinder") && !body.contains("cone") &&
       !body.contains("truncated_cone")) {
-    part.polyhedron = std::make_unique<ConvexPolyhedron>(read_body(body, where));
-    part.shape = as_curved(*part.polyhedron);
+    part.shape = read_body(body, where);
     return part;
   }
   const bool rounded = body.contains("radius") && !body["radius"].is_null();
-  const CurvedShapeResult shape =
-      curved_shape(body, where, rounded ? length(body, "radius", where) : 0.0);
-  if (const auto* error = std::get_if<CurvedShapeError>(&shape)) {
+  ShapeResult shape = curved_shape(body, where, rounded ? length(body, "radius", where) : 0.0);
+  if (const auto* error = std::get_if<ShapeError>(&shape)) {
     throw BadLine(fmt::format("{}: {}", where, error->reason));
   }
-  part.shape = std::get<CurvedBody>(shape);
+  part.shape = std::get<ConvexPolyhedron>(std::move(shape));
   return part;
 }
 

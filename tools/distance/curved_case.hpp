@@ -1,20 +1,17 @@
 // Reads a line of a file of cases in which a body is curved or of several parts.
 #pragma once
 
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "core/curved/curved_body.hpp"
 #include "tools/distance/case.hpp"
 
 namespace clearance {
 
 struct CurvedPart {
   Pose body_from_part;
-  std::unique_ptr<ConvexPolyhedron> polyhedron;  // what `shape` refers to where it is one
-  CurvedBody shape;
+  ConvexPolyhedron shape;
 };
 
 // The union of the parts.

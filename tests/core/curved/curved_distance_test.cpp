@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/distance.hpp"
+#include "core/shapes.hpp"
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
@@ -21,16 +22,9 @@ using test::made;
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-CurvedBody made_curved(const CurvedShapeResult& shape) {
-  if (const auto* error = std::get_if<CurvedShapeError>(&shape))
-    throw std::runtime_error(error->reason);
-  return std::get<CurvedBody>(shape);
-}
-
-DistanceResult cold(const CurvedBody& a, const CurvedBody& b, const Pose& world_from_a,
+DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& world_from_a,
                     const Pose& world_from_b) {
-  CurvedTrackingState state;
-  return curved_distance(a, b, relative_pose(world_from_a, world_from_b), state);
+  return test::cold(a, b, relative_pose(world_from_a, world_from_b));
 }
 
 Pose turned_at(double x, double y, double z, const Vec3& axis, double angle) {
@@ -47,7 +41,7 @@ void expect_answer(const DistanceResult& r, double exact, double size, double ro
 
 TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
   // (5.2.2) gives the points to 1e-11; the distance is 1.29549481993874080913966969921.
-  const CurvedBody a = made_curved(ellipsoid({1, 2, 5})), b = made_curved(ellipsoid({5, 2, 1}));
+  const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({5, 2, 1}));
   const DistanceResult r = cold(a, b, at(0, 0, 0), at(4, 4, 4));
   expect_answer(r, 1.29549481993874080914, 10.0 + 6.9);
   EXPECT_NEAR(r.point_on_a.x(), 0.13705777781256, 1e-10);
@@ -58,10 +52,10 @@ TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
 
 TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
   const ConvexPolyhedron point = made(clearance::point({0, 0, 0}, 0.75));
-  const CurvedBody round[] = {made_curved(ellipsoid({0.75, 0.75, 0.75})), as_curved(point),
-                              made_curved(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
-  for (const CurvedBody& a : round) {
-    for (const CurvedBody& b : round) {
+  const ConvexPolyhedron round[] = {made(ellipsoid({0.75, 0.75, 0.75})), point,
+                                    made(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
+  for (const ConvexPolyhedron& a : round) {
+    for (const ConvexPolyhedron& b : round) {
       expect_answer(cold(a, b, at(0, 0, 0), at(3, 4, 0)), 3.5, 6.5);
       expect_answer(cold(a, b, at(0, 0, 0), at(0.75, 0, 0)), -0.75, 2.25);
     }
@@ -69,7 +63,7 @@ TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
 }
 
 TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
-  const CurvedBody a = made_curved(cylinder(1.0, 2.0)), b = made_curved(cylinder(0.5, 1.0));
+  const ConvexPolyhedron a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
   expect_answer(cold(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);     // coaxial
   expect_answer(cold(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);  // caps half over each other
   expect_answer(cold(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);   // side by side
@@ -79,7 +73,7 @@ TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
 }
 
 TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
-  const CurvedBody cone_a = made_curved(cone(1.0, 1.0)), sphere = made_curved(ellipsoid({1, 1, 1}));
+  const ConvexPolyhedron cone_a = made(cone(1.0, 1.0)), sphere = made(ellipsoid({1, 1, 1}));
   expect_answer(cold(cone_a, sphere, at(0, 0, 0), at(0, 0, 4)), 2.0, 8.0);
   expect_answer(cold(cone_a, sphere, at(0, 0, 0), at(0, 0, -4)), 2.0, 8.0);
   // The side leads from (1, -1) to (0, 1); its outward normal is (2, 1) / sqrt 5.
@@ -90,14 +84,14 @@ TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
 TEST(CurvedDistance, OfAHalfSpaceIsThatOfOneSupportPoint) {
   const HalfSpace rows[] = {{{0, 0, 1}, 0.0}};
   const ConvexPolyhedron floor = made(polyhedron_from_halfspaces(rows));
-  const CurvedBody ground = as_curved(floor), body = made_curved(ellipsoid({3, 2, 1}));
+  const ConvexPolyhedron ground = floor, body = made(ellipsoid({3, 2, 1}));
   expect_answer(cold(ground, body, at(0, 0, 0), at(5, 6, 4)), 3.0, 12.0);
   expect_answer(cold(body, ground, at(5, 6, 4), at(0, 0, 0)), 3.0, 12.0);
   expect_answer(cold(ground, body, at(0, 0, 0), at(5, 6, 0.25)), -0.75, 12.0);
 }
 
 TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
-  const CurvedBody a = made_curved(cylinder(1.0, 1.0)), b = made_curved(cylinder(0.5, 1.0));
+  const ConvexPolyhedron a = made(cylinder(1.0, 1.0)), b = made(cylinder(0.5, 1.0));
   for (double tilt = 1e-14; tilt < 1e-2; tilt *= 10.0) {
     const Pose pose = turned_at(0, 0, 3, Vec3::UnitY(), tilt);
     const double exact = 3.0 - std::cos(tilt) - 0.5 * std::sin(tilt) - 1.0;
@@ -106,15 +100,15 @@ TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
 }
 
 TEST(CurvedDistance, OfDiscsAndNeedlesIsRightAlongTheirAxes) {
-  const CurvedBody disc = made_curved(ellipsoid({1, 1, 1e-4}));
-  const CurvedBody needle = made_curved(ellipsoid({1e-4, 1e-4, 1}));
+  const ConvexPolyhedron disc = made(ellipsoid({1, 1, 1e-4}));
+  const ConvexPolyhedron needle = made(ellipsoid({1e-4, 1e-4, 1}));
   expect_answer(cold(disc, needle, at(0, 0, 0), at(0, 0, 2)), 1.0 - 1e-4, 5.0);
   expect_answer(cold(disc, disc, at(0, 0, 0), at(0, 0, 1)), 1.0 - 2e-4, 4.0);
   expect_answer(cold(needle, needle, at(0, 0, 0), at(1, 0, 0)), 1.0 - 2e-4, 4.0);
 }
 
 TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
-  const CurvedBody a = made_curved(cylinder(1.0, 3.0)), b = made_curved(ellipsoid({0.5, 0.5, 2}));
+  const ConvexPolyhedron a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
   // Sideways, 1.5 - 1 = 0.5 is shorter than lengthwise, 5.
   expect_answer(cold(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);
   const DistanceResult r = cold(a, b, at(0, 0, 0), at(0, 0, 4.75));
@@ -124,7 +118,7 @@ TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
 }
 
 TEST(CurvedDistance, OfEllipsoidsWithOneCentreIsTheSumOfTheirShortestSemiAxes) {
-  const CurvedBody a = made_curved(ellipsoid({1, 2, 5})), b = made_curved(ellipsoid({1.5, 2, 3}));
+  const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({1.5, 2, 3}));
   expect_answer(cold(a, b, at(0, 0, 0), at(0, 0, 0)), -2.5, 8.0);
 }
 
@@ -137,7 +131,7 @@ TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
     TrackingState state;
     CurvedTrackingState curved;
     const DistanceResult r = distance(p, q, pose, state);
-    const DistanceResult s = curved_distance(as_curved(p), as_curved(q), pose, curved);
+    const DistanceResult s = curved_distance(p, q, pose, curved);
     EXPECT_LE(r.lower, s.upper) << k;
     EXPECT_LE(s.lower, r.upper) << k;
     EXPECT_LE(s.upper - s.lower, 1e-13 * (p.bounding_radius + q.bounding_radius + 5.0)) << k;
@@ -145,7 +139,7 @@ TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
 }
 
 TEST(CurvedDistance, TakesAnyStateAndNoHeap) {
-  const CurvedBody a = made_curved(cylinder(1, 1)), b = made_curved(ellipsoid({1, 2, 3}));
+  const ConvexPolyhedron a = made(cylinder(1, 1)), b = made(ellipsoid({1, 2, 3}));
   const RelativePose pose = relative_pose(at(0, 0, 0), at(4, 1, 0));
   CurvedTrackingState empty;
   const DistanceResult r = curved_distance(a, b, pose, empty);
@@ -162,7 +156,7 @@ TEST(CurvedDistance, TakesAnyStateAndNoHeap) {
 }
 
 TEST(CurvedDistance, OfABadPoseIsUnknown) {
-  const CurvedBody a = made_curved(cylinder(1, 1));
+  const ConvexPolyhedron a = made(cylinder(1, 1));
   Pose bad = at(0, 0, 0);
   bad.position.x() = std::nan("");
   const DistanceResult r = cold(a, a, at(0, 0, 0), bad);

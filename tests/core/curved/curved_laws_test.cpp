@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "core/curved/curved_distance.hpp"
+#include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/random.hpp"
@@ -17,43 +17,40 @@ using test::made;
 constexpr int kExamples = 300;
 
 struct Example {
-  std::vector<ConvexPolyhedron> boxes;  // what a or b refers to
-  CurvedBody a, b;
+  ConvexPolyhedron a, b;
   Pose world_from_a, world_from_b;
 
   [[nodiscard]] double size(const DistanceResult& r) const {
-    return a.reach + a.radius + b.reach + b.radius +
+    return a.bounding_radius + a.radius + b.bounding_radius + b.radius +
            (world_from_a.position - world_from_b.position).norm() + std::abs(r.upper);
   }
 };
 
 // Lengths times `scale`.
-CurvedBody body_of(Random& random, std::vector<ConvexPolyhedron>& boxes, double scale) {
+// Curved, or a box.
+ConvexPolyhedron body_of(Random& random, double scale) {
   const auto length = [&] { return scale * random.log_uniform(0.05, 1.0); };
   const double x = length(), y = length(), z = length();
   const double radius = random.chance(0.3) ? 0.2 * length() : 0.0;
   switch (random.integer(0, 4)) {
     case 0:
-      return std::get<CurvedBody>(ellipsoid({x, y, z}, radius));
+      return made(ellipsoid({x, y, z}, radius));
     case 1:
-      return std::get<CurvedBody>(cylinder(x, y, radius));
+      return made(cylinder(x, y, radius));
     case 2:
-      return std::get<CurvedBody>(cone(x, y, radius));
+      return made(cone(x, y, radius));
     case 3:
-      return std::get<CurvedBody>(truncated_cone(x, y, z, radius));
+      return made(truncated_cone(x, y, z, radius));
     default:
-      boxes.push_back(made(box({x, y, z})));
-      boxes.back().radius = radius;
-      return as_curved(boxes.back());
+      return made(rounded_by(radius, made(box({x, y, z}))));
   }
 }
 
 Example example_of(std::uint64_t seed, double scale = 1.0) {
   Random random(seed);
   Example e;
-  e.boxes.reserve(2);
-  e.a = body_of(random, e.boxes, scale);
-  e.b = body_of(random, e.boxes, scale);
+  e.a = body_of(random, scale);
+  e.b = body_of(random, scale);
   e.world_from_a = random.pose(2.0);
   e.world_from_b = random.pose(2.0);
   e.world_from_a.position *= scale;
@@ -61,10 +58,7 @@ Example example_of(std::uint64_t seed, double scale = 1.0) {
   return e;
 }
 
-DistanceResult cold(const CurvedBody& a, const CurvedBody& b, const RelativePose& pose) {
-  CurvedTrackingState state;
-  return curved_distance(a, b, pose, state);
-}
+using test::cold;
 DistanceResult answer(const Example& e) {
   return cold(e.a, e.b, relative_pose(e.world_from_a, e.world_from_b));
 }
@@ -138,11 +132,11 @@ TEST(CurvedLaws, TrackedIsTheSameTruthAsCold) {
     Example e = example_of(seed);
     Random random(seed + 5000);
     const Vec3 step = 0.02 * random.direction();
-    CurvedTrackingState state;
+    TrackingState state;
     for (int k = 0; k < 40; ++k) {
       e.world_from_b.position += step;
       const RelativePose pose = relative_pose(e.world_from_a, e.world_from_b);
-      const DistanceResult tracked = curved_distance(e.a, e.b, pose, state);
+      const DistanceResult tracked = distance(e.a, e.b, pose, state);
       expect_same_truth(cold(e.a, e.b, pose), tracked, 0.0, seed);
     }
   }
