@@ -6,9 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -19,10 +17,6 @@
 
 namespace clearance {
 namespace {
-
-// 24 sides stand out by 1 / cos(pi / 24) - 1 = 0.86 % of the radius; more sides are slower to query
-// and little nearer to the cylinder.
-constexpr int kCylinderSides = 24;
 
 // An identity pose is not written: the default of a cell file is the same.
 bool is_identity(const UrdfOrigin& origin) {
@@ -53,7 +47,6 @@ class RobotCellWriter {
   void emit_head();
   void emit_object(const UrdfLink& link);
   void emit_shape(const UrdfCollision& collision);
-  void emit_prism_around(const UrdfCylinder& cylinder);
   void emit_pairs();
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
@@ -142,31 +135,16 @@ std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   return path.lexically_relative(directory).string();
 }
 
-// A prism whose sides touch the cylinder: its vertices are farther out by 1 / cos(pi / sides).
-void RobotCellWriter::emit_prism_around(const UrdfCylinder& cylinder) {
-  // A little more than the exact factor, so that rounding cannot cut into the cylinder.
-  const double vertex_radius =
-      cylinder.radius / std::cos(std::numbers::pi / kCylinderSides) * (1.0 + 1e-12);
-  out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "base" << YAML::Value << YAML::BeginSeq;
-  for (int i = 0; i < kCylinderSides; ++i) {
-    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kCylinderSides;
-    emit_list(out_, shortest(vertex_radius * std::cos(angle)),
-              shortest(vertex_radius * std::sin(angle)));
-  }
-  out_ << YAML::EndSeq << YAML::Key << "z" << YAML::Value;
-  emit_list(out_, shortest(-0.5 * cylinder.length), shortest(0.5 * cylinder.length));
-  out_ << YAML::EndMap;
-}
-
 // The shape's key and its value, in the map of its part.
 void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
-  if (const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape)) {
-    out_ << YAML::Key << "prism" << YAML::Value;
-    return emit_prism_around(*cylinder);
-  }
+  const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape);
   const auto* mesh = std::get_if<UrdfMesh>(&collision.shape);
   const auto* box = std::get_if<UrdfBox>(&collision.shape);
-  out_ << YAML::Key << (mesh != nullptr ? "mesh" : box != nullptr ? "box" : "sphere");
+  const char* const key = mesh != nullptr       ? "mesh"
+                          : box != nullptr      ? "box"
+                          : cylinder != nullptr ? "cylinder"
+                                                : "sphere";
+  out_ << YAML::Key << key;
   out_ << YAML::Value << YAML::Flow << YAML::BeginMap;
   if (mesh != nullptr) {
     out_ << YAML::Key << "file" << YAML::Value;
@@ -178,6 +156,9 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   } else if (box != nullptr) {
     out_ << YAML::Key << "size" << YAML::Value;
     emit(out_, box->size);
+  } else if (cylinder != nullptr) {
+    out_ << YAML::Key << "radius" << YAML::Value << shortest(cylinder->radius);
+    out_ << YAML::Key << "length" << YAML::Value << shortest(cylinder->length);
   } else {
     out_ << YAML::Key << "radius" << YAML::Value
          << shortest(std::get<UrdfSphere>(collision.shape).radius);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/model/curved_extent.hpp"
 #include "monitor/objects/elapsed.hpp"
 
 namespace clearance {
@@ -21,6 +22,9 @@ constexpr std::int64_t kAnchorAgeLimits = 6;
 // Over how long twists are summed up, in age limits: over more, noise comes to something.
 constexpr std::int64_t kWayAgeLimits = 50;
 
+// So many points of a curved part's circles stand for its corners.
+constexpr int kRound = 8;
+
 double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 
 double fastest_of(const Object& object) noexcept {
@@ -36,6 +40,9 @@ std::vector<Vec3> corners_of(const Object& object) {
   for (const Part& part : object.parts) {
     for (const Vertex& vertex : part.shape.vertices) {
       corners.push_back(transform(part.object_from_part, vertex.position));
+    }
+    for (const Vec3& point : surface_points(part.shape.curved, kRound)) {
+      corners.push_back(transform(part.object_from_part, point));
     }
   }
   return corners;
