@@ -46,7 +46,7 @@ std::optional<ShapeResult> LinkParts::shape_of(const UrdfCollision& collision) {
     return point(Vec3::Zero(), shape->radius);
   }
   if (const auto* shape = std::get_if<UrdfCylinder>(&collision.shape)) {
-    return prism(prism_around(*shape), -0.5 * shape->length, 0.5 * shape->length);
+    return cylinder(shape->radius, 0.5 * shape->length);
   }
   return hull_of(std::get<UrdfMesh>(collision.shape));
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -39,7 +40,6 @@ class RobotCellWriter {
   void emit_head();
   void emit_object(const UrdfLink& link);
   void emit_shape(const UrdfCollision& collision);
-  void emit_prism_around(const UrdfCylinder& cylinder);
   void emit_pairs();
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
@@ -99,25 +99,16 @@ std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   return path->lexically_relative(directory).string();
 }
 
-void RobotCellWriter::emit_prism_around(const UrdfCylinder& cylinder) {
-  out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "base" << YAML::Value << YAML::BeginSeq;
-  for (const Vec2& vertex : prism_around(cylinder)) {
-    emit_list(out_, shortest(vertex.x()), shortest(vertex.y()));
-  }
-  out_ << YAML::EndSeq << YAML::Key << "z" << YAML::Value;
-  emit_list(out_, shortest(-0.5 * cylinder.length), shortest(0.5 * cylinder.length));
-  out_ << YAML::EndMap;
-}
-
 // The shape's key and its value, in the map of its part.
 void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
-  if (const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape)) {
-    out_ << YAML::Key << "prism" << YAML::Value;
-    return emit_prism_around(*cylinder);
-  }
+  const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape);
   const auto* mesh = std::get_if<UrdfMesh>(&collision.shape);
   const auto* box = std::get_if<UrdfBox>(&collision.shape);
-  out_ << YAML::Key << (mesh != nullptr ? "mesh" : box != nullptr ? "box" : "sphere");
+  const char* const key = mesh != nullptr       ? "mesh"
+                          : box != nullptr      ? "box"
+                          : cylinder != nullptr ? "cylinder"
+                                                : "sphere";
+  out_ << YAML::Key << key;
   out_ << YAML::Value << YAML::Flow << YAML::BeginMap;
   if (mesh != nullptr) {
     out_ << YAML::Key << "file" << YAML::Value;
@@ -129,6 +120,9 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   } else if (box != nullptr) {
     out_ << YAML::Key << "size" << YAML::Value;
     emit(out_, box->size);
+  } else if (cylinder != nullptr) {
+    out_ << YAML::Key << "radius" << YAML::Value << shortest(cylinder->radius);
+    out_ << YAML::Key << "length" << YAML::Value << shortest(cylinder->length);
   } else {
     out_ << YAML::Key << "radius" << YAML::Value
          << shortest(std::get<UrdfSphere>(collision.shape).radius);

@@ -35,9 +35,7 @@ struct RobotCell {
 // Each link that has collision shapes becomes an object of the link's name in the link's frame.
 // Every pair of them is watched except the SRDF's disabled ones, or, without an SRDF, a link and
 // the next above it that has shapes; these are listed with their reasons. An SRDF with another
-// robot's name, or with links that the URDF does not have, is refused. A cylinder becomes a prism
-// of 24 sides around it, at most 0.9 % of its radius farther out: the cell is never smaller than
-// the robot.
+// robot's name, or with links that the URDF does not have, is refused.
 [[nodiscard]] std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options);
 
 }  // namespace clearance

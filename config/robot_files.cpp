@@ -1,17 +1,11 @@
 #include "config/robot_files.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <system_error>
 
 namespace clearance {
 namespace {
 
 const std::string kPackage = "package://", kFile = "file://";
-
-// 24 sides stand out by 1 / cos(pi / 24) - 1 = 0.86 % of the radius; more sides are slower to query
-// and little nearer to the cylinder.
-constexpr int kCylinderSides = 24;
 
 // A package that is named wins. Otherwise the search goes upwards, as packages usually contain the
 // description that refers to them.
@@ -57,19 +51,6 @@ Pose pose_of(const UrdfOrigin& origin) {
   return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
                           Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *
                           Eigen::AngleAxisd(origin.rpy.x(), Vec3::UnitX())};
-}
-
-// The vertices are farther out by 1 / cos(pi / sides), and a little more, so that rounding cannot
-// cut into the cylinder.
-std::vector<Vec2> prism_around(const UrdfCylinder& cylinder) {
-  const double vertex_radius =
-      cylinder.radius / std::cos(std::numbers::pi / kCylinderSides) * (1.0 + 1e-12);
-  std::vector<Vec2> base;
-  for (int i = 0; i < kCylinderSides; ++i) {
-    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kCylinderSides;
-    base.emplace_back(vertex_radius * std::cos(angle), vertex_radius * std::sin(angle));
-  }
-  return base;
 }
 
 }  // namespace clearance

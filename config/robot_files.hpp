@@ -31,8 +31,4 @@ struct RobotFiles {
 // Rpy of URDF: rotations about the fixed axes x, then y, then z.
 [[nodiscard]] Pose pose_of(const UrdfOrigin& origin);
 
-// The base of a prism whose sides touch the cylinder: 24 vertices, at most 0.9 % of the radius
-// farther out.
-[[nodiscard]] std::vector<Vec2> prism_around(const UrdfCylinder& cylinder);
-
 }  // namespace clearance

@@ -16,8 +16,9 @@ namespace clearance {
 namespace {
 
 // Keys of shapes, in the order in which messages list them.
-const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
-                                                "polyhedron", "half_space", "mesh"};
+const std::array<std::string, 11> kShapeKinds = {
+    "box",  "sphere",    "capsule",  "prism", "polyhedron",    "half_space",
+    "mesh", "ellipsoid", "cylinder", "cone",  "truncated_cone"};
 
 // Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
@@ -85,7 +86,7 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
   return found;
 }
 
-// A chain of comparisons instead of a table: seven kinds, read once for each part.
+// A chain of comparisons instead of a table: a few kinds, read once for each part.
 std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const YamlNode& node) {
   if (kind == "box") return read_box(node);
   if (kind == "sphere") return read_sphere(node);
@@ -93,17 +94,83 @@ std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const
   if (kind == "prism") return read_prism(node);
   if (kind == "polyhedron") return read_polyhedron(node);
   if (kind == "half_space") return read_half_space(node);
+  if (kind == "ellipsoid") return read_ellipsoid(node);
+  if (kind == "cylinder" || kind == "cone") return read_cylinder_or_cone(kind, node);
+  if (kind == "truncated_cone") return read_truncated_cone(node);
   return read_mesh(node);
+}
+
+// `rounding: r`, which most solids may have: the body is all points within r of what is described.
+std::optional<double> ShapeReader::read_rounding(MapReader& map) const {
+  const YamlNode* node = map.optional("rounding");
+  if (node == nullptr) return 0.0;
+  return quantities_.length(*node, "the radius around the body", kPositive);
+}
+
+// What was made, with that radius around it.
+std::optional<ShapeResult> ShapeReader::rounded(std::optional<double> rounding, ShapeResult made) {
+  auto* body = std::get_if<ConvexPolyhedron>(&made);
+  if (!rounding) return std::nullopt;
+  return body == nullptr ? std::move(made) : rounded_by(*rounding, std::move(*body));
 }
 
 // The file has whole edge lengths, the core takes half ones.
 std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   MapReader map(node, "a box", quantities_.diagnostics());
   const YamlNode* size_node = map.required("size");
+  const auto rounding = read_rounding(map);
   map.refuse_unknown_keys();
   if (size_node == nullptr) return std::nullopt;
   const auto size = quantities_.lengths(*size_node, "the box's edge lengths", kPositive);
-  return size ? std::optional(box(0.5 * *size)) : std::nullopt;
+  return size ? rounded(rounding, box(0.5 * *size)) : std::nullopt;
+}
+
+// Around the origin, along the axes.
+std::optional<ShapeResult> ShapeReader::read_ellipsoid(const YamlNode& node) const {
+  MapReader map(node, "an ellipsoid", quantities_.diagnostics());
+  const YamlNode* axes_node = map.required("semi_axes");
+  const auto rounding = read_rounding(map);
+  map.refuse_unknown_keys();
+  if (axes_node == nullptr || !rounding) return std::nullopt;
+  const auto axes = quantities_.lengths(*axes_node, "the ellipsoid's semi-axes", kPositive);
+  return axes ? std::optional(ellipsoid(*axes, *rounding)) : std::nullopt;
+}
+
+// Along z, its middle at the origin: the file has the whole length, as URDF does, the core takes
+// half of it.
+std::optional<ShapeResult> ShapeReader::read_cylinder_or_cone(const std::string& kind,
+                                                              const YamlNode& node) const {
+  MapReader map(node, "a " + kind, quantities_.diagnostics());
+  const YamlNode* radius_node = map.required("radius");
+  const YamlNode* length_node = map.required("length");
+  const auto rounding = read_rounding(map);
+  map.refuse_unknown_keys();
+  std::optional<double> radius, length;
+  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kPositive);
+  if (length_node != nullptr) length = quantities_.length(*length_node, "the length", kPositive);
+  if (!radius || !length || !rounding) return std::nullopt;
+  const double half = 0.5 * *length;
+  return kind == "cone" ? cone(*radius, half, *rounding) : cylinder(*radius, half, *rounding);
+}
+
+// One end may be a point.
+std::optional<ShapeResult> ShapeReader::read_truncated_cone(const YamlNode& node) const {
+  MapReader map(node, "a truncated cone", quantities_.diagnostics());
+  const YamlNode* lower_node = map.required("lower_radius");
+  const YamlNode* upper_node = map.required("upper_radius");
+  const YamlNode* length_node = map.required("length");
+  const auto rounding = read_rounding(map);
+  map.refuse_unknown_keys();
+  std::optional<double> lower, upper, length;
+  if (lower_node != nullptr) {
+    lower = quantities_.length(*lower_node, "the radius of the lower end", kNotNegative);
+  }
+  if (upper_node != nullptr) {
+    upper = quantities_.length(*upper_node, "the radius of the upper end", kNotNegative);
+  }
+  if (length_node != nullptr) length = quantities_.length(*length_node, "the length", kPositive);
+  if (!lower || !upper || !length || !rounding) return std::nullopt;
+  return truncated_cone(*lower, *upper, 0.5 * *length, *rounding);
 }
 
 // A point with a radius: the core represents it as a swept sphere, exactly.
@@ -141,6 +208,7 @@ std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
   MapReader map(node, "a prism", quantities_.diagnostics());
   const YamlNode* base_node = map.required("base");
   const YamlNode* z_node = map.required("z");
+  const auto rounding = read_rounding(map);
   map.refuse_unknown_keys();
   if (base_node == nullptr || z_node == nullptr) return std::nullopt;
   std::vector<Vec2> base;
@@ -150,7 +218,7 @@ std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
   }
   const auto z = quantities_.lengths_2d(*z_node, "the prism's lower and upper z");
   if (!z || base.empty() || base.size() != vertices.size()) return std::nullopt;
-  return prism(base, z->x(), z->y());
+  return rounded(rounding, prism(base, z->x(), z->y()));
 }
 
 // A half-space n . x <= d, its plane given by d or by a point.
@@ -194,6 +262,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
   MapReader map(node, "a polyhedron", diagnostics);
   const YamlNode* vertices_node = map.optional("vertices");
   const YamlNode* rows_node = map.optional("half_spaces");
+  const auto rounding = read_rounding(map);
   map.refuse_unknown_keys();
   if (map.is_map() && (vertices_node == nullptr) == (rows_node == nullptr)) {
     diagnostics.add(node,
@@ -209,7 +278,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
       if (const auto vertex = quantities_.lengths(item, "a vertex")) vertices.push_back(*vertex);
     }
     if (diagnostics.count() != before) return std::nullopt;
-    return polyhedron_from_vertices(vertices);
+    return rounded(rounding, polyhedron_from_vertices(vertices));
   }
   if (rows_node == nullptr) return std::nullopt;
   std::vector<HalfSpace> rows;
@@ -217,7 +286,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
     if (const auto row = read_row(item)) rows.push_back(*row);
   }
   if (diagnostics.count() != before) return std::nullopt;
-  return polyhedron_from_halfspaces(rows);
+  return rounded(rounding, polyhedron_from_halfspaces(rows));
 }
 
 // One factor, or one for each axis; negative ones mirror.
@@ -273,6 +342,7 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   const YamlNode* scale_node = map.optional("scale");
   const YamlNode* unit_node = map.optional("unit");
   const YamlNode* reach_node = map.optional("reach");
+  const auto rounding = read_rounding(map);
   map.refuse_unknown_keys();
   const std::size_t before = diagnostics.count();
   MeshUse use{.file = "", .scale = read_scale(scale_node), .unit = quantities_.units().length};
@@ -304,7 +374,7 @@ std::optional<ShapeResult> ShapeReader::mesh_hull(const MeshUse& use, const Yaml
                           farthest, use.reach));
     return std::nullopt;
   }
-  return polyhedron_from_vertices(placed);
+  return rounded(rounding, polyhedron_from_vertices(placed));
 }
 
 }  // namespace clearance

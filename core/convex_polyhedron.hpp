@@ -1,5 +1,5 @@
 // A convex body as the queries see it: facets, edges and vertices of one polyhedron, with what
-// joins them.
+// joins them; or a curved shape, which has none of these. Either has an optional radius around it.
 //
 // The polyhedron is an intersection of half-spaces n.x <= d (outward unit normals). It may be
 // unbounded (a floor is one half-space) and it may be lower-dimensional in two ways only: a point
@@ -18,6 +18,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/curved_shape.hpp"
 #include "core/query_tables.hpp"
 #include "core/vec.hpp"
 
@@ -103,15 +104,21 @@ struct ConvexPolyhedron {
   // The sphere of this radius around `interior` lies inside, rounding included, m; 0: not known.
   // Made by add_query_tables().
   double inner_radius = 0.0;
-  double bounding_radius = 0.0;  // largest |anchor| from the frame's origin, rounded up, m
+  double bounding_radius =
+      0.0;  // largest |point| without the radius from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;
   // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m;
   // of an unbounded body without how far out the closest points lie. Made by add_query_tables().
   double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
-  // The body is the polyhedron plus a sphere of this radius, m (exact); 0 to kLargestCoordinate.
+  // The body is the polyhedron or curved shape plus a sphere of this radius, m (exact); 0 to
+  // kLargestCoordinate.
   double radius = 0.0;
 
+  // Of a body that is no polyhedron: all of the above but interior, radii and bounds is empty.
+  CurvedShape curved;
+
+  [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
 
   // Unit, away from the vertex, along the i-th of its edges.
@@ -146,6 +153,6 @@ static_assert(sizeof(std::vector<Facet>) == 3 * sizeof(void*),
               "compiled with _GLIBCXX_DEBUG: the library has the containers without it");
 static_assert(sizeof(Facet) == 48 && sizeof(Edge) == 128 && alignof(Edge) == 16);
 static_assert(sizeof(Vertex) == 32 && sizeof(Ray) == 32 && sizeof(RecessionCone) == 112);
-static_assert(sizeof(ConvexPolyhedron) == 2048 && alignof(ConvexPolyhedron) == 8);
+static_assert(sizeof(ConvexPolyhedron) == 2112 && alignof(ConvexPolyhedron) == 8);
 
 }  // namespace clearance

@@ -26,6 +26,7 @@ enum class DistancePath : std::uint8_t {
   kGjk,          // the active-set iteration and then GJK
   kPenetration,  // penetration depth, at once from the features of the last overlap
   kSpheres,      // see DistanceOptions::far_away
+  kDirection,    // of curved bodies: the search for the separating direction (core/curved)
 };
 
 // Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'
@@ -58,16 +59,27 @@ struct DistanceResult {
 };
 static_assert(sizeof(DistanceResult) == 104 && alignof(DistanceResult) == 8);
 
-// What of a body's boundary is active; kInside: nothing is. kUnknown: no hint.
-enum class FeatureKind : std::uint8_t { kVertex, kEdge, kFacet, kInside, kUnknown = 255 };
+// What of a body's boundary is active; kInside: nothing is. kUnknown: no hint. kDirection: of a
+// pair with a curved body.
+enum class FeatureKind : std::uint8_t {
+  kVertex,
+  kEdge,
+  kFacet,
+  kInside,
+  kDirection,
+  kUnknown = 255
+};
 
 // What a pair remembers between calls: the active feature of each body and where the witness lay on
 // it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
 // a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
 //
-// After a query that was not kFarAway the two points are the witness points, before radii, each in
-// its own body's frame: transform(world_from_b, state.b.point) lies on B to the rounding of B's own
-// pose, however far away A is.
+// Of a pair with a curved body `kind` is kDirection, a.point the last separating direction (frame
+// A), and `feature` names pieces (core/curved/tracking.hpp).
+//
+// After a query that was not kFarAway the two points, or b.point alone, are the witness points,
+// before radii, each in its own body's frame: transform(world_from_b, state.b.point) lies on B to
+// the rounding of B's own pose, however far away A is.
 struct alignas(64) TrackingState {
   struct Side {
     FeatureKind kind = FeatureKind::kUnknown;

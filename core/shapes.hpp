@@ -1,4 +1,4 @@
-// Checked factories: the only way to make a ConvexPolyhedron.
+// Checked factories: the only way to make a convex body.
 //
 // Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
 // rounded once at the end. What is not a solid closed convex body is refused with a reason a person
@@ -55,5 +55,23 @@ using ShapeResult = std::variant<ConvexPolyhedron, ShapeError>;
 
 // A segment: with a radius, a capsule. Refused when both ends are equal.
 [[nodiscard]] ShapeResult segment(const Vec3& start, const Vec3& end, double radius);
+
+// Curved bodies are exactly what these doubles say. Refused: what is not finite, longer than
+// kLargestCoordinate or thinner than kLeastExtent. Each is all points within `rounding` (m, >= 0)
+// of what is described.
+//
+// Around the origin, along the axes.
+[[nodiscard]] ShapeResult ellipsoid(const Vec3& semi_axes, double rounding = 0.0);
+// x^2 + y^2 <= radius^2, -half_length <= z <= half_length.
+[[nodiscard]] ShapeResult cylinder(double radius, double half_length, double rounding = 0.0);
+// The base at z = -half_length, the apex at z = half_length.
+[[nodiscard]] ShapeResult cone(double base_radius, double half_length, double rounding = 0.0);
+// The hull of a disc at z = -half_length and one at z = half_length; one radius may be 0.
+[[nodiscard]] ShapeResult truncated_cone(double lower_radius, double upper_radius,
+                                         double half_length, double rounding = 0.0);
+
+// The same body with this radius around it, whatever it had before: a rounded box, hull or
+// cylinder. Refused: a radius that is not from 0 to kLargestCoordinate.
+[[nodiscard]] ShapeResult rounded_by(double radius, ConvexPolyhedron body);
 
 }  // namespace clearance

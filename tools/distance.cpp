@@ -17,6 +17,7 @@
 #include "monitor/app/program.hpp"
 #include "monitor/files/file_error.hpp"
 #include "tools/distance/answerer.hpp"
+#include "tools/distance/curved_answerer.hpp"
 #include "tools/distance/exact_check.hpp"
 
 namespace clearance {
@@ -33,6 +34,10 @@ Reads one case a line and writes one answer a line, in the same order. A case is
                row, in the body's own frame; n need not have unit length and the set may be unbounded.
                Without half-spaces {"vertices": [[x, y, z], ...]} is the hull of the points (one: a point,
                two: a segment). "radius": r adds a swept sphere (a point becomes a sphere). Metres.
+               Curved: {"ellipsoid": [rx, ry, rz]}, around the z-axis {"cylinder": {"radius": r, "half_length": h}},
+               {"cone": {"radius": r, "half_length": h}} with the apex at z = h, {"truncated_cone": {"lower_radius",
+               "upper_radius", "half_length"}}, each with a "radius" beside it if wanted. Several bodies in one frame:
+               {"parts": [{"pose": [x, y, z, qw, qx, qy, qz], ...}, ...]}. --check leaves these lines out.
   pose_a, pose_b   [x, y, z, qw, qx, qy, qz]: a point p of the body is at (x, y, z) + R p in the world
   poses        instead of these: [[pose_a, pose_b], ...], a motion; each query starts where the last ended
 An answer has id; distance, lower, upper (0 where the bodies overlap); witness_a, witness_b: closest points, where
@@ -76,6 +81,7 @@ void tell(const Options& options, std::size_t line, const std::vector<std::strin
 
 int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   Answerer answerer(options.cold, options.repeat);
+  CurvedAnswerer curved(options.cold, options.repeat);
   ExactCheck check(options.tolerance, options.gap);
   std::size_t line_number = 0, lines = 0, bad = 0;
   for (std::string line; std::getline(in, line);) {
@@ -85,9 +91,13 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
     OrderedJson answer;
     try {
       const nlohmann::json question = nlohmann::json::parse(line);
-      const DistanceCase asked = read_case(question);
-      answer = answerer.answer(asked);
-      if (options.check) tell(options, line_number, check.faults(question, asked, answer));
+      if (is_curved_case(question)) {
+        answer = curved.answer(read_curved_case(question));
+      } else {
+        const DistanceCase asked = read_case(question);
+        answer = answerer.answer(asked);
+        if (options.check) tell(options, line_number, check.faults(question, asked, answer));
+      }
     } catch (const BadLine& error) {
       answer = {{"line", line_number}, {"error", error.what()}};
     } catch (const nlohmann::json::exception& error) {
@@ -100,6 +110,7 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
   }
   out.flush();
   answerer.print_summary(lines, bad);
+  curved.print_summary();
   if (options.check) check.print_summary();
   if (in.bad()) {
     print(stderr, "clearance-distance: cannot read {}\n", options.cases);

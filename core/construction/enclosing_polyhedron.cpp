@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/model/curved_extent.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/shapes.hpp"
 
@@ -14,7 +15,10 @@ namespace {
 // A round takes half of the facets that are left (next_cuts): twelve are enough for thousands.
 constexpr int kMostRounds = 12;
 
-// The bodies' hull: a body is the hull of spheres of these radii around its anchors.
+// Of a curved body's circles so many points stand for it where planes are chosen.
+constexpr int kRound = 16;
+
+// The bodies' hull: a polyhedron is the hull of spheres of these radii around its anchors.
 class Outline {
  public:
   explicit Outline(std::span<const PlacedShape> bodies) {
@@ -28,6 +32,10 @@ class Outline {
     for (const Sphere& sphere : spheres_) {
       farthest = std::max(farthest, n.dot(sphere.centre) + length * sphere.radius);
     }
+    for (const Curved& body : curved_) {
+      const double reach = clearance::support_value(*body.shape, body.turn.transpose() * n);
+      farthest = std::max(farthest, n.dot(body.origin) + reach + length * body.radius);
+    }
     return farthest + 0x1p-49 * size_;  // three roundings of a product, two of the sum
   }
 
@@ -39,10 +47,11 @@ class Outline {
   [[nodiscard]] std::vector<Vec3> samples() const {
     std::vector<Vec3> points;
     for (const Sphere& sphere : spheres_) {
-      if (sphere.round > 0.0) {
-        around(sphere, points);
-      } else {
-        points.push_back(sphere.centre);
+      add_sample(sphere, points);
+    }
+    for (const Curved& body : curved_) {
+      for (const Vec3& p : surface_points(*body.shape, kRound)) {
+        add_sample({body.origin + body.turn * p, body.round, body.radius}, points);
       }
     }
     return points;
@@ -55,15 +64,37 @@ class Outline {
     double radius;  // and what placing may have moved it, m
   };
 
+  // A curved body, turned and then moved.
+  struct Curved {
+    const CurvedShape* shape;
+    Mat3 turn;
+    Vec3 origin;
+    double round, radius;  // as of a sphere
+  };
+
   void add(const PlacedShape& body) {
     const ConvexPolyhedron& shape = *body.shape;
     const double arm = body.frame_from_shape.position.norm() + shape.bounding_radius;
     const double error = kPlacingError * arm + shape.position_error;
+    if (shape.is_curved()) {
+      const double radius = (shape.radius + 2.0 * error) * kRoundedUp;
+      curved_.push_back({&shape.curved, rotation_matrix(body.frame_from_shape.orientation),
+                         body.frame_from_shape.position, shape.radius, radius});
+      size_ = std::max(size_, (arm + radius) * kRoundedUp);
+    }
     for (const Vec3& anchor : shape.anchors) {
       const Vec3 centre = transform(body.frame_from_shape, anchor);
       const double radius = (shape.radius + error) * kRoundedUp;
       spheres_.push_back({centre, shape.radius, radius});
       size_ = std::max(size_, (centre.norm() + radius) * kRoundedUp);
+    }
+  }
+
+  static void add_sample(const Sphere& sphere, std::vector<Vec3>& points) {
+    if (sphere.round > 0.0) {
+      around(sphere, points);
+    } else {
+      points.push_back(sphere.centre);
     }
   }
 
@@ -81,6 +112,7 @@ class Outline {
   }
 
   std::vector<Sphere> spheres_;
+  std::vector<Curved> curved_;
   double size_ = 0.0;
 };
 

@@ -36,12 +36,16 @@ inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
   return result;
 }
 
-// From no features, from parallel ones, or of bodies that penetrated each other. `start`: as of
+// From no features, from parallel ones, of bodies that penetrated each other, or of curved ones,
+// which have no features. `start`: as of
 // by_walk().
 template <class... Start>
 HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state, Start... start) {
+  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
+    return by_direction(a, b, relative_pose(world_from_a, world_from_b), state, true);
+  }
   if (state.a.penetrating) return walk_penetrating(a, b, world_from_a, world_from_b, state);
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state, start...);
@@ -176,6 +180,7 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                         const DistanceOptions& options) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
+  if (a.is_curved() || b.is_curved()) return by_direction(a, b, a_from_b, state, options.depth);
   DistanceResult result;
   if (state.a.penetrating && options.depth) {
     if (!walk_penetration(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);

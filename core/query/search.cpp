@@ -7,6 +7,7 @@
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
+#include "core/curved/curved_distance.hpp"
 #include "core/feature_walk/feature_walk.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
@@ -162,6 +163,13 @@ DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   DistanceResult result = searched(a, b, a_from_b, state, depth);
   add_radii(result, a, b);
   return result;
+}
+
+DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                            const RelativePose& a_from_b, TrackingState& state,
+                            bool depth) noexcept {
+  if (!is_good(a_from_b)) return of_bad_pose(state);
+  return curved_distance(a, b, a_from_b, state, depth);
 }
 
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

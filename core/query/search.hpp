@@ -20,6 +20,11 @@ namespace clearance {
                                        const RelativePose& a_from_b, TrackingState& state,
                                        bool depth) noexcept;
 
+// distance() of a pair with a curved body.
+[[nodiscard]] DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                          const RelativePose& a_from_b, TrackingState& state,
+                                          bool depth) noexcept;
+
 // distance() of bodies that penetrated each other in the last query.
 [[nodiscard]] DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                       const RelativePose& a_from_b, TrackingState& state) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/curved_extent.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -12,7 +13,17 @@ bool is_identity(const Eigen::Quaterniond& q) noexcept {
   return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
 }
 
+// What hypotenuses and sums of curved extents are rounded by, relative.
+constexpr double kCurvedRounding = 0x1p-50;
+
+Sphere sphere_around(const CurvedShape& curved, double radius) noexcept {
+  const Vec3 centre = middle(curved);
+  const double farthest = rounded_up(farthest_from(curved, centre) * (1.0 + kCurvedRounding));
+  return {.centre = centre, .radius = rounded_up(farthest + radius)};
+}
+
 Sphere sphere_around(const ConvexPolyhedron& shape) noexcept {
+  if (shape.is_curved()) return sphere_around(shape.curved, shape.radius);
   Vec3 low = Vec3::Constant(kInfinity);
   Vec3 high = Vec3::Constant(-kInfinity);
   for (const Vec3& anchor : shape.anchors) {
@@ -29,10 +40,18 @@ Sphere sphere_around(const ConvexPolyhedron& shape) noexcept {
   return sphere;
 }
 
+// The farthest point of a curved part from the origin of its object, the part's radius left out.
+double curved_reach_of(const Part& part) noexcept {
+  const Pose& pose = part.object_from_part;
+  const Vec3 origin = -(rotation_matrix(pose.orientation).transpose() * pose.position);
+  const double farthest = farthest_from(part.shape.curved, origin);
+  return farthest * (1.0 + kCurvedRounding) + kPlacingError * pose.position.norm();
+}
+
 // The farthest point of the part from the origin of its object.
 double reach_of(const Part& part) noexcept {
   if (!part.shape.bounded()) return kInfinity;
-  double farthest = 0.0;
+  double farthest = part.shape.is_curved() ? curved_reach_of(part) : 0.0;
   for (const Vec3& anchor : part.shape.anchors) {
     farthest = std::max(farthest, transform(part.object_from_part, anchor).norm());
   }

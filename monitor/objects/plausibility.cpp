@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/model/curved_extent.hpp"
 #include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
@@ -22,6 +23,9 @@ constexpr std::int64_t kReckoningAgeLimits = 50;
 constexpr std::int64_t kGapAgeLimits = 2;
 // By which share of itself a twist may be off.
 constexpr double kTwistError = 1.0 / 6.0;
+
+// So many points of a curved part's circles stand for its corners.
+constexpr int kRound = 8;
 
 double fastest_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kFastestUnstated;
@@ -46,6 +50,9 @@ std::vector<Vec3> corners_of(const Object& object) {
   for (const Part& part : object.parts) {
     for (const Vertex& vertex : part.shape.vertices) {
       corners.push_back(transform(part.object_from_part, vertex.position));
+    }
+    for (const Vec3& point : surface_points(part.shape.curved, kRound)) {
+      corners.push_back(transform(part.object_from_part, point));
     }
   }
   return corners;

@@ -84,6 +84,34 @@ TEST(CellFile, EverySettingArrives) {
   EXPECT_EQ(scene.zones[0].pairs, std::vector<std::uint32_t>{1});
 }
 
+TEST(CellFile, CurvedAndRoundedShapesAreWhatTheNumbersSay) {
+  const Scene scene = scene_of(
+      cell_text("objects:\n"
+                "  - name: a\n"
+                "    parts:\n"
+                "      - ellipsoid: {semi_axes: [1, 2, 3], rounding: 0.25}\n"
+                "      - cylinder: {radius: 0.5, length: 3}\n"
+                "      - cone: {radius: 2, length: 1}\n"
+                "      - truncated_cone: {lower_radius: 0, upper_radius: 1, length: 4}\n"
+                "      - box: {size: [1, 1, 1], rounding: 0.125}\n"
+                "      - prism: {base: [[0, 0], [1, 0], [0, 1]], z: [0, 1], rounding: 0.5}\n"
+                "      - polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],\n"
+                "                     rounding: 0.75}\n"
+                "  - {name: b, sphere: {radius: 1}}\n"
+                "pairs: [{between: [a, b]}]\n"));
+  ASSERT_EQ(scene.objects.size(), 2u);
+  const std::vector<Part>& parts = scene.objects[0].parts;
+  EXPECT_EQ(parts[0].shape.curved.semi_axes, Vec3(1, 2, 3));
+  EXPECT_EQ(parts[0].shape.radius, 0.25);
+  EXPECT_EQ(parts[1].shape.curved.discs, (std::array{Disc{-1.5, 0.5}, Disc{1.5, 0.5}}));
+  EXPECT_EQ(parts[2].shape.curved.discs, (std::array{Disc{-0.5, 2}, Disc{0.5, 0}}));
+  EXPECT_EQ(parts[3].shape.curved.discs, (std::array{Disc{-2, 0}, Disc{2, 1}}));
+  EXPECT_EQ(parts[3].name, "truncated_cone3");
+  EXPECT_EQ(parts[4].shape.radius, 0.125);
+  EXPECT_EQ(parts[5].shape.radius, 0.5);
+  EXPECT_EQ(parts[6].shape.radius, 0.75);
+}
+
 TEST(CellFile, RightAnglesInDegreesAreExact) {
   const Scene scene = scene_of(
       cell_text("objects:\n"

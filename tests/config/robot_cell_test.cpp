@@ -115,13 +115,11 @@ TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
           "2 disabled pairs left out: 1 named twice, 1 with a link without collision shapes"));
 }
 
-TEST_F(RobotCellFile, ACylinderIsNeverSmallerThanItIs) {
-  const ConvexPolyhedron prism = scene().objects.at(1).parts.at(0).shape;
-  for (const Facet& facet : prism.facets) {
-    const bool end = std::abs(facet.normal.z()) > 0.5;
-    EXPECT_GE(facet.offset, end ? 0.5 : 0.1);
-    EXPECT_LE(facet.offset, end ? 0.5 : 0.1 * 1.009);
-  }
+TEST_F(RobotCellFile, ACylinderIsACylinder) {
+  const CurvedShape cylinder = scene().objects.at(1).parts.at(0).shape.curved;
+  EXPECT_EQ(cylinder.kind, CurvedShape::Kind::kTruncatedCone);
+  EXPECT_EQ(cylinder.discs[0], (Disc{-0.5, 0.1}));
+  EXPECT_EQ(cylinder.discs[1], (Disc{0.5, 0.1}));
 }
 
 TEST_F(RobotCellFile, AFixedBaseTakesItsFixedJointsAlong) {

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/distance.hpp"
+#include "core/model/curved_extent.hpp"
 #include "tests/config/cells.hpp"
 
 namespace clearance {
@@ -95,9 +97,10 @@ void expect_stated_speeds(const Scene& scene) {
     for (const PoseAt& at : instant.moving()) {
       const Object& object = scene.objects[at.object];
       for (const Part& part : object.parts) {
-        for (const Vec3& anchor : part.shape.anchors) {
-          const Vec3 point =
-              transform(at.world_from_object, transform(part.object_from_part, anchor));
+        std::vector<Vec3> points = surface_points(part.shape.curved, 32);
+        points.insert(points.end(), part.shape.anchors.begin(), part.shape.anchors.end());
+        for (const Vec3& own : points) {
+          const Vec3 point = transform(at.world_from_object, transform(part.object_from_part, own));
           const Vec3 arm = point - at.world_from_object.position;
           const double speed = (at.twist.linear + at.twist.angular.cross(arm)).norm() +
                                at.twist.angular.norm() * part.shape.radius;
@@ -193,6 +196,27 @@ TEST(TwoArmsCell, MovesWithoutTouchingAndEntersItsZones) {
   expect_stated_speeds(scene);
   EXPECT_GT(least_clearance(scene), 0.02);
   EXPECT_EQ(zones_entered(scene), (std::set<std::string>{"slow", "stop", "hands_slow"}));
+}
+
+TEST(RoundArmCell, IsOfCurvedAndRoundedBodiesOnly) {
+  const Scene scene = shipped("round_arm.yaml");
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      const ConvexPolyhedron& shape = part.shape;
+      EXPECT_TRUE(shape.is_curved() || shape.radius > 0.0 || !shape.bounded()) << object.name;
+    }
+  }
+  for (const char* kind : {"ellipsoid:", "cylinder:", "cone:", "truncated_cone:", "rounding:"}) {
+    EXPECT_NE(scene.yaml.find(kind), std::string::npos) << kind;
+  }
+}
+
+TEST(RoundArmCell, MovesWithoutTouchingAndEntersItsZones) {
+  const Scene scene = shipped("round_arm.yaml");
+  expect_whole_motion(scene);
+  expect_stated_speeds(scene);
+  EXPECT_GT(least_clearance(scene), 0.02);
+  EXPECT_EQ(zones_entered(scene), (std::set<std::string>{"slow", "stop"}));
 }
 
 }  // namespace

@@ -70,7 +70,9 @@ INSTANTIATE_TEST_SUITE_P(
     Monitor, ShippedCells,
     testing::Values(Drive{"mcintyre.yaml", 100, 0.1}, Drive{"mcintyre.yaml", 5, 0.001},
                     Drive{"mcintyre.yaml", 5, 0.1}, Drive{"two_arms.yaml", 2000, 0.1},
-                    Drive{"two_arms.yaml", 150, 0.001}, Drive{"two_arms.yaml", 150, 0.1}));
+                    Drive{"two_arms.yaml", 150, 0.001}, Drive{"two_arms.yaml", 150, 0.1},
+                    Drive{"round_arm.yaml", 400, 0.1}, Drive{"round_arm.yaml", 140, 0.001},
+                    Drive{"round_arm.yaml", 140, 0.1}));
 
 TEST_P(ShippedCells, EveryBoundHoldsAndTheProvedMinimumIsTheMinimum) {
   const Drive run = GetParam();
@@ -104,7 +106,7 @@ TEST_P(ShippedCells, EveryBoundHoldsAndTheProvedMinimumIsTheMinimum) {
 }
 
 TEST(Monitor, ShippedCellsHaveEveryPublishedPairEvaluatedAndEverythingProvedInEveryTick) {
-  for (const char* name : {"mcintyre.yaml", "two_arms.yaml"}) {
+  for (const char* name : {"mcintyre.yaml", "two_arms.yaml", "round_arm.yaml"}) {
     SimulatedCell cell(name);
     Monitor monitor(cell.scene);
     for (int t = 0; t < 100; ++t) {

@@ -21,7 +21,7 @@ struct DistanceAnswer {
 // How many answers each method gave, by DistancePath; and how many pairs touch or overlap of those
 // that feature tracking did not answer.
 struct PathCount {
-  std::array<std::size_t, static_cast<std::size_t>(DistancePath::kSpheres) + 1> by_path{};
+  std::array<std::size_t, static_cast<std::size_t>(DistancePath::kDirection) + 1> by_path{};
   std::size_t met = 0;
 
   [[nodiscard]] std::size_t operator[](DistancePath path) const {

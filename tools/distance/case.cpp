@@ -19,12 +19,16 @@ std::string shown(const Json& value) {
   return text.size() <= 80 ? text : fmt::format("{}...", text.substr(0, 77));
 }
 
+}  // namespace
+
 const Json& member(const Json& object, const char* key, const std::string& where) {
   if (!object.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
   const auto found = object.find(key);
   if (found == object.end()) throw BadLine(fmt::format("{} has no \"{}\"", where, key));
   return *found;
 }
+
+namespace {
 
 template <std::size_t N>
 std::array<double, N> numbers(const Json& list, const std::string& where, const char* expected) {
@@ -42,6 +46,8 @@ std::array<double, N> numbers(const Json& list, const std::string& where, const 
 
 constexpr double kFarthest = kLargestCoordinate;  // m
 
+}  // namespace
+
 Pose read_pose(const Json& list, const std::string& where) {
   const auto v = numbers<7>(list, where, "[x, y, z, qw, qx, qy, qz]");
   const Pose pose{{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
@@ -58,6 +64,8 @@ Pose read_pose(const Json& list, const std::string& where) {
   }
   return pose;
 }
+
+namespace {
 
 ShapeResult shape_of_rows(const Json& list, const std::string& where) {
   std::vector<HalfSpace> rows;
@@ -80,6 +88,8 @@ ShapeResult shape_of_vertices(const Json& list, const std::string& where, double
   if (points.size() == 2) return segment(points[0], points[1], radius);
   return polyhedron_from_vertices(points);
 }
+
+}  // namespace
 
 ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   if (!body.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
@@ -113,6 +123,8 @@ ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   return std::move(polyhedron);
 }
 
+namespace {
+
 std::vector<std::pair<Pose, Pose>> read_motion(const Json& list) {
   if (!list.is_array()) throw BadLine("poses is not a list");
   std::vector<std::pair<Pose, Pose>> out;
@@ -129,18 +141,19 @@ std::vector<std::pair<Pose, Pose>> read_motion(const Json& list) {
 
 }  // namespace
 
+std::vector<std::pair<Pose, Pose>> read_poses(const Json& line) {
+  if (line.contains("poses")) return read_motion(line["poses"]);
+  const Pose pose_a = read_pose(member(line, "pose_a", "the case"), "pose_a");
+  return {{pose_a, read_pose(member(line, "pose_b", "the case"), "pose_b")}};
+}
+
 DistanceCase read_case(const Json& line) {
   DistanceCase found;
   found.id = member(line, "id", "the case");
   found.a = read_body(member(line, "a", "the case"), "a");
   found.b = read_body(member(line, "b", "the case"), "b");
   found.motion = line.contains("poses");
-  if (found.motion) {
-    found.poses = read_motion(line["poses"]);
-  } else {
-    const Pose pose_a = read_pose(member(line, "pose_a", "the case"), "pose_a");
-    found.poses = {{pose_a, read_pose(member(line, "pose_b", "the case"), "pose_b")}};
-  }
+  found.poses = read_poses(line);
   return found;
 }
 

@@ -24,7 +24,13 @@ struct DistanceCase {
   bool motion = false;
 };
 
-// Throws BadLine.
+// Of a line, by their place in it ("pose_a") for the message. All throw BadLine.
+[[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,
+                                           const std::string& where);
+[[nodiscard]] Pose read_pose(const nlohmann::json& list, const std::string& where);
+[[nodiscard]] ConvexPolyhedron read_body(const nlohmann::json& body, const std::string& where);
+[[nodiscard]] std::vector<std::pair<Pose, Pose>> read_poses(const nlohmann::json& line);
+
 [[nodiscard]] DistanceCase read_case(const nlohmann::json& line);
 
 }  // namespace clearance

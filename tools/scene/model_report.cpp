@@ -34,6 +34,7 @@ struct Models {
   double sphere_radius = kInfinity, sphere_error = kInfinity;  // m
   std::optional<Hull> hull;
   Size full;
+  std::size_t curved = 0;   // parts that are no polyhedra
   double full_error = 0.0;  // rounding of its numbers, m
 };
 
@@ -60,6 +61,7 @@ class Judge {
       all.full.facets += size.facets;
       all.full.vertices += size.vertices;
       all.full.bytes += size.bytes;
+      all.curved += part.shape.is_curved() ? 1 : 0;
       all.full_error = std::max(all.full_error, part.shape.position_error);
     }
     return all;
@@ -102,9 +104,9 @@ std::string line(const Models& m, std::size_t width) {
     hull = fmt::format("{:>6} {:>6} {:>8} {:>6}", m.hull->size.facets, m.hull->size.vertices,
                        metres(m.hull->error), kib(m.hull->size.bytes));
   }
-  return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>8.1e} {:>6}\n",
+  return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>6} {:>8.1e} {:>6}\n",
                      m.object->name, width, metres(m.sphere_radius), metres(m.sphere_error), hull,
-                     m.object->parts.size(), m.full.facets, m.full.vertices, m.full_error,
+                     m.object->parts.size(), m.curved, m.full.facets, m.full.vertices, m.full_error,
                      kib(m.full.bytes));
 }
 
@@ -114,11 +116,11 @@ std::string model_table(const Scene& scene) {
   std::size_t width = 6;
   for (const Object& object : scene.objects) width = std::max(width, object.name.size());
   std::string text =
-      fmt::format("{:<{}} | {:^17} | {:^29} | {:^35}\n", "", width, "sphere", "hull", "full") +
+      fmt::format("{:<{}} | {:^17} | {:^29} | {:^42}\n", "", width, "sphere", "hull", "full") +
       fmt::format(
-          "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>8} {:>6}\n",
+          "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>6} {:>8} {:>6}\n",
           "object", width, "radius m", "error m", "facets", "verts", "error m", "KiB", "parts",
-          "facets", "verts", "error m", "KiB");
+          "curved", "facets", "verts", "error m", "KiB");
   std::size_t hull_bytes = 0, full_bytes = 0, hulls = 0;
   for (const Models& m : all_models(scene)) {
     text += line(m, width);
@@ -133,6 +135,7 @@ std::string model_table(const Scene& scene) {
              "models\n"
              "error: no point of a model is farther than this from the object's nearest "
              "part; of full ones, the rounding of their numbers\n"
+             "curved: parts that are ellipsoids, cylinders or cones, without facets\n"
              "-: unbounded, or one simple part, which is evaluated without a coarser model\n",
              scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
 }
@@ -154,6 +157,7 @@ std::string model_json(const Scene& scene) {
     }
     object["full"] = size(m.full);
     object["full"]["parts"] = m.object->parts.size();
+    object["full"]["curved"] = m.curved;
     object["full"]["error"] = m.full_error;
     all.push_back(std::move(object));
   }

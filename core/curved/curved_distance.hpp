@@ -1,0 +1,25 @@
+// How far apart are two convex bodies, curved or not? Tracked: each call starts where the last one
+// ended.
+//
+// Maximises n.(b - a) over unit directions n, b and a being the bodies' support points along -n and
+// n. Every direction bounds the distance from below, and every pair of points from above.
+#pragma once
+
+#include "core/curved/tracking.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer
+// says; the pose has to be a good one. `depth`: as DistanceOptions has it. Two polyhedra are
+// accepted as well, of which distance() says more; of two unbounded ones nothing is known.
+[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const RelativePose& a_from_b, TrackingState& state,
+                                             bool depth = true) noexcept;
+// The same, and a point of both bodies where they overlap.
+[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const RelativePose& a_from_b,
+                                             CurvedTrackingState& state,
+                                             bool depth = true) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,189 @@
+#include "core/curved/depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/curved/direction_search.hpp"
+
+namespace clearance {
+namespace {
+
+// Of one pass, and of all: near-symmetric pairs would take more than anyone waits for.
+constexpr int kSupportsOfPass = 6000, kSupports = 16000;
+// The tolerances of the passes, by the pair's size.
+constexpr double kTolerances[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0x1p-47, 0x1p-49};
+constexpr std::size_t kDeepest = 400;
+
+// Every point of an ellipsoid's surface is on a ball of this radius that lies inside.
+double rolling_ball(const ConvexPolyhedron& body) noexcept {
+  if (body.curved.kind != CurvedShape::Kind::kEllipsoid) return 0.0;
+  const double least = body.curved.semi_axes.minCoeff();
+  return least * (least / body.curved.semi_axes.maxCoeff());
+}
+
+// A direction, how far the bodies reach past each other along it, and the point of A - B that does;
+// both less the rolling balls, without which they are less round.
+struct Corner {
+  Vec3 normal;
+  double past;
+  Vec3 point;
+};
+
+struct Triangle {
+  std::array<Corner, 3> corners;
+};
+
+// The least of what A - B reaches along any direction of the triangle is no less than this. A point
+// of it, p, reaches n.p, which on a triangle of directions is least at a corner where it is
+// positive at all of them; p is any mean of the three corners' points. The best mean is the first
+// player's strategy in the game of the matrix n_i.p_k; any will do.
+class TriangleGame {
+ public:
+  explicit TriangleGame(const Triangle& t) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) m_[i][k] = t.corners[i].normal.dot(t.corners[k].point);
+    }
+  }
+  [[nodiscard]] double value() noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      play(Vec3::Unit(static_cast<int>(k)));
+      two(k, (k + 1) % 3);
+    }
+    three();
+    return best_;
+  }
+
+ private:
+  void play(const Vec3& weights) noexcept {
+    double least = kInfinity;
+    for (std::size_t i = 0; i < 3; ++i) least = std::min(least, row(i).dot(weights));
+    best_ = std::max(best_, least);
+  }
+  [[nodiscard]] Vec3 row(std::size_t i) const noexcept { return {m_[i][0], m_[i][1], m_[i][2]}; }
+
+  // Means of two points where two corners are equal.
+  void two(std::size_t k, std::size_t l) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      const double at_k = m_[i][k] - m_[j][k], at_l = m_[i][l] - m_[j][l];
+      const double part = at_k / (at_k - at_l);
+      if (!(part > 0.0 && part < 1.0)) continue;
+      Vec3 weights = Vec3::Zero();
+      weights[static_cast<int>(k)] = 1.0 - part;
+      weights[static_cast<int>(l)] = part;
+      play(weights);
+    }
+  }
+  // The mean for which all corners are equal.
+  void three() noexcept {
+    const Vec3 w = (row(0) - row(1)).cross(row(1) - row(2));
+    const Vec3 weights = w / w.sum();
+    if (weights.minCoeff() > 0.0) play(weights);
+  }
+
+  std::array<std::array<double, 3>, 3> m_{};
+  double best_ = -kInfinity;
+};
+
+class DepthSearch {
+ public:
+  explicit DepthSearch(CurvedPair& pair) noexcept
+      : pair_(pair), ball_(rolling_ball(*pair.a.body) + rolling_ball(*pair.b.body)) {}
+
+  DepthBounds run() noexcept {
+    descend(pair_.bounds.normal);
+    for (const double tolerance : kTolerances) {
+      if (!pass(tolerance * pair_.size)) break;
+      if (depth() - found_.lower <= pair_.gap_tolerance()) break;
+    }
+    return found_;
+  }
+
+ private:
+  [[nodiscard]] double depth() const noexcept { return -pair_.bounds.lower; }
+
+  void descend(const Vec3& n) noexcept {
+    ActivePieces none;
+    found_.supports += search_direction(pair_, n, none).supports;
+  }
+
+  Corner corner(const Vec3& n) noexcept {
+    const SupportPair at = pair_.support(n);
+    ++found_.supports;
+    return {n, -at.apart - taken_off_, -at.points.difference() - taken_off_ * n};
+  }
+
+  // True: the depth is certainly no less than the best known, less the tolerance.
+  bool pass(double tolerance) noexcept {
+    for (int start = 0; start < 32; ++start) {
+      const double before = depth();
+      const int limit = std::min(kSupports, found_.supports + kSupportsOfPass);
+      const PassEnd end = cover(tolerance, limit);
+      if (end == PassEnd::kCovered) {
+        found_.lower = std::max(found_.lower, before - tolerance);
+        return true;
+      }
+      if (end == PassEnd::kLimit) return false;
+      descend(pair_.bounds.normal);
+    }
+    return false;
+  }
+
+  enum class PassEnd { kCovered, kLimit, kDeeper };
+
+  // The best direction is a corner of the octahedron that is halved.
+  PassEnd cover(double tolerance, int limit) noexcept {
+    const Vec3 n = pair_.bounds.normal;
+    const double best = depth();
+    taken_off_ = std::min(ball_, 0.5 * std::max(best, 0.0));
+    const Vec3 x = n.unitOrthogonal(), y = n.cross(x).normalized();
+    std::array<Corner, 6> corners{corner(n),        corner(x),        corner(y),
+                                  corner(Vec3(-n)), corner(Vec3(-x)), corner(Vec3(-y))};
+    count_ = 0;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+      stack_[count_++] = {
+          {corners[octant & 1 ? 3 : 0], corners[octant & 2 ? 4 : 1], corners[octant & 4 ? 5 : 2]}};
+    }
+    while (count_ > 0) {
+      if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
+      const Triangle t = stack_[--count_];
+      const double least = TriangleGame(t).value();
+      if (least > 0.0 && least + taken_off_ >= best - tolerance) continue;
+      if (found_.supports >= limit || count_ + 2 > stack_.size()) return PassEnd::kLimit;
+      halve(t);
+    }
+    return PassEnd::kCovered;
+  }
+
+  // Along the longest side; the part with the lesser corner comes first.
+  void halve(const Triangle& t) noexcept {
+    std::size_t from = 0;
+    double longest = -1.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double side = (t.corners[(i + 1) % 3].normal - t.corners[i].normal).squaredNorm();
+      if (side > longest) {
+        longest = side;
+        from = i;
+      }
+    }
+    const Corner &a = t.corners[from], &b = t.corners[(from + 1) % 3],
+                 &c = t.corners[(from + 2) % 3];
+    const Corner middle = corner(Vec3(a.normal + b.normal).normalized());
+    stack_[count_++] = {{a, middle, c}};
+    stack_[count_++] = {{middle, b, c}};
+    if (a.past < b.past) std::swap(stack_[count_ - 1], stack_[count_ - 2]);
+  }
+
+  CurvedPair& pair_;
+  double ball_, taken_off_ = 0.0;
+  DepthBounds found_;
+  std::array<Triangle, kDeepest> stack_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+DepthBounds bound_depth(CurvedPair& pair) noexcept { return DepthSearch(pair).run(); }
+
+}  // namespace clearance

@@ -1,0 +1,26 @@
+// The direction along which two bodies are farthest apart, by Newton's method on the pieces that
+// are active there.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/curved/curved_pair.hpp"
+
+namespace clearance {
+
+// The pieces that were active where the last search ended: a hint and never a fact.
+struct ActivePieces {
+  std::array<PiecePair, 3> pieces;
+  std::size_t count = 0;
+};
+
+struct DirectionSearchEnd {
+  int iterations = 0;
+  int supports = 0;
+};
+
+// Improves pair.bounds from the direction n on until they are tight or nothing improves them.
+DirectionSearchEnd search_direction(CurvedPair& pair, const Vec3& n, ActivePieces& active) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,17 @@
+// The distance of a body from a half-space, signed: one support point decides it.
+#pragma once
+
+#include "core/curved/curved_distance.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+[[nodiscard]] bool is_half_space(const ConvexPolyhedron& body) noexcept;
+
+// A or B is a half-space, the other one is bounded. Writes the state's points.
+[[nodiscard]] DistanceResult distance_of_half_space(const ConvexPolyhedron& a,
+                                                    const ConvexPolyhedron& b,
+                                                    const RelativePose& a_from_b,
+                                                    CurvedTrackingState& state) noexcept;
+
+}  // namespace clearance

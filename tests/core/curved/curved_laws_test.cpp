@@ -1,0 +1,146 @@
+// What must hold between answers about curved bodies, whatever they are.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/distance.hpp"
+#include "core/shapes.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance {
+namespace {
+
+using test::made;
+
+constexpr int kExamples = 300;
+
+struct Example {
+  ConvexPolyhedron a, b;
+  Pose world_from_a, world_from_b;
+
+  [[nodiscard]] double size(const DistanceResult& r) const {
+    return a.bounding_radius + a.radius + b.bounding_radius + b.radius +
+           (world_from_a.position - world_from_b.position).norm() + std::abs(r.upper);
+  }
+};
+
+// Lengths times `scale`.
+// Curved, or a box.
+ConvexPolyhedron body_of(Random& random, double scale) {
+  const auto length = [&] { return scale * random.log_uniform(0.05, 1.0); };
+  const double x = length(), y = length(), z = length();
+  const double radius = random.chance(0.3) ? 0.2 * length() : 0.0;
+  switch (random.integer(0, 4)) {
+    case 0:
+      return made(ellipsoid({x, y, z}, radius));
+    case 1:
+      return made(cylinder(x, y, radius));
+    case 2:
+      return made(cone(x, y, radius));
+    case 3:
+      return made(truncated_cone(x, y, z, radius));
+    default:
+      return made(rounded_by(radius, made(box({x, y, z}))));
+  }
+}
+
+Example example_of(std::uint64_t seed, double scale = 1.0) {
+  Random random(seed);
+  Example e;
+  e.a = body_of(random, scale);
+  e.b = body_of(random, scale);
+  e.world_from_a = random.pose(2.0);
+  e.world_from_b = random.pose(2.0);
+  e.world_from_a.position *= scale;
+  e.world_from_b.position *= scale;
+  return e;
+}
+
+using test::cold;
+DistanceResult answer(const Example& e) {
+  return cold(e.a, e.b, relative_pose(e.world_from_a, e.world_from_b));
+}
+
+void expect_same_truth(const DistanceResult& r, const DistanceResult& s, double slack, int seed) {
+  EXPECT_LE(r.lower, s.upper + slack) << "seed " << seed;
+  EXPECT_LE(s.lower, r.upper + slack) << "seed " << seed;
+}
+
+TEST(CurvedLaws, AnswersConverge) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const Example e = example_of(seed);
+    const DistanceResult r = answer(e);
+    EXPECT_LE(r.upper - r.lower, 1e-13 * e.size(r)) << "seed " << seed;
+  }
+}
+
+TEST(CurvedLaws, SwappingTheBodiesSwapsTheAnswer) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const Example e = example_of(seed);
+    const DistanceResult s = cold(e.b, e.a, relative_pose(e.world_from_b, e.world_from_a));
+    expect_same_truth(answer(e), s, 0.0, seed);
+  }
+}
+
+TEST(CurvedLaws, MovingBothBodiesChangesNothing) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const Example e = example_of(seed);
+    Random random(seed + 1000);
+    const Pose turn = random.pose(10.0);
+    const RelativePose moved =
+        relative_pose(compose(turn, e.world_from_a), compose(turn, e.world_from_b));
+    const DistanceResult r = answer(e);
+    expect_same_truth(r, cold(e.a, e.b, moved), 4.0 * kPlacingError * (e.size(r) + 30.0), seed);
+  }
+}
+
+TEST(CurvedLaws, ScalingByAPowerOfTwoScalesTheBounds) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const DistanceResult r = answer(example_of(seed)), s = answer(example_of(seed, 0x1p10));
+    expect_same_truth(r, {.distance = 0.0, .lower = s.lower * 0x1p-10, .upper = s.upper * 0x1p-10},
+                      0.0, seed);
+  }
+}
+
+TEST(CurvedLaws, ALargerRadiusTakesItselfOff) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    Example e = example_of(seed);
+    const DistanceResult r = answer(e);
+    e.a.radius += 0.125;
+    const DistanceResult s = answer(e);
+    EXPECT_LE(r.lower - 0.125, s.upper) << "seed " << seed;
+    EXPECT_LE(s.lower, r.upper - 0.125 + 1e-15) << "seed " << seed;
+  }
+}
+
+TEST(CurvedLaws, MovedByTheDistanceTheyTouch) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const Example e = example_of(seed);
+    RelativePose pose = relative_pose(e.world_from_a, e.world_from_b);
+    const DistanceResult r = cold(e.a, e.b, pose);
+    if (!(r.lower > 0.0)) continue;
+    pose.translation -= r.distance * r.normal;
+    const DistanceResult s = cold(e.a, e.b, pose);
+    EXPECT_NEAR(s.distance, 0.0, 1e-13 * e.size(r)) << "seed " << seed;
+  }
+}
+
+TEST(CurvedLaws, TrackedIsTheSameTruthAsCold) {
+  for (int seed = 0; seed < 60; ++seed) {
+    Example e = example_of(seed);
+    Random random(seed + 5000);
+    const Vec3 step = 0.02 * random.direction();
+    TrackingState state;
+    for (int k = 0; k < 40; ++k) {
+      e.world_from_b.position += step;
+      const RelativePose pose = relative_pose(e.world_from_a, e.world_from_b);
+      const DistanceResult tracked = distance(e.a, e.b, pose, state);
+      expect_same_truth(cold(e.a, e.b, pose), tracked, 0.0, seed);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,30 @@
+// Answers cases with curved bodies or bodies of several parts: the least distance of any two parts.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+
+#include "tools/distance/curved_case.hpp"
+
+namespace clearance {
+
+class CurvedAnswerer {
+ public:
+  // As of Answerer.
+  CurvedAnswerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
+
+  // As of Answerer, without the deepest points; of parts that overlap no depth is given.
+  [[nodiscard]] nlohmann::ordered_json answer(const CurvedCase& question);
+
+  // Prints to stderr, where there were any.
+  void print_summary() const;
+
+ private:
+  bool cold_;
+  int repeat_;
+  std::size_t queries_ = 0, not_converged_ = 0;
+  std::chrono::steady_clock::duration time_{};
+};
+
+}  // namespace clearance
