@@ -1,0 +1,126 @@
+// The three-dimensional view: camera, lights, bodies, zones, lines; what is clicked.
+import * as THREE from "three";
+import { OrbitControls } from "orbit";
+import { Bodies } from "./bodies.js";
+import { PairLines } from "./pair_lines.js";
+import { ZoneShells } from "./zone_shells.js";
+import { css } from "./format.js";
+
+const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
+const CLICK_PIXELS = 5;
+// Frames that take longer than this are drawn with fewer pixels; ms.
+const SLOW_FRAME = 28, FAST_FRAME = 9;
+
+export class SceneView {
+  // Called back: pairChosen(pair), objectChosen(object or undefined).
+  constructor(scene, on) {
+    this.on = on;
+    this.element = document.getElementById("scene");
+    const canvas = document.getElementById("view");
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.sharpness = Math.min(window.devicePixelRatio, 2);
+    this.world = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(38, 1, 0.01, 400);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.15;
+    this.bodies = new Bodies(scene);
+    this.shells = new ZoneShells(scene);
+    this.lines = new PairLines(document.getElementById("labels"), on.pairChosen);
+    this.sun = new THREE.DirectionalLight(0xffffff, 2.1);
+    this.sky = new THREE.HemisphereLight(0xffffff, 0x8a94a3, 1.7);
+    this.world.add(this.sky, this.sun, this.bodies, this.shells, this.lines);
+    this.clicks(canvas);
+    new ResizeObserver(() => this.resize()).observe(this.element);
+    this.resize();
+    this.retheme();
+  }
+
+  resize() {
+    this.size = { width: this.element.clientWidth, height: this.element.clientHeight };
+    this.renderer.setPixelRatio(this.sharpness);
+    this.renderer.setSize(this.size.width, this.size.height, false);
+    this.camera.aspect = this.size.width / Math.max(1, this.size.height);
+    this.camera.updateProjectionMatrix();
+  }
+
+  retheme() {
+    this.renderer.setClearColor(css("--scene"));
+    this.bodies.recolour();
+    this.shells.recolour();
+  }
+
+  // Looks at all of the cell from this side.
+  fit(side = "cell") {
+    const bounds = this.bodies.bounds();
+    if (bounds.isEmpty()) return;
+    const sphere = bounds.getBoundingSphere(new THREE.Sphere());
+    const narrow = Math.min(1, this.camera.aspect);
+    const away = (0.92 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    this.controls.target.copy(sphere.center);
+    this.camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(...DIRECTIONS[side]).normalize(), away);
+    for (const grid of this.bodies.grids) {
+      grid.material.uniforms.centre.value.copy(sphere.center);
+      grid.material.uniforms.reach.value = sphere.radius;
+    }
+    this.fitted = true;
+  }
+
+  // "x,y,z,tx,ty,tz", m, for addresses.
+  get place() {
+    return [...this.camera.position, ...this.controls.target].map((each) => each.toFixed(3)).join(",");
+  }
+  set place(text) {
+    const numbers = text.split(",").map(Number);
+    if (numbers.length !== 6 || !numbers.every(Number.isFinite)) return;
+    this.fit();
+    this.camera.position.set(...numbers.slice(0, 3));
+    this.controls.target.set(...numbers.slice(3));
+  }
+
+  moved(transforms) {
+    if (this.bodies.move(transforms) && !this.isPlaced) this.fit();
+  }
+
+  draw(state, chosen, frozen) {
+    const began = performance.now();
+    this.controls.update();
+    this.camera.updateMatrixWorld();
+    this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
+    this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
+    this.shells.update(this.bodies.poses, state.zoneStates());
+    if (state.report) this.lines.update(state, chosen, this.camera, this.size);
+    this.renderer.render(this.world, this.camera);
+    this.adapt(performance.now() - began);
+  }
+
+  // Fewer pixels on a machine that is too slow for all of them, and back.
+  adapt(took) {
+    this.took = 0.9 * (this.took ?? took) + 0.1 * took;
+    this.sinceAdapted = (this.sinceAdapted ?? 0) + 1;
+    if (this.sinceAdapted < 60) return;
+    const best = Math.min(window.devicePixelRatio, 2);
+    const sharpness = this.took > SLOW_FRAME ? Math.max(0.5, 0.75 * this.sharpness)
+      : this.took < FAST_FRAME ? Math.min(best, 1.25 * this.sharpness) : this.sharpness;
+    this.sinceAdapted = 0;
+    if (sharpness === this.sharpness) return;
+    this.sharpness = sharpness;
+    this.resize();
+  }
+
+  clicks(canvas) {
+    let down;
+    canvas.addEventListener("pointerdown", ({ clientX, clientY }) => (down = [clientX, clientY]));
+    canvas.addEventListener("pointerup", ({ clientX, clientY }) => {
+      if (!down || Math.hypot(clientX - down[0], clientY - down[1]) > CLICK_PIXELS) return;
+      const box = canvas.getBoundingClientRect();
+      const x = clientX - box.left, y = clientY - box.top;
+      const pair = this.lines.pairAt(x, y, this.camera, this.size);
+      if (pair !== undefined) return this.on.pairChosen(pair);
+      const raycaster = new THREE.Raycaster();
+      raycaster.setFromCamera(new THREE.Vector2((x / box.width) * 2 - 1, 1 - (y / box.height) * 2), this.camera);
+      this.on.objectChosen(this.bodies.objectAt(raycaster));
+    });
+  }
+}
