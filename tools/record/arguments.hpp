@@ -14,6 +14,7 @@ struct RecordArguments {
   std::string cell;      // empty: none
   std::string from_csv;  // empty: record from DDS
   double seconds = 0.0;  // 0: until stopped
+  bool scene = false;    // the scene for 3D viewers as well; only with a cell
   bool force = false;
   DdsArguments dds;
 };

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "monitor/app/print.hpp"
@@ -16,6 +17,7 @@
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
+#include "tools/record/scene_channels.hpp"
 #include "tools/record/stream_gaps.hpp"
 
 namespace clearance {
@@ -29,8 +31,10 @@ constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other to
 // Readers of all five topics; what they take goes into the recording byte for byte.
 class Subscription {
  public:
-  Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer)
-      : writer_(writer) {
+  // `scene`: channels for 3D viewers, or null.
+  Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer,
+               SceneChannels* scene)
+      : writer_(writer), scene_(scene) {
     for (const Topic& topic : kTopics) {
       readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
@@ -101,6 +105,9 @@ class Subscription {
     ++counts_[index(kind)];
     look_into(kind);
     writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
+    if (scene_ == nullptr) return;
+    if (kind == TopicKind::kPoses) scene_->take(*batch_);
+    if (kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
   }
 
   void look_into(TopicKind kind) {
@@ -114,6 +121,7 @@ class Subscription {
   }
 
   RecordingWriter& writer_;
+  SceneChannels* scene_;
   std::array<dds_entity_t, kTopics.size()> readers_{};
   std::array<std::uint64_t, kTopics.size()> counts_{};
   std::vector<Taken> taken_;
@@ -163,7 +171,9 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   RecordingWriter writer(arguments.out, topics);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
   if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
-  Subscription subscription(participant, topics, writer);
+  std::optional<SceneChannels> channels;
+  if (arguments.scene && scene != nullptr) channels.emplace(*scene, writer, dds_time());
+  Subscription subscription(participant, topics, writer, channels ? &*channels : nullptr);
   const std::int64_t end_ns = arguments.seconds > 0.0
                                   ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
                                   : std::numeric_limits<std::int64_t>::max();

@@ -18,6 +18,26 @@ export function geometryOf({ positions, normals, triangles }) {
   return geometry;
 }
 
+// What stands between the camera and what moves is seen through: one material leaves those fragments out, the other
+// draws only them, faintly. `focus`: centre and radius of what moves, shared by both.
+function cutAway(material, focus, isGhost) {
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.focus = focus;
+    shader.fragmentShader = shader.fragmentShader
+      .replace("void main() {", `uniform vec4 focus;
+        bool inFront() {
+          vec3 centre = (viewMatrix * vec4(focus.xyz, 1.0)).xyz, here = -vViewPosition;
+          vec3 axis = normalize(centre);
+          float along = dot(here, axis), away = length(here - axis * along);
+          return along < length(centre) - 0.55 * focus.w && away < 1.15 * focus.w * along / length(centre);
+        }
+        void main() {
+          if (inFront() != ${isGhost}) discard;`);
+  };
+  material.customProgramCacheKey = () => `cut away ${isGhost}`;
+  return material;
+}
+
 // Instances of several meshes in one BatchedMesh; `parts` have {mesh}.
 export function batch(parts, meshes, material) {
   const used = [...new Set(parts.map(({ mesh }) => mesh))];
@@ -65,7 +85,12 @@ export class Bodies extends THREE.Group {
     super();
     this.cell = scene;
     this.poses = scene.objects.map(({ pose }) => (pose ? matrixOf(pose) : undefined));
-    this.parts = scene.parts.filter(({ mesh }) => mesh !== undefined);
+    // What moves first: an index below `moving` is in `solid`, the others are in `still` and, seen through, in `ghost`.
+    const drawn = scene.parts.filter(({ mesh }) => mesh !== undefined);
+    const fixed = ({ object }) => scene.objects[object].fixed;
+    this.parts = [...drawn.filter((part) => !fixed(part)), ...drawn.filter(fixed)];
+    this.moving = drawn.length - drawn.filter(fixed).length;
+    this.focus = { value: new THREE.Vector4(0, 0, 0, 0) };
     this.local = this.parts.map(({ pose }) => matrixOf(pose));
     this.ofObject = scene.objects.map(() => []);
     this.parts.forEach(({ object }, i) => this.ofObject[object].push(i));
@@ -80,14 +105,17 @@ export class Bodies extends THREE.Group {
   }
 
   build(meshes) {
-    this.solid = batch(this.parts, meshes, new THREE.MeshLambertMaterial());
+    const [moving, fixed] = [this.parts.slice(0, this.moving), this.parts.slice(this.moving)];
+    if (moving.length) this.add((this.solid = batch(moving, meshes, new THREE.MeshLambertMaterial())));
+    if (fixed.length) {
+      this.still = batch(fixed, meshes, cutAway(new THREE.MeshLambertMaterial(), this.focus, false));
+      const faint = { transparent: true, opacity: 0.13, depthWrite: false };
+      this.ghost = batch(fixed, meshes, cutAway(new THREE.MeshLambertMaterial(faint), this.focus, true));
+      this.add(this.still, this.ghost);
+    }
     this.edges = edgeLines(this.parts, meshes);
-    this.add(this.solid, this.edges.lines);
-    const box = new THREE.Box3();
-    this.radii = this.parts.map(({ mesh }) => {
-      box.setFromArray(meshes[mesh].positions);
-      return box.clone();
-    });
+    this.add(this.edges.lines);
+    this.boxes = this.parts.map(({ mesh }) => new THREE.Box3().setFromArray(meshes[mesh].positions));
   }
 
   // [object's name, pose] of each that is known; true when one was seen for the first time.
@@ -103,12 +131,21 @@ export class Bodies extends THREE.Group {
     return isNew;
   }
 
+  // Does this to a part in every batch that draws it.
+  ofPart(part, act) {
+    if (part < this.moving) return act(this.solid, part);
+    act(this.still, part - this.moving);
+    act(this.ghost, part - this.moving);
+  }
+
   place(object) {
     const pose = this.poses[object];
     for (const part of this.ofObject[object]) {
-      this.solid.setVisibleAt(part, pose !== undefined);
       const matrix = pose ? pose.clone().multiply(this.local[part]) : new THREE.Matrix4().makeScale(0, 0, 0);
-      this.solid.setMatrixAt(part, matrix);
+      this.ofPart(part, (batched, i) => {
+        batched.setVisibleAt(i, pose !== undefined);
+        batched.setMatrixAt(i, matrix);
+      });
       matrix.toArray(this.edges.texture.image.data, 16 * part);
       this.edges.texture.needsUpdate = true;
     }
@@ -126,11 +163,11 @@ export class Bodies extends THREE.Group {
 
   // After the theme, the selection or who is late has changed.
   recolour() {
-    if (this.solid) {
+    if (this.edges) {
       const colour = new THREE.Color();
       this.ofObject.forEach((parts, object) => {
         colour.set(this.colourOf(object));
-        for (const part of parts) this.solid.setColorAt(part, colour);
+        for (const part of parts) this.ofPart(part, (batched, i) => batched.setColorAt(i, colour));
       });
       this.edges.material.uniforms.colour.value.set(css("--edge"));
     }
@@ -146,26 +183,32 @@ export class Bodies extends THREE.Group {
     if (!same) this.recolour();
   }
 
-  // Around everything whose pose is known.
-  bounds() {
+  // Around everything whose pose is known, or around some of it.
+  bounds(of = () => true) {
     const all = new THREE.Box3();
     this.parts.forEach(({ object, unbounded }, part) => {
-      if (!unbounded && this.poses[object]) {
-        all.union(this.radii[part].clone().applyMatrix4(this.poses[object].clone().multiply(this.local[part])));
-      }
+      if (unbounded || !this.poses[object] || !of(this.cell.objects[object])) return;
+      all.union(this.boxes[part].clone().applyMatrix4(this.poses[object].clone().multiply(this.local[part])));
     });
     return all;
   }
-  centreOf(object) {
-    const all = new THREE.Box3();
-    for (const part of this.ofObject[object]) {
-      if (this.poses[object]) all.union(this.radii[part].clone().applyMatrix4(this.poses[object].clone().multiply(this.local[part])));
-    }
-    return all.getCenter(new THREE.Vector3());
+  // What moves is where the view is cut away to.
+  refocus() {
+    const moving = this.bounds(({ fixed }) => !fixed);
+    if (moving.isEmpty()) return;
+    const { center, radius } = moving.getBoundingSphere(new THREE.Sphere());
+    this.focus.value.set(...center, radius);
   }
 
+  // Roughly: what is so near is seen through.
+  isCutAway(distance) {
+    return this.focus.value.w > 0 && distance < this.eye.distanceTo(new THREE.Vector3(...this.focus.value)) - 0.55 * this.focus.value.w;
+  }
   objectAt(raycaster) {
-    const [hit] = this.solid ? raycaster.intersectObject(this.solid) : [];
-    return hit ? this.parts[hit.batchId].object : undefined;
+    this.eye = raycaster.ray.origin;
+    const batches = [this.solid, this.still].filter(Boolean);
+    const [hit] = raycaster.intersectObjects(batches).filter(({ object, distance }) => object === this.solid || !this.isCutAway(distance));
+    if (!hit) return undefined;
+    return this.parts[hit.batchId + (hit.object === this.solid ? 0 : this.moving)].object;
   }
 }

@@ -1,11 +1,14 @@
 // Figures as people read them.
 
-export const mm = (metres, digits = 1) =>
-  Number.isFinite(metres) ? (1e3 * metres).toFixed(digits) : metres === undefined || Number.isNaN(metres) ? "unknown" : metres > 0 ? "∞" : "−∞";
+export const mm = (metres, digits = 1) => {
+  if (Number.isFinite(metres)) return (1e3 * metres).toFixed(digits).replace("-", "−");
+  return metres === Infinity ? "∞" : metres === -Infinity ? "−∞" : "?";
+};
 
-export const signed = (value, digits = 3) => (Number.isFinite(value) ? (value >= 0 ? "+" : "−") + Math.abs(value).toFixed(digits) : "unknown");
+export const signed = (value, digits = 3) => (Number.isFinite(value) ? (value >= 0 ? "+" : "−") + Math.abs(value).toFixed(digits) : "?");
 
-export const contact = (seconds) => (Number.isNaN(seconds) ? "unknown" : seconds < 1000 ? seconds.toFixed(2) : "–");
+// Contacts more than a quarter of an hour away are not shown.
+export const contact = (seconds) => (Number.isNaN(seconds) ? "?" : seconds < 1000 ? seconds.toFixed(2) : "–");
 
 export const milliseconds = (ns) => (ns < 0 ? "never" : (1e-6 * ns).toFixed(ns < 1e7 ? 1 : 0));
 

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import { css, mm, put } from "./format.js";
 import { isKnown } from "./cell_state.js";
 
-const MOST_LINES = 64, MOST_LABELS = 7;
+const MOST_LINES = 64, MOST_LABELS = 4;
 const WIDTH = 0.0016, POINT = 0.0042; // of the distance to the camera
 export const COLOUR = { inside: "--alarm", leaving: "--near", outside: "--good", free: "--accent", lost: "--lost" };
 
@@ -79,11 +79,12 @@ export class PairLines extends THREE.Group {
       element.dataset.pair = pair.pair;
       element.style.setProperty("--label", `var(${COLOUR[level]})`);
       element.classList.toggle("chosen", chosen.has(pair.pair));
+      element.classList.toggle("slight", i > 0 && !chosen.has(pair.pair));
       put(element.firstChild, `${mm(pair.distance)} mm`);
-      put(element.lastChild, `[${mm(pair.lower, 2)}, ${mm(pair.upper, 2)}]${i < 3 ? `  ${state.pairs[pair.pair].name}` : ""}`);
+      put(element.lastChild, `[${mm(pair.lower, 2)}, ${mm(pair.upper, 2)}] ${state.pairs[pair.pair].name}`);
       let x = (at.x * 0.5 + 0.5) * width + 14, y = (0.5 - at.y * 0.5) * height - 18;
       x = Math.min(x, width - 240);
-      for (const other of placed) if (Math.abs(other.y - y) < 44 && Math.abs(other.x - x) < 250) y = other.y + 46;
+      for (const other of placed) if (Math.abs(other.y - y) < 42 && Math.abs(other.x - x) < 250) y = other.y + 44;
       placed.push({ x, y });
       element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
     });

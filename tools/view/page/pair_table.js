@@ -94,7 +94,7 @@ export class PairTable {
     row.style.setProperty("--mark", `var(${COLOUR[state.levelOf(pair)]})`);
     row.title = `${name}: ${STATUS[pair.status]}, bounds ${pair.lower} to ${pair.upper} m, refreshed ${pair.refresh_age_cycles} ticks ago`;
     const age = ageOf(pair);
-    [name, known ? mm(pair.distance) : STATUS[pair.status], mm(pair.lower), signed(pair.closing_speed, 2), contact(pair.time_to_contact),
+    [name, known ? mm(pair.distance) : STATUS[pair.status], mm(pair.lower, known ? 1 : 0), signed(pair.closing_speed, 2), contact(pair.time_to_contact),
       age === Infinity ? "never" : milliseconds(age)].forEach((text, i) => put(row.cells[i], text));
   }
 

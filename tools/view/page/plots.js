@@ -85,12 +85,17 @@ class Plot {
     }
     context.stroke();
     context.lineWidth = 1;
-    if (!fill || points.length < 2) return;
-    context.lineTo(x(points.at(-1)[0]), base);
-    context.lineTo(x(points[0][0]), base);
-    context.globalAlpha = 0.12;
+    if (fill) this.fill(context, points.filter(([, value]) => Number.isFinite(value)), colour, x, y, base);
+  }
+
+  // Below the line, a column a point, so that gaps stay gaps.
+  fill(context, points, colour, x, y, base) {
+    context.globalAlpha = 0.14;
     context.fillStyle = colour;
-    context.fill();
+    points.forEach(([s, value], i) => {
+      const next = x(points[i + 1]?.[0] ?? s);
+      if (next - x(s) < 12) context.fillRect(x(s), y(value), next - x(s), base - y(value));
+    });
     context.globalAlpha = 1;
   }
 }
@@ -110,7 +115,10 @@ export class Plots {
     const now = state.history.at(-1).s;
     const series = (value) => state.history.map((at) => [at.s - now, value(at)]);
     const thresholds = state.scene.zones.slice(0, 4).map(({ enter_below }) => ({ value: 1e3 * enter_below, colour: css("--alarm") }));
-    this.minimum.draw([{ colour: css("--accent"), fill: true, points: series(({ lower }) => 1e3 * lower) }], thresholds);
+    // A recording knows what was before it was moved to where it is.
+    const before = state.timeline?.stretches.map(([s, , lower]) => [s + Number(state.timeline.begin_ns) * 1e-9 - now, lower === null ? NaN : 1e3 * lower])
+      .filter(([s]) => s <= 0 && s > -HISTORY_S);
+    this.minimum.draw([{ colour: css("--accent"), fill: true, points: before ?? series(({ lower }) => 1e3 * lower) }], thresholds);
     const { distance } = state.history.at(-1);
     put(document.getElementById("plot-minimum-now"), distance === undefined ? "not known" : `${mm(distance, 2)} mm`);
     this.tick.draw([{ colour: css("--good"), points: series(({ tick }) => tick) }]);

@@ -51,11 +51,10 @@ export class SceneView {
     this.shells.recolour();
   }
 
-  // Looks at all of the cell from this side.
-  fit(side = "cell") {
-    const bounds = this.bodies.bounds();
-    if (bounds.isEmpty()) return;
-    const sphere = bounds.getBoundingSphere(new THREE.Sphere());
+  // Looks from this side at all of the cell, or first of all at what moves in it.
+  fit(side = "cell", moving = false) {
+    const sphere = this.sphere(moving) ?? this.sphere(false);
+    if (!sphere) return;
     const narrow = Math.min(1, this.camera.aspect);
     const away = (0.92 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
     this.controls.target.copy(sphere.center);
@@ -64,7 +63,13 @@ export class SceneView {
       grid.material.uniforms.centre.value.copy(sphere.center);
       grid.material.uniforms.reach.value = sphere.radius;
     }
+    this.bodies.refocus();
     this.fitted = true;
+  }
+
+  sphere(moving) {
+    const bounds = this.bodies.bounds(moving ? ({ fixed }) => !fixed : undefined);
+    return bounds.isEmpty() ? undefined : bounds.getBoundingSphere(new THREE.Sphere());
   }
 
   // "x,y,z,tx,ty,tz", m, for addresses.
@@ -80,7 +85,7 @@ export class SceneView {
   }
 
   moved(transforms) {
-    if (this.bodies.move(transforms) && !this.isPlaced) this.fit();
+    if (this.bodies.move(transforms) && !this.isPlaced) this.fit("cell", true);
   }
 
   draw(state, chosen, frozen) {
@@ -88,6 +93,8 @@ export class SceneView {
     this.controls.update();
     this.camera.updateMatrixWorld();
     this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
+    this.drawn = (this.drawn ?? 0) + 1;
+    if (this.drawn % 30 === 0) this.bodies.refocus();
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.shells.update(this.bodies.poses, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size);

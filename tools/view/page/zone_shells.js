@@ -22,7 +22,7 @@ const material = () => new THREE.ShaderMaterial({
   fragmentShader: `uniform vec3 colour; uniform float strength; varying vec3 normalSeen, seen;
     void main() {
       float facing = abs(dot(normalize(normalSeen), normalize(seen)));
-      gl_FragColor = vec4(colour, strength * (0.12 + pow(1.0 - facing, 2.5)));
+      gl_FragColor = vec4(colour, strength * (0.1 + pow(1.0 - facing, 3.0)));
     }`,
 });
 
@@ -61,7 +61,7 @@ export class ZoneShells extends THREE.Group {
     this.shells.forEach((shells, zone) => {
       const { colour, strength } = shells?.solid.material.uniforms ?? {};
       colour?.value.set(css(this.active[zone] ? "--alarm" : "--good"));
-      if (strength) strength.value = this.active[zone] ? 0.5 : 0.16;
+      if (strength) strength.value = this.active[zone] ? 0.26 : 0.14;
     });
   }
 }
