@@ -1,13 +1,14 @@
 // Foxglove's own client: subscribes to every channel, decodes a message of each by its schema, counts the reports of two
-// seconds, and sets a parameter: node foxglove.mjs URL [SECONDS]
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+// seconds, and sets a parameter: node foxglove.mjs URL [TIME]
+import protocol from "@foxglove/ws-protocol";
 import WebSocket from "ws";
 
 import { markersOf, plain, readerOf } from "./decode.mjs";
 
+const { FoxgloveClient } = protocol;
 const [url, time] = process.argv.slice(2);
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-const found = { channels: {}, first: {}, reports: 0, times: 0, statuses: [] };
+const found = { channels: {}, first: {}, last: {}, reports: 0, times: 0, statuses: [] };
 const channels = new Map();
 
 client.on("serverInfo", ({ name, capabilities }) => Object.assign(found, { name, capabilities }));
@@ -28,7 +29,8 @@ client.on("message", ({ subscriptionId, data }) => {
   const { topic, reader } = channels.get(subscriptionId);
   const message = reader.readMessage(data);
   if (topic.endsWith("distances")) found.reports += 1;
-  found.first[topic] ??= message.markers ? markersOf(message) : message;
+  found.last[topic] = message.markers ? markersOf(message) : message;
+  found.first[topic] ??= found.last[topic];
 });
 
 setTimeout(() => {

@@ -9,7 +9,7 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
-page.setDefaultTimeout(50_000);
+page.setDefaultTimeout(100_000);
 const errors = [];
 page.on("pageerror", ({ message }) => errors.push(message));
 page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
@@ -87,8 +87,8 @@ async function recording() {
 try {
   await (what === "live" ? page.goto(url).then(live) : page.goto(`${url}?t=0`).then(recording));
 } catch (error) {
-  await picture("failed");
-  say({ failed: String(error), errors });
+  say({ failed: error.stack, errors });
+  await picture("failed").catch(() => {});
   process.exitCode = 1;
 }
 await browser.close();

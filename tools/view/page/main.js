@@ -69,6 +69,7 @@ function chooseObject(object) {
   chosen.clear();
   selected();
   view.bodies.choose([object]);
+  ++view.changes;
 }
 function clear() {
   chosen.clear();
@@ -102,10 +103,7 @@ table.filter = asked.filter;
 if (asked.sort) table.sortBy(asked.sort, false);
 view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
 view.shells.visible = asked.shells;
-if (asked.camera) {
-  view.isPlaced = true;
-  view.place = asked.camera;
-}
+if (asked.camera) view.place = asked.camera;
 
 // ---- Buttons and keys
 
@@ -163,7 +161,7 @@ const times = [];
 function frame(nowMs) {
   requestAnimationFrame(frame);
   const frozen = drawReadouts(state, track?.playing, nowMs);
-  view.draw(state, chosen, frozen);
+  view.draw(state, chosen, frozen, nowMs);
   table.draw(state, chosen, nowMs);
   plots.draw(state, chosen, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());

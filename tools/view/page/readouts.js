@@ -50,7 +50,7 @@ function drawState(state, frozen, playing) {
   chip.className = `chip ${kind}`;
   put(chip, text);
   element("scene").classList.toggle("frozen", frozen);
-  element("scene").classList.toggle("doubtful", !frozen && state.doubts().length > 0);
+  element("scene").classList.toggle("doubtful", !frozen && state.doubts().some(({ level }) => level === "lost"));
 }
 
 // Rows of the health: [term, text, is bad].

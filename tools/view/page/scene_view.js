@@ -8,8 +8,8 @@ import { css } from "./format.js";
 
 const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
 const CLICK_PIXELS = 5;
-// Frames that take longer than this are drawn with fewer pixels; ms.
-const SLOW_FRAME = 28, FAST_FRAME = 9;
+// Where frames take longer than this, ms, they are drawn with fewer pixels, down to so many a pixel of the page.
+const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 
 export class SceneView {
   // Called back: pairChosen(pair), objectChosen(object or undefined).
@@ -38,6 +38,7 @@ export class SceneView {
   }
 
   resize() {
+    this.changes = (this.changes ?? 0) + 1;
     this.size = { width: this.element.clientWidth, height: this.element.clientHeight };
     this.renderer.setPixelRatio(this.sharpness);
     this.renderer.setSize(this.size.width, this.size.height, false);
@@ -46,6 +47,7 @@ export class SceneView {
   }
 
   retheme() {
+    ++this.changes;
     this.renderer.setClearColor(css("--scene"));
     this.bodies.recolour();
     this.shells.recolour();
@@ -56,15 +58,20 @@ export class SceneView {
     const sphere = this.sphere(moving) ?? this.sphere(false);
     if (!sphere) return;
     const narrow = Math.min(1, this.camera.aspect);
-    const away = (0.92 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    const away = (1.12 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(...DIRECTIONS[side]).normalize(), away);
-    for (const grid of this.bodies.grids) {
-      grid.material.uniforms.centre.value.copy(sphere.center);
-      grid.material.uniforms.reach.value = sphere.radius;
+    this.surround();
+    this.fitted = true;
+  }
+  // Grids reach as far as the cell does.
+  surround() {
+    const sphere = this.sphere(false);
+    for (const { material } of this.bodies.grids) {
+      material.uniforms.centre.value.copy(sphere.center);
+      material.uniforms.reach.value = sphere.radius;
     }
     this.bodies.refocus();
-    this.fitted = true;
   }
 
   sphere(moving) {
@@ -79,40 +86,50 @@ export class SceneView {
   set place(text) {
     const numbers = text.split(",").map(Number);
     if (numbers.length !== 6 || !numbers.every(Number.isFinite)) return;
-    this.fit();
     this.camera.position.set(...numbers.slice(0, 3));
     this.controls.target.set(...numbers.slice(3));
+    this.isPlaced = true;
   }
 
   moved(transforms) {
-    if (this.bodies.move(transforms) && !this.isPlaced) this.fit("cell", true);
+    if (!this.bodies.move(transforms) && this.fitted) return;
+    if (this.isPlaced) {
+      this.surround();
+      this.fitted = true;
+    } else {
+      this.fit("cell", true);
+    }
   }
 
-  draw(state, chosen, frozen) {
-    const began = performance.now();
+  // Draws where something has changed; a recording that stands still costs nothing.
+  draw(state, chosen, frozen, nowMs) {
     this.controls.update();
     this.camera.updateMatrixWorld();
-    this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
+    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, ...this.camera.matrixWorld.elements].join();
+    if (key === this.drawnKey) return (this.drawnMs = undefined);
+    this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
     if (this.drawn % 30 === 0) this.bodies.refocus();
+    this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.shells.update(this.bodies.poses, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size);
     this.renderer.render(this.world, this.camera);
-    this.adapt(performance.now() - began);
+    this.adapt(nowMs);
   }
 
-  // Fewer pixels on a machine that is too slow for all of them, and back.
-  adapt(took) {
-    this.took = 0.9 * (this.took ?? took) + 0.1 * took;
-    this.sinceAdapted = (this.sinceAdapted ?? 0) + 1;
-    if (this.sinceAdapted < 60) return;
-    const best = Math.min(window.devicePixelRatio, 2);
-    const sharpness = this.took > SLOW_FRAME ? Math.max(0.5, 0.75 * this.sharpness)
-      : this.took < FAST_FRAME ? Math.min(best, 1.25 * this.sharpness) : this.sharpness;
+  // Fewer pixels on a machine that is too slow for all of them: by the time between frames, since what draws is not
+  // waited for.
+  adapt(nowMs) {
+    if (this.drawnMs !== undefined) {
+      const took = nowMs - this.drawnMs;
+      this.took = 0.9 * (this.took ?? took) + 0.1 * took;
+      this.sinceAdapted = (this.sinceAdapted ?? 0) + 1;
+    }
+    this.drawnMs = nowMs;
+    if (!(this.sinceAdapted > 20) || this.took < SLOW_FRAME || this.sharpness <= LEAST_SHARPNESS) return;
+    this.sharpness = Math.max(LEAST_SHARPNESS, 0.7 * this.sharpness);
     this.sinceAdapted = 0;
-    if (sharpness === this.sharpness) return;
-    this.sharpness = sharpness;
     this.resize();
   }
 

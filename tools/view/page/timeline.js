@@ -4,7 +4,7 @@ import { fresh, roundUp } from "./plots.js";
 
 const element = (id) => document.getElementById(id);
 const MARK = { closest: "--alarm", zone: "--near", overrun: "--lost" };
-const LEFT = 46, TOP = 6;
+const LEFT = 54, TOP = 6;
 
 export class Timeline {
   // `timeline` as /timeline.json; set(name, value) sets a parameter of the server.
