@@ -127,6 +127,10 @@ const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t objec
   return state_->inputs.objects[object].rejected;
 }
 
+const Pose& Monitor::pose(std::uint32_t object) const noexcept {
+  return state_->inputs.objects[object].pose;
+}
+
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].stamp_ns;
 }

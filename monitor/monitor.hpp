@@ -66,6 +66,9 @@ class Monitor {
   [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(
       std::uint32_t object) const noexcept;
 
+  // World from object: the pose in use, meaningless of a moving object that was never seen.
+  [[nodiscard]] const Pose& pose(std::uint32_t object) const noexcept;
+
   // Stamp of the pose in use; 0: fixed, or never seen.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;
 

@@ -29,6 +29,7 @@ t_ns and, as columns, joints of the cell's robots: rad or m; NAME/velocity may s
 
 Examples:
   clearance-record -o run.mcap --cell cell.yaml
+  clearance-record -o run.mcap --cell cell.yaml --scene
   clearance-record -o run.mcap --domain 7 --partition lab --seconds 60
   clearance-record --from-csv poses.csv.gz -o run.mcap --cell cell.yaml
   clearance-record --from-bag rosbag2_2026_11_22/ -o run.mcap --cell cell.yaml)";
@@ -44,8 +45,8 @@ int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app("Records every topic of Clearance, as it is on the wire, to an MCAP file.");
   RecordArguments arguments;
   app.add_option("-o,--output", arguments.out, "The recording to write")->required();
-  app.add_option("--cell", arguments.cell,
-                 "The cell file, which names domain, partition, topics and objects");
+  CLI::Option* const cell = app.add_option(
+      "--cell", arguments.cell, "The cell file, which names domain, partition, topics and objects");
   CLI::Option* const csv =
       app.add_option("--from-csv", arguments.from_csv,
                      "Convert this pose log or joint log, plain or gzip, instead of recording "
@@ -63,6 +64,13 @@ int run(int argc, char** argv, StopSignal& stop) {
   app.add_option("--seconds", arguments.seconds,
                  "Stop after this many seconds; otherwise on Ctrl-C")
       ->check(positive_number())
+      ->excludes(csv)
+      ->excludes(bag);
+  app.add_flag("--scene", arguments.scene,
+               "Record the scene as well, as ROS 2 transforms and markers at 60 Hz: /tf, "
+               "/clearance/bodies, /clearance/closest. Foxglove, Lichtblick and their like then "
+               "show the recording in 3D")
+      ->needs(cell)
       ->excludes(csv)
       ->excludes(bag);
   add_force(app, arguments.force);

@@ -49,6 +49,15 @@ class RecordingWriter {
   // asked where a file may end: behind a report and what belongs to it. True: it did.
   bool roll(std::int64_t log_ns);
 
+  // A channel beside those of our topics, with CDR messages; returns its id.
+  [[nodiscard]] std::uint16_t add_channel(const McapSchema& schema, std::string_view topic) {
+    return mcap_.add_channel(schema, topic, kCdrEncoding);
+  }
+  void write(std::uint16_t channel, std::int64_t log_ns, std::span<const std::byte> cdr) {
+    const auto time_ns = static_cast<std::uint64_t>(log_ns);
+    mcap_.write(channel, time_ns, time_ns, cdr);
+  }
+
   // What was written so far survives a crash.
   void flush() { mcap_->flush(); }
   // As McapWriter::check.

@@ -18,6 +18,7 @@ struct RecordArguments {
   std::string from_bag;                   // this
   std::vector<std::string> joint_topics;  // of the bag
   double seconds = 0.0;                   // 0: until stopped
+  bool scene = false;                     // the scene for 3D viewers as well; only with a cell
   bool force = false;
   RecordingArguments recording;
   DdsArguments dds;

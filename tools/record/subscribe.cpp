@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
+#include "tools/record/scene_channels.hpp"
 #include "tools/record/stream_gaps.hpp"
 
 namespace clearance {
@@ -30,9 +32,10 @@ constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other to
 // Readers of all six topics; what they take goes into the recording byte for byte.
 class Subscription {
  public:
+  // `scene`: channels for 3D viewers, or null.
   Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer,
-               const RecordingOptions& options)
-      : writer_(writer), options_(options) {
+               const RecordingOptions& options, SceneChannels* scene)
+      : writer_(writer), options_(options), scene_(scene) {
     for (const Topic& topic : kTopics) {
       readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
@@ -103,9 +106,13 @@ class Subscription {
     ++counts_[index(kind)];
     const bool is_report = look_into(kind) && kind == TopicKind::kDistances;
     if (is_report && !keeps_pairs(options_, report_->cycle)) {
-      return write_without_pairs(now_ns, taken.source_ns);
+      write_without_pairs(now_ns, taken.source_ns);
+    } else {
+      writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
     }
-    writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
+    if (scene_ == nullptr) return;
+    if (kind == TopicKind::kPoses) scene_->take(*batch_);
+    if (kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
   }
 
   void write_without_pairs(std::int64_t now_ns, std::int64_t source_ns) {
@@ -133,6 +140,7 @@ class Subscription {
 
   RecordingWriter& writer_;
   RecordingOptions options_;
+  SceneChannels* scene_;
   std::array<dds_entity_t, kTopics.size()> readers_{};
   std::array<std::uint64_t, kTopics.size()> counts_{};
   std::vector<Taken> taken_;
@@ -185,7 +193,9 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   RecordingWriter writer(arguments.out, topics, options);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
   if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
-  Subscription subscription(participant, topics, writer, options);
+  std::optional<SceneChannels> channels;
+  if (arguments.scene && scene != nullptr) channels.emplace(*scene, writer, dds_time());
+  Subscription subscription(participant, topics, writer, options, channels ? &*channels : nullptr);
   const std::int64_t end_ns = arguments.seconds > 0.0
                                   ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
                                   : std::numeric_limits<std::int64_t>::max();

@@ -1,0 +1,38 @@
+// A convex body as triangles, for viewers: facets flat, what is rounded by its radius smooth.
+//
+// Rounded bodies are tessellated as they are: each facet moved out by the radius, a strip of a
+// cylinder along each edge, a patch of a sphere at each vertex. Every vertex lies on the surface to
+// a double's rounding, and chords leave it by at most 1 - cos(kArcStep / 2) of the radius: 0.4 %.
+// Nothing that is decided rests on a mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+// In the body's frame, m.
+struct BodyMesh {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  // one a position, unit, outward
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise as seen from outside
+  std::vector<std::array<Vec3, 2>> edges;               // sharp ones, as lines
+
+  bool operator==(const BodyMesh&) const = default;
+};
+
+// Arcs are drawn in steps of at most this, rad.
+inline constexpr double kArcStep = 0.175;
+
+// The body, with its radius enlarged by `offset` (m, >= 0). What is unbounded is cut off by the
+// cube of half width `reach` (m) around the frame's origin; empty when nothing lies in it.
+[[nodiscard]] BodyMesh body_mesh(const ConvexPolyhedron& body, double offset = 0.0,
+                                 double reach = 20.0);
+
+// A body that is one half-space, which viewers draw as a grid on its plane.
+[[nodiscard]] bool is_half_space(const ConvexPolyhedron& body) noexcept;
+
+}  // namespace clearance

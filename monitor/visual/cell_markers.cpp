@@ -1,0 +1,131 @@
+#include "monitor/visual/cell_markers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "monitor/report.hpp"
+#include "monitor/visual/body_mesh.hpp"
+#include "monitor/visual/ros_types.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr ros::Colour kFixedColour{0.62F, 0.65F, 0.69F, 1.0F}, kMovingColour{0.32F, 0.55F, 0.80F, 1.0F},
+    kPlaneColour{0.5F, 0.5F, 0.5F, 0.25F}, kNearColour{0.92F, 0.34F, 0.05F, 1.0F},
+    kClosestColour{0.07F, 0.65F, 0.52F, 1.0F};
+constexpr double kLineWidth = 0.006, kTextHeight = 0.05;  // m
+constexpr std::size_t kMostLines = 64;
+
+ros::Marker part_marker(const Object& object, const Part& part, std::int32_t id) {
+  const BodyMesh mesh = body_mesh(part.shape);
+  ros::Marker marker{.frame = object.name,
+                     .name_space = "bodies",
+                     .id = id,
+                     .type = ros::MarkerType::kTriangles,
+                     .pose = part.object_from_part,
+                     .colour = object.fixed ? kFixedColour : kMovingColour};
+  if (!part.shape.bounded()) marker.colour = kPlaneColour;
+  marker.points.reserve(3 * mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) marker.points.push_back(mesh.positions[corner]);
+  }
+  return marker;
+}
+
+Vec3 vector_of(const clearance_msg_Vector3& v) { return {v.x, v.y, v.z}; }
+
+bool has_points(const clearance_msg_PairDistance& pair) {
+  return pair.status < static_cast<std::uint8_t>(PairStatus::kStale) &&
+         vector_of(pair.witness_a).allFinite() && vector_of(pair.witness_b).allFinite();
+}
+
+// Thresholds of each pair's zones: the largest enter_below plus both margins, m; -infinity: none.
+std::vector<double> near_below(const Scene& scene) {
+  std::vector<double> limits(scene.pairs.size(), -kInfinity);
+  for (const Zone& zone : scene.zones) {
+    for (const std::uint32_t pair : zone.pairs) {
+      const ObjectPair& both = scene.pairs[pair];
+      const double margins =
+          scene.objects[both.first].margin + scene.objects[both.second].margin;
+      limits[pair] = std::max(limits[pair], zone.enter_below + margins);
+    }
+  }
+  return limits;
+}
+
+void add_pair(const clearance_msg_PairDistance& pair, const ros::Colour& colour,
+              ros::Marker& lines, std::vector<ros::Marker>& markers) {
+  const Vec3 a = vector_of(pair.witness_a), b = vector_of(pair.witness_b);
+  lines.points.insert(lines.points.end(), {a, b});
+  lines.colours.insert(lines.colours.end(), {colour, colour});
+  ros::Marker text{.name_space = "distances",
+                   .id = static_cast<std::int32_t>(markers.size()),
+                   .type = ros::MarkerType::kText,
+                   .pose = {0.5 * (a + b) + Vec3(0.0, 0.0, kTextHeight), {}},
+                   .scale = Vec3(0.0, 0.0, kTextHeight),
+                   .colour = colour};
+  text.pose.orientation = Eigen::Quaterniond::Identity();
+  text.text = fmt::format("{:.1f} mm", 1e3 * pair.distance);
+  markers.push_back(std::move(text));
+}
+
+}  // namespace
+
+std::vector<std::byte> transforms_message(const Scene& scene, const ObjectPoses& poses,
+                                          std::int64_t stamp_ns) {
+  std::vector<ros::Transform> transforms;
+  transforms.reserve(scene.objects.size());
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (poses.pose(i)) transforms.push_back({scene.objects[i].name, *poses.pose(i)});
+  }
+  return ros::encode(stamp_ns, transforms);
+}
+
+std::vector<std::byte> bodies_message(const Scene& scene) {
+  std::vector<ros::Marker> markers;
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      markers.push_back(part_marker(object, part, static_cast<std::int32_t>(markers.size())));
+    }
+  }
+  return ros::encode(0, markers);
+}
+
+std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_Distances& report,
+                                       std::int64_t stamp_ns) {
+  std::vector<ros::Marker> markers(1);
+  ros::Marker lines{.name_space = "lines",
+                    .type = ros::MarkerType::kLineList,
+                    .scale = Vec3(kLineWidth, 0.0, 0.0),
+                    .colour = kClosestColour};
+  const std::vector<double> limits = near_below(scene);
+  const auto colour_of = [&](const clearance_msg_PairDistance& pair) {
+    return pair.pair < limits.size() && pair.lower < limits[pair.pair] ? kNearColour
+                                                                       : kClosestColour;
+  };
+  if (report.minimum_known && has_points(report.minimum)) {
+    add_pair(report.minimum, colour_of(report.minimum), lines, markers);
+  }
+  for (const auto& pair : std::span(report.pairs._buffer, report.pairs._length)) {
+    if (markers.size() > kMostLines) break;
+    if (pair.pair == report.minimum.pair || pair.pair >= limits.size()) continue;
+    if (has_points(pair) && pair.lower < limits[pair.pair]) {
+      add_pair(pair, kNearColour, lines, markers);
+    }
+  }
+  // Texts of lines that are gone.
+  lines.deleted = lines.points.empty();
+  const std::size_t shown = markers.size();
+  for (std::size_t id = shown; id <= kMostLines; ++id) {
+    markers.push_back({.name_space = "distances",
+                       .id = static_cast<std::int32_t>(id),
+                       .type = ros::MarkerType::kText,
+                       .deleted = true});
+  }
+  markers.front() = std::move(lines);
+  return ros::encode(stamp_ns, markers);
+}
+
+}  // namespace clearance

@@ -1,0 +1,94 @@
+// Opens clearance-view's page in Debian's Chromium and says what it shows, a line of JSON a step:
+//   node page.mjs URL FOLDER live|recording
+// Pictures go into FOLDER.
+import { chromium } from "playwright-core";
+
+const [url, folder, what] = process.argv.slice(2);
+const browser = await chromium.launch({
+  executablePath: "/usr/bin/chromium",
+  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
+page.setDefaultTimeout(100_000);
+const errors = [];
+page.on("pageerror", ({ message }) => errors.push(message));
+page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+
+const say = (values) => console.log(JSON.stringify(values));
+const picture = (name) => page.screenshot({ path: `${folder}/${name}.png` });
+const minimum = () => page.$eval("#minimum", ({ dataset }) => ({
+  cycle: Number(dataset.cycle), distance: dataset.distance === "" ? null : Number(dataset.distance),
+  pair: document.getElementById("minimum-pair").textContent, value: document.getElementById("minimum-value").textContent,
+}));
+const alarm = () => page.$eval("#alarm", (box) => (box.hidden ? "" : box.textContent));
+
+async function live() {
+  await page.waitForFunction(() => window.clearance?.shownFor() > 1 && document.getElementById("minimum").dataset.distance !== "");
+  const samples = [];
+  for (let i = 0; i < 10; ++i) {
+    samples.push(await minimum());
+    await page.waitForTimeout(50);
+  }
+  await page.click("#pair-table tbody tr:first-child");
+  await page.waitForTimeout(300);
+  await picture("live-light");
+  await page.keyboard.press("t");
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await page.waitForTimeout(300);
+  await picture("live-dark-tablet");
+  say({
+    samples, chosen: await page.$$eval("tr.chosen", (rows) => rows.length), rows: await page.$$eval("#pair-table tbody tr", (rows) => rows.length),
+    zones: await page.$$eval("#zones .chip", (chips) => chips.map(({ textContent }) => textContent)),
+    theme: await page.$eval("html", ({ dataset }) => dataset.theme), alarm: await alarm(), address: page.url(), errors,
+  });
+  await page.waitForFunction(() => document.getElementById("alarm").textContent.includes("clearanced has ended"));
+  await page.setViewportSize({ width: 1440, height: 900 });
+  await page.waitForTimeout(300);
+  await picture("ended");
+  say({ ended: await alarm(), minimum: await minimum(), frozen: await page.$eval("#scene", ({ classList }) => classList.contains("frozen")) });
+}
+
+// The recording stands still where the page says.
+const settled = (time) => page.waitForFunction((at) => window.clearance?.isAt(at), time);
+const shownTime = () => page.$eval("#time", ({ textContent }) => parseFloat(textContent));
+
+async function recording() {
+  await settled(0);
+  const timeline = await (await fetch(new URL("/timeline.json", url))).json();
+  const closest = timeline.moments.find(({ kind }) => kind === "closest");
+  await page.click("#worst");
+  await settled(closest.time);
+  const worst = await minimum();
+  await picture("worst-moment");
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((cycle) => Number(document.getElementById("minimum").dataset.cycle) === cycle + 1, worst.cycle);
+  await page.click("#pair-table tbody tr:first-child");
+  const before = await shownTime();
+  const box = await (await page.$("#track")).boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.75 * box.width, box.y + 20, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((time) => Math.abs(parseFloat(document.getElementById("time").textContent) - time) > 0.05, before);
+  await page.waitForTimeout(200);
+  const dragged = await shownTime();
+  const share = await page.evaluate(() => { document.getElementById("share").click(); return location.href; });
+  await page.keyboard.press("w");
+  await settled(closest.time);
+  await page.goto(share);
+  await settled(dragged);
+  await picture("shared-link");
+  say({ timeline, worst, dragged, share, again: await shownTime(), chosen: await page.$$eval("tr.chosen", (rows) => rows.length), errors });
+  await page.keyboard.press("Space");
+  await page.waitForFunction((time) => parseFloat(document.getElementById("time").textContent) > time + 0.1, dragged);
+  say({ played: await shownTime(), framesPerSecond: await page.evaluate(() => window.clearance.framesPerSecond()) });
+}
+
+try {
+  await (what === "live" ? page.goto(url).then(live) : page.goto(`${url}?t=0`).then(recording));
+} catch (error) {
+  say({ failed: error.stack, errors });
+  await picture("failed").catch(() => {});
+  process.exitCode = 1;
+}
+await browser.close();

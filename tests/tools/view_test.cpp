@@ -1,0 +1,269 @@
+// clearance-view as people and programs see it: in a browser, and through Foxglove's own client.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "monitor/recording/reader.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using nlohmann::json;
+using test::ChildProcess;
+using test::eventually;
+
+const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
+const std::string kScripts = CLEARANCE_VIEW_JS;
+
+// The lines of JSON that a script has printed.
+std::vector<json> lines_of(const ChildProcess& script) {
+  std::vector<json> lines;
+  std::istringstream text(script.output());
+  for (std::string line; std::getline(text, line);) {
+    const json value = json::parse(line, nullptr, false);
+    if (value.is_object()) lines.push_back(value);
+  }
+  return lines;
+}
+
+// What stays after the run, to be looked at: a folder in the build.
+std::string pictures() {
+  const std::filesystem::path folder = CLEARANCE_VIEW_PICTURES;
+  std::filesystem::create_directories(folder);
+  return folder.string();
+}
+
+// Until the daemon has poses of both boxes.
+void wait_for_poses(const DdsOptions& dds, const Scene& scene) {
+  Participant client(dds);
+  test::Distances reports(client, scene);
+  for (;;) {
+    const auto report = reports.next();
+    ASSERT_NE(report, nullptr);
+    if ((*report)->minimum_known && (*report)->unknown == 0) return;
+  }
+}
+
+// A viewer on a free port.
+class View {
+ public:
+  explicit View(const std::vector<std::string>& arguments)
+      : process_(kView, test::with(arguments, {"--port", "0"})) {
+    EXPECT_TRUE(eventually([&] { return process_.wrote("http://127.0.0.1:"); }))
+        << process_.output();
+    const std::string output = process_.output();
+    address_ = output.substr(output.find("http://"));
+    address_ = address_.substr(0, address_.find('\n'));
+  }
+  [[nodiscard]] std::string page() const { return address_; }
+  [[nodiscard]] std::string socket() const { return "ws" + address_.substr(4); }
+  int end() {
+    process_.signal(SIGTERM);
+    return process_.wait();
+  }
+
+ private:
+  ChildProcess process_;
+  std::string address_;
+};
+
+const std::string kTwoArms = std::string(CLEARANCE_SOURCE) + "/config/cells/two_arms.yaml";
+
+class ViewOfARecording : public testing::Test {
+ protected:
+  ViewOfARecording() {
+    const DdsOptions own = test::own_dds();
+    const auto dds = test::dds_arguments(own);
+    ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", file}, dds));
+    ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+    wait_for_poses(own, cell.scene());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  }
+
+  // The report with the least distance that is no old one.
+  [[nodiscard]] clearance_msg_PairDistance worst() const {
+    RecordingReader reader(file);
+    RecordedMessage message;
+    CdrDecoder decoder;
+    Sample<clearance_msg_Distances> report;
+    clearance_msg_PairDistance least{};
+    least.distance = kInfinity;
+    while (reader.next(message)) {
+      if (message.kind != TopicKind::kDistances || !decoder.decode(message.cdr, report)) continue;
+      const auto& minimum = report->minimum;
+      if (!report->minimum_known || minimum.status >= 5) continue;
+      if (minimum.distance < least.distance) least = minimum;
+    }
+    return least;
+  }
+
+  test::CellFile cell{test::small_cell("small")};
+  test::ScratchFolder folder;
+  std::string file = (folder / "run.mcap").string();
+};
+
+TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
+  const DdsOptions dds = test::own_dds();
+  const auto arguments = test::dds_arguments(dds);
+  const Scene scene = std::get<Scene>(read_cell(kTwoArms));
+  Participant client(dds);
+  ChildProcess daemon(test::kDaemon, test::with({kTwoArms}, arguments));
+  ChildProcess robot(test::kRobot, test::with({kTwoArms, "--rate", "250"}, arguments));
+  View view(test::with({kTwoArms}, arguments));
+  test::Distances reports(client, scene);
+  ChildProcess page("/usr/bin/env",
+                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "live"});
+  std::map<std::uint64_t, double> distances;  // by cycle
+  while (page.running() && lines_of(page).empty()) {
+    const auto report = reports.next();
+    ASSERT_NE(report, nullptr);
+    distances[(*report)->cycle] = (*report)->minimum.distance;
+  }
+  ASSERT_EQ(lines_of(page).size(), 1u) << page.output();
+  const json shown = lines_of(page).front();
+  EXPECT_EQ(shown["errors"], json::array());
+  ASSERT_EQ(shown["samples"].size(), 10u) << page.output();
+  int compared = 0;
+  for (const json& sample : shown["samples"]) {
+    const auto known = distances.find(sample["cycle"]);
+    if (known == distances.end() || sample["distance"].is_null()) continue;
+    EXPECT_EQ(known->second, sample["distance"].get<double>()) << sample;
+    ++compared;
+  }
+  EXPECT_GE(compared, 5);
+  EXPECT_EQ(shown["chosen"], 1);
+  EXPECT_GT(shown["rows"], 100);
+  EXPECT_EQ(shown["zones"].size(), scene.zones.size());
+  EXPECT_EQ(shown["theme"], "dark");
+  EXPECT_THAT(shown["address"].get<std::string>(), testing::HasSubstr("pairs="));
+
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0);
+  EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
+  const json ended = lines_of(page).back();
+  EXPECT_TRUE(ended["frozen"]) << page.output();
+  EXPECT_TRUE(ended["minimum"]["distance"].is_null());
+  EXPECT_EQ(view.end(), 0);
+}
+
+TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
+  View view({cell.path(), "--replay", file});
+  ChildProcess page("/usr/bin/env",
+                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "recording"});
+  EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
+  const std::vector<json> said = lines_of(page);
+  ASSERT_EQ(said.size(), 2u) << page.output();
+  const json& shown = said.front();
+  EXPECT_EQ(shown["errors"], json::array());
+  EXPECT_EQ(shown["worst"]["distance"], worst().distance);
+  EXPECT_EQ(shown["worst"]["pair"], "left – right");
+  const double duration = shown["timeline"]["duration"];
+  EXPECT_NEAR(shown["dragged"], 0.73 * duration, 0.05 * duration);
+  EXPECT_NEAR(shown["again"], shown["dragged"], 0.002);
+  EXPECT_EQ(shown["chosen"], 1);
+  EXPECT_GT(said.back()["played"], shown["dragged"]);
+}
+
+TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
+  View recorded({cell.path(), "--replay", file});
+  View computed({cell.path(), "--replay", file, "--offline"});
+  json found[2];
+  for (int i = 0; i < 2; ++i) {
+    const View& view = i == 0 ? recorded : computed;
+    ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "1"});
+    EXPECT_EQ(client.wait(), 0) << client.output();
+    const std::vector<json> said = lines_of(client);
+    ASSERT_EQ(said.size(), 1u) << client.output();
+    found[i] = said.front();
+    EXPECT_EQ(found[i]["parameters"]["playback.time"], 1.0);
+    EXPECT_FALSE(found[i]["parameters"]["playback.playing"]);
+  }
+  EXPECT_EQ(found[0]["last"]["/tf"]["transforms"].size(), 3u);
+  EXPECT_EQ(found[0]["last"]["/tf"]["transforms"], found[1]["last"]["/tf"]["transforms"]);
+  const json &first = found[0]["last"]["clearance/distances"],
+             &second = found[1]["last"]["clearance/distances"];
+  EXPECT_EQ(first["cycle"], second["cycle"]);
+  EXPECT_EQ(first["minimum"], second["minimum"]);
+  EXPECT_EQ(first["pairs"], second["pairs"]);
+}
+
+TEST_F(ViewOfARecording, WritesPicturesOfTheTimesThatAreAskedFor) {
+  const std::string first = pictures() + "/asked-0.png", second = pictures() + "/asked-1.png";
+  ChildProcess view(kView, {cell.path(), "--replay", file, "--force", "--screenshot", first, "--at",
+                            "0.5", "--screenshot", second, "--at", "1", "--width", "1024"});
+  EXPECT_EQ(view.wait(), 0) << view.output();
+  for (const std::string& picture : {first, second}) {
+    EXPECT_GT(std::filesystem::file_size(picture), 20'000u);
+  }
+}
+
+TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
+  const test::CellFile cell(test::small_cell("small"));
+  const DdsOptions own = test::own_dds();
+  const auto dds = test::dds_arguments(own);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  wait_for_poses(own, cell.scene());
+  View view(test::with({cell.path()}, dds));
+  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket()});
+  EXPECT_EQ(client.wait(), 0) << client.output();
+  ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
+  const json found = lines_of(client).front();
+
+  EXPECT_EQ(found["name"], "small");
+  EXPECT_EQ(found["channels"]["clearance/distances"],
+            json({{"encoding", "cdr"},
+                  {"schemaName", "clearance::msg::Distances"},
+                  {"schemaEncoding", "omgidl"}}));
+  EXPECT_EQ(found["channels"]["/tf"]["schemaName"], "tf2_msgs/msg/TFMessage");
+  // 200 Hz come in, 60 Hz go out.
+  EXPECT_GT(found["reports"], 20);
+  EXPECT_LT(found["reports"], 140);
+  const json& report = found["first"]["clearance/distances"];
+  EXPECT_EQ(report["pairs"].size(), 3u);
+  EXPECT_EQ(found["first"]["clearance/catalogue"]["scene"], "small");
+  EXPECT_EQ(found["first"]["clearance/zones"]["name"], "near");
+  const json& bodies = found["first"]["/clearance/bodies"];
+  ASSERT_EQ(bodies.size(), 3u);
+  EXPECT_EQ(bodies[0]["frame"], "left");
+  EXPECT_EQ(bodies[0]["type"], 11);
+  EXPECT_EQ(bodies[0]["points"], 36);  // a box: twelve triangles
+  EXPECT_EQ(found["first"]["/tf"]["transforms"].size(), 3u);
+  EXPECT_EQ(found["first"]["/clearance/closest"][0]["type"], 5);
+  EXPECT_EQ(view.end(), 0);
+}
+
+TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
+  const test::CellFile cell(test::small_cell("small"));
+  const test::ScratchFolder folder;
+  const std::string file = (folder / "scene.mcap").string();
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess record(test::kRecord, test::with({"-o", file, "--cell", cell.path(), "--scene",
+                                                 "--seconds", "3"},
+                                                dds));
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  EXPECT_EQ(record.wait(), 0) << record.output();
+  ChildProcess reader("/usr/bin/env", {"node", kScripts + "/scene.mjs", file});
+  EXPECT_EQ(reader.wait(), 0) << reader.output();
+  ASSERT_EQ(lines_of(reader).size(), 1u) << reader.output();
+  const json found = lines_of(reader).front();
+  EXPECT_EQ(found["/clearance/bodies"]["messages"], 1);
+  EXPECT_EQ(found["/clearance/bodies"]["last"].size(), 3u);
+  EXPECT_EQ(found["/tf"]["last"]["transforms"][0]["child_frame_id"], "left");
+  EXPECT_GT(found["/tf"]["messages"], 20);
+  EXPECT_LT(found["/tf"]["messages"], 190);
+  EXPECT_EQ(found["/clearance/closest"]["messages"], found["/tf"]["messages"]);
+}
+
+}  // namespace
+}  // namespace clearance

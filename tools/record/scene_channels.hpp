@@ -1,0 +1,47 @@
+// The channels of a recording that 3D viewers draw: bodies once, transforms and closest pairs of
+// some reports.
+#pragma once
+
+#include <cstdint>
+
+#include "monitor/recording/writer.hpp"
+#include "monitor/visual/cell_markers.hpp"
+#include "monitor/visual/object_poses.hpp"
+#include "monitor/visual/ros_types.hpp"
+
+namespace clearance {
+
+class SceneChannels {
+ public:
+  // Writes the bodies. `scene` and `writer` must outlive it.
+  SceneChannels(const Scene& scene, RecordingWriter& writer, std::int64_t now_ns)
+      : scene_(scene),
+        writer_(writer),
+        poses_(scene),
+        transforms_(writer.add_channel(ros::transforms_schema(), kTransformsTopic)),
+        closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)) {
+    writer.write(writer.add_channel(ros::markers_schema(), kBodiesTopic), now_ns,
+                 bodies_message(scene));
+  }
+
+  void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
+
+  // Written 60 times a second: more is not seen.
+  void take(const clearance_msg_Distances& report, std::int64_t now_ns) {
+    constexpr std::int64_t kPeriodNs = 1'000'000'000 / 60;
+    poses_.use(report);
+    if (now_ns - written_ns_ < kPeriodNs) return;
+    written_ns_ = now_ns;
+    writer_.write(transforms_, now_ns, transforms_message(scene_, poses_, now_ns));
+    writer_.write(closest_, now_ns, closest_message(scene_, report, now_ns));
+  }
+
+ private:
+  const Scene& scene_;
+  RecordingWriter& writer_;
+  ObjectPoses poses_;
+  std::uint16_t transforms_, closest_;
+  std::int64_t written_ns_ = 0;
+};
+
+}  // namespace clearance

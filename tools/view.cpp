@@ -1,0 +1,272 @@
+// clearance-view: a cell live in a browser, and in viewers of Foxglove's protocol.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "monitor/app/log.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
+#include "monitor/loop/ports.hpp"
+#include "tools/replay/progress_bar.hpp"
+#include "tools/view/browser.hpp"
+#include "tools/view/live_source.hpp"
+#include "tools/view/offline_recording.hpp"
+#include "tools/view/page_files.hpp"
+#include "tools/view/recording_source.hpp"
+#include "tools/view/scene_json.hpp"
+
+namespace clearance {
+namespace {
+
+using view::Server;
+using view::Source;
+
+constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
+
+constexpr const char* kFooter = R"(Open the address that it prints in a browser; Ctrl-C ends it. Foxglove, Lichtblick and others of
+their protocol connect to the same address, as ws:// instead of http://. Everybody who reaches the
+port may look, and move a recording's time; nobody can change anything else.
+
+Exit status:
+  0  stopped by SIGINT or SIGTERM, or all screenshots are written
+  1  the port cannot be used, the recording cannot be read, or the browser gave no picture
+  2  wrong usage
+  3  the cell file is wrong
+  4  DDS could not be joined
+  5  stopped by SIGINT or SIGTERM while a recording was being read
+
+Examples:
+  clearance-view cell.yaml
+  clearance-view cell.yaml --replay run.mcap
+  clearance-view cell.yaml --replay poses.mcap --offline
+  clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5)";
+
+struct Arguments {
+  std::string cell, recording;
+  bool offline = false;
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8765;
+  std::vector<std::string> screenshots;
+  std::vector<double> at_s;
+  std::string query;  // of the page that is photographed
+  int width = 1440, height = 900;
+  bool force = false;
+  DdsArguments dds;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
+  CLI::Option* const replay =
+      app.add_option("--replay", arguments.recording,
+                     "Show this recording (MCAP) with a time line, instead of a daemon");
+  app.add_flag("--offline", arguments.offline,
+               "Compute the reports from the recording's poses with this cell, instead of showing "
+               "those that it holds")
+      ->needs(replay);
+  app.add_option("--host", arguments.host,
+                 "Address to serve on; any other than loopback opens it to the network")
+      ->capture_default_str();
+  app.add_option("--port", arguments.port, "Port to serve on; 0: a free one")
+      ->capture_default_str();
+  const char* const kPictures = "Pictures";
+  CLI::Option* const screenshot =
+      app.add_option("--screenshot", arguments.screenshots,
+                     "Write a picture of the page (PNG) by Debian's chromium, and end; repeatable")
+          ->group(kPictures);
+  app.add_option("--at", arguments.at_s,
+                 "Of a recording: its time, s after the first report; one for each --screenshot. "
+                 "Live: so many seconds after the page is there")
+      ->check(number_from_zero())
+      ->needs(screenshot)
+      ->group(kPictures);
+  app.add_option("--query", arguments.query,
+                 "What the page's address says of selection and looks, e.g. 'theme=light'")
+      ->needs(screenshot)
+      ->group(kPictures);
+  app.add_option("--width", arguments.width, "Pixels")
+      ->check(CLI::Range(320, 7680))
+      ->capture_default_str()
+      ->group(kPictures);
+  app.add_option("--height", arguments.height, "Pixels")
+      ->check(CLI::Range(240, 4320))
+      ->capture_default_str()
+      ->group(kPictures);
+  add_force(app, arguments.force);
+  arguments.dds.add_to(app);
+  app.footer(kFooter);
+}
+
+// A folder for a recording that is computed here; removed with its content.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (std::filesystem::temp_directory_path() / "clearance-view-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder in " + name);
+    folder_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "replay.mcap"; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+// Null, after saying why, when the recording cannot be shown.
+std::unique_ptr<Source> recording_source(const Scene& scene, const Arguments& arguments,
+                                         std::optional<Scratch>& scratch, StopSignal& stop) {
+  std::filesystem::path file = arguments.recording;
+  ProgressBar bar(false);
+  if (arguments.offline) {
+    scratch.emplace();
+    const std::string error = view::replay_into(
+        scene, file, scratch->file(), [&bar](double share) { bar.show(share, "replayed"); },
+        [&stop] { return stop.wait(0); });
+    bar.finish();
+    if (!error.empty()) {
+      print(stderr, "clearance-view: {}\n", error);
+      return nullptr;
+    }
+    file = scratch->file();
+  }
+  view::Timeline timeline = view::read_timeline(scene, file);
+  if (!timeline.error.empty()) {
+    print(stderr, "clearance-view: {}\n", timeline.error);
+    return nullptr;
+  }
+  return std::make_unique<view::RecordingSource>(scene, file, std::move(timeline));
+}
+
+view::Resource resource(std::string type, std::string body) {
+  return {std::move(type), std::make_shared<const std::string>(std::move(body))};
+}
+
+// The page's files, the cell and the time line, each made once.
+std::map<std::string, view::Resource> resources(const Scene& scene, const Source& source) {
+  std::map<std::string, view::Resource> all;
+  for (const view::PageFile& file : view::page_files()) {
+    all[std::string(file.path)] =
+        resource(std::string(view::content_type(file.path)), std::string(file.text));
+  }
+  all["/"] = all["/index.html"];
+  all["/scene.json"] = resource("application/json", view::scene_json(scene));
+  all["/timeline.json"] = resource("application/json", source.timeline());
+  return all;
+}
+
+view::Content content_of(const Scene& scene, Source& source) {
+  return {.name = scene.name,
+          .channels = view::channels_of(scene.topics),
+          .get =
+              [found = resources(scene, source)](const std::string& path) {
+                const auto entry = found.find(path);
+                return entry == found.end() ? view::Resource{} : entry->second;
+              },
+          .parameters = [&source] { return source.parameters(); },
+          .set_parameter = [&source](const std::string& name,
+                                     const nlohmann::json& value) { source.set(name, value); }};
+}
+
+// One frame: everything new goes out, then the server works until the next is due.
+class Frames {
+ public:
+  Frames(Server& server, Source& source) : server_(server), source_(source) {}
+  void next() {
+    source_.advance(server_);
+    due_ns_ += kFrameNs;
+    const std::int64_t now_ns = clock_.monotonic_ns();
+    if (due_ns_ < now_ns) due_ns_ = now_ns;
+    server_.run_for(std::max<std::int64_t>(due_ns_ - now_ns, 1'000'000));
+  }
+
+ private:
+  Server& server_;
+  Source& source_;
+  SystemClock clock_;
+  std::int64_t due_ns_ = 0;
+};
+
+int take_screenshots(const Arguments& arguments, Server& server, Source& source) {
+  Frames frames(server, source);
+  view::Browser browser(arguments.width, arguments.height, [&frames] { frames.next(); });
+  for (std::size_t i = 0; i < arguments.screenshots.size(); ++i) {
+    const double at_s = i < arguments.at_s.size() ? arguments.at_s[i] : 0.0;
+    const bool is_live = arguments.recording.empty();
+    browser.open(fmt::format("{}?{}&{}", server.address(), arguments.query,
+                             is_live ? "live" : fmt::format("t={}", at_s)));
+    browser.wait_for(is_live ? fmt::format("window.clearance?.shownFor() > {}", at_s)
+                             : fmt::format("window.clearance?.isAt({})", at_s));
+    browser.screenshot(arguments.screenshots[i]);
+    print(stdout, "{}\n", arguments.screenshots[i]);
+  }
+  return kOk;
+}
+
+int serve(const Arguments& arguments, Server& server, Source& source, StopSignal& stop) {
+  print(stdout, "{}\n", server.address());
+  std::fflush(stdout);
+  if (arguments.host != "127.0.0.1" && arguments.host != "localhost" && arguments.host != "::1") {
+    print(stderr,
+          "clearance-view: OPEN TO THE NETWORK: whoever reaches {} sees this cell; there is no "
+          "password and no encryption\n",
+          server.address());
+  }
+  Frames frames(server, source);
+  while (!stop.wait(0)) frames.next();
+  return kOk;
+}
+
+int run_view(const Scene& scene, const Arguments& arguments, StopSignal& stop) {
+  std::optional<Scratch> scratch;
+  std::unique_ptr<Source> source;
+  if (arguments.recording.empty()) {
+    route_dds_log();
+    source = std::make_unique<view::LiveSource>(
+        scene, arguments.dds.resolve(scene.domain, scene.partition));
+  } else {
+    source = recording_source(scene, arguments, scratch, stop);
+    if (!source) return kFailed;
+    if (stop.wait(0)) return kIncomplete;
+  }
+  const bool pictures = !arguments.screenshots.empty();
+  Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port,
+                content_of(scene, *source));
+  return pictures ? take_screenshots(arguments, server, *source)
+                  : serve(arguments, server, *source, stop);
+}
+
+int run(int argc, char** argv, StopSignal& stop) {
+  CLI::App app("Shows a cell in a browser: live, or from a recording.");
+  Arguments arguments;
+  add_options(app, arguments);
+  if (const auto done = parse(app, argc, argv)) return *done;
+  for (const std::string& picture : arguments.screenshots) {
+    if (!output_is_not_an_input("clearance-view", picture, {arguments.cell, arguments.recording}))
+      return kUsage;
+    if (!can_create("clearance-view", picture, arguments.force)) return kFailed;
+  }
+  start_log("clearance-view", "error");
+  const auto scene = scene_or_errors(read_cell(arguments.cell));
+  if (!scene) return kBadCell;
+  return run_view(*scene, arguments, stop);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  return clearance::run_program(
+      "clearance-view", [=](auto& stop) { return clearance::run(argc, argv, stop); },
+      clearance::dds_exit_code);
+}

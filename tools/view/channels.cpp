@@ -1,0 +1,20 @@
+#include "tools/view/channels.hpp"
+
+#include "monitor/recording/topic_schema.hpp"
+#include "monitor/visual/cell_markers.hpp"
+#include "monitor/visual/ros_types.hpp"
+
+namespace clearance::view {
+
+std::vector<Channel> channels_of(const Topics& topics) {
+  std::vector<Channel> channels;
+  for (const Topic& topic : kTopics) {
+    channels.push_back({topics.*topic.name, topic_schema(topic.kind)});
+  }
+  channels.push_back({kTransformsTopic, ros::transforms_schema()});
+  channels.push_back({kBodiesTopic, ros::markers_schema()});
+  channels.push_back({kClosestTopic, ros::markers_schema()});
+  return channels;
+}
+
+}  // namespace clearance::view

@@ -1,0 +1,31 @@
+// The channels of clearance-view: what DDS carries, byte for byte, and the scene for viewers of ROS
+// 2 messages. An id is the same as long as the program runs.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "monitor/mcap/format.hpp"
+#include "monitor/wire/topics.hpp"
+
+namespace clearance::view {
+
+using ChannelId = std::uint32_t;
+
+// Those of our topics have the ids of their TopicKind; these follow.
+inline constexpr ChannelId kTransforms = kTopics.size(), kBodies = kTransforms + 1,
+                           kClosest = kTransforms + 2, kChannels = kTransforms + 3;
+[[nodiscard]] constexpr ChannelId channel(TopicKind kind) noexcept {
+  return static_cast<ChannelId>(index(kind));
+}
+
+struct Channel {
+  std::string topic;
+  McapSchema schema;  // messages are CDR
+};
+
+// By id, under the names that the cell gives its topics.
+[[nodiscard]] std::vector<Channel> channels_of(const Topics& topics);
+
+}  // namespace clearance::view

@@ -1,0 +1,54 @@
+// The newest of every topic, on its way to the viewers: what is published at once, and the
+// transforms and markers that follow from poses and report.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include "monitor/visual/object_poses.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "tools/view/server.hpp"
+
+namespace clearance::view {
+
+class Frame {
+ public:
+  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene) {}
+
+  // Takes one message of our topics. Of a report nothing more is done than to keep its bytes, of
+  // poses their numbers are kept: what is cheap for every message of a fast stream.
+  void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
+
+  // Sends what has come since the last call. With the first, the bodies.
+  void publish(Server& server);
+
+  // Of the latest report, by the catalogue or the report itself: 0 until one has come.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
+  [[nodiscard]] std::int64_t report_time_ns() const noexcept { return report_time_ns_; }
+  // Another place of a recording: no pose of before holds.
+  void jump() { poses_.forget(); }
+
+ private:
+  void keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
+            std::span<const std::byte> cdr);
+  std::uint32_t key_of(TopicKind kind, std::span<const std::byte> cdr);
+  void publish_scene(Server& server);
+
+  const Scene& scene_;
+  ObjectPoses poses_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_PoseBatch> batch_;
+  Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_ZoneState> zone_;
+  Sample<clearance_msg_Catalogue> catalogue_;
+  std::map<std::string, std::uint32_t> sources_;  // numbered as they come
+  std::map<std::pair<ChannelId, std::uint32_t>, Message> new_;
+  std::uint64_t revision_ = 0;
+  std::int64_t report_time_ns_ = 0;
+  bool bodies_sent_ = false;
+};
+
+}  // namespace clearance::view

@@ -1,0 +1,88 @@
+#include "tools/view/live_source.hpp"
+
+#include <fmt/format.h>
+
+#include <dds/ddsi/ddsi_serdata.h>
+
+#include "monitor/loop/ports.hpp"
+
+namespace clearance::view {
+namespace {
+
+// No report for this long: the daemon hangs, or the machine does. As clearance-watch.
+constexpr std::int64_t kSilentNs = 1'000'000'000;
+
+// A reader of reports needs no more than the newest of each 1/60 s; of poses as many as a source
+// sends meanwhile, since the report names the batch that it used.
+std::int32_t depth_of(TopicKind kind) { return kind == TopicKind::kPoses ? 32 : 1; }
+
+std::uint32_t writers_alive(dds_entity_t reader) {
+  dds_liveliness_changed_status_t status{};
+  dds_get_liveliness_changed_status(reader, &status);
+  return status.alive_count;
+}
+
+std::uint32_t writers_there(dds_entity_t reader) {
+  dds_subscription_matched_status_t status{};
+  dds_get_subscription_matched_status(reader, &status);
+  return status.current_count;
+}
+
+}  // namespace
+
+LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
+    : scene_(scene), participant_(dds), frame_(scene) {
+  for (const Topic& topic : kTopics) {
+    readers_[index(topic.kind)] =
+        participant_.reader(topic.kind, scene.topics.*topic.name, depth_of(topic.kind));
+  }
+}
+
+void LiveSource::advance(Server& server) {
+  if (server.viewers() == 0) return;
+  for (const Topic& topic : kTopics) take(topic.kind);
+  const std::int64_t now_ns = SystemClock().realtime_ns();
+  tell_of_the_daemon(server, now_ns);
+  server.set_time(now_ns);
+  frame_.publish(server);
+}
+
+// The bytes as they came: nothing is decoded that is only passed on.
+void LiveSource::take(TopicKind kind) {
+  constexpr std::size_t kAtOnce = 64;
+  std::array<ddsi_serdata*, kAtOnce> samples{};
+  std::array<dds_sample_info_t, kAtOnce> infos;
+  const dds_return_t count = check_dds(
+      dds_takecdr(readers_[index(kind)], samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE),
+      "taking samples");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (infos[i].valid_data) {
+      bytes_.resize(ddsi_serdata_size(samples[i]));
+      ddsi_serdata_to_ser(samples[i], 0, bytes_.size(), bytes_.data());
+      frame_.take(kind, infos[i].source_timestamp, bytes_);
+    }
+    ddsi_serdata_unref(samples[i]);
+  }
+}
+
+// The same states as clearance-watch tells apart.
+void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
+  const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
+  const bool any = frame_.report_time_ns() != 0;
+  const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_.report_time_ns());
+  std::string text;
+  if (!any) {
+    text = fmt::format("waiting for clearanced on {}", participant_.where());
+  } else if (writers_there(reader) == 0) {
+    text = "clearanced has ended";
+  } else if (silent_s * 1e9 > kSilentNs || (writers_alive(reader) == 0 && silent_s > 0.2)) {
+    text = "clearanced is silent: it died or stands still";
+  } else if (writers_alive(reader) > 1) {
+    text = fmt::format("{} daemons publish here: figures are mixed", writers_alive(reader));
+  } else if (frame_.revision() != 0 && frame_.revision() != scene_.revision) {
+    text = "clearanced runs another cell than the one shown here";
+  }
+  server.set_status("daemon", any ? 2 : 1, text);
+}
+
+}  // namespace clearance::view

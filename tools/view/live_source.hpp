@@ -1,0 +1,34 @@
+// The topics of a running daemon, as any client reads them: of the reports the newest only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/dds/participant.hpp"
+#include "tools/view/frame.hpp"
+#include "tools/view/source.hpp"
+
+namespace clearance::view {
+
+class LiveSource final : public Source {
+ public:
+  // Throws DdsError. `scene` must outlive it.
+  LiveSource(const Scene& scene, const DdsOptions& dds);
+
+  // Without viewers nothing is taken: readers keep the newest.
+  void advance(Server& server) override;
+
+ private:
+  void take(TopicKind kind);
+  void tell_of_the_daemon(Server& server, std::int64_t now_ns);
+
+  const Scene& scene_;
+  Participant participant_;
+  std::array<dds_entity_t, kTopics.size()> readers_{};
+  std::vector<std::byte> bytes_;
+  Frame frame_;
+};
+
+}  // namespace clearance::view

@@ -1,0 +1,19 @@
+// A recording whose reports are computed here, from the poses that another recording holds.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "config/scene.hpp"
+
+namespace clearance::view {
+
+// Runs `recording` through the monitor and writes `out`: the poses in use and the report of every
+// tick. What went wrong, or nothing. `stop` is asked before every tick: true ends it there.
+[[nodiscard]] std::string replay_into(const Scene& scene, const std::filesystem::path& recording,
+                                      const std::filesystem::path& out,
+                                      const std::function<void(double)>& progress,
+                                      const std::function<bool()>& stop);
+
+}  // namespace clearance::view

@@ -1,0 +1,26 @@
+// What a link says: time of a recording, chosen pairs, filter, sorting, place of the camera, theme.
+
+const text = new URLSearchParams(location.search);
+
+export const asked = {
+  time: text.has("t") ? Number(text.get("t")) : undefined,
+  pairs: text.get("pairs")?.split(",").filter(Boolean) ?? [],
+  filter: text.get("filter") ?? "",
+  sort: text.get("sort"),
+  camera: text.get("camera"),
+  theme: text.get("theme"),
+  shells: text.get("zones") !== "off",
+};
+
+// The address that shows the same again; objects of a pair are joined by "~".
+export function addressOf({ time, pairs, filter, sort, camera, theme, shells }) {
+  const all = new URLSearchParams();
+  if (time !== undefined) all.set("t", time.toFixed(4));
+  if (pairs.length) all.set("pairs", pairs.join(","));
+  if (filter) all.set("filter", filter);
+  if (sort !== "lower") all.set("sort", sort);
+  if (camera) all.set("camera", camera);
+  if (theme) all.set("theme", theme);
+  if (!shells) all.set("zones", "off");
+  return `${location.origin}${location.pathname}?${all}`;
+}

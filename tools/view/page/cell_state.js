@@ -1,0 +1,120 @@
+// What is known of the cell: the latest report, zones, health; and what must not be overlooked.
+
+export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown"];
+const STALE = 5;
+const CAUSE = ["", "near", "late poses of", "no pose of", "a discontinuity of", "contradicting poses of"];
+const SILENT_S = 1.0;
+const TOLD_FOR_S = 5.0; // an overrun
+export const HISTORY_S = 30;
+
+export const isKnown = (pair) => pair.status < STALE;
+
+export class CellState {
+  constructor(scene, timeline) {
+    this.scene = scene;
+    this.timeline = timeline;
+    this.zones = new Map();
+    this.statuses = new Map();
+    this.connected = false;
+    this.timeNs = 0;
+    this.history = [];
+    this.pairs = scene.pairs.map(([a, b], id) => ({
+      id, a, b, name: `${scene.objects[a].name} – ${scene.objects[b].name}`,
+      margins: scene.objects[a].margin + scene.objects[b].margin, zones: [],
+    }));
+    for (const zone of scene.zones) for (const pair of zone.pairs) this.pairs[pair].zones.push(zone);
+  }
+
+  takeReport(report, timeNs) {
+    if (timeNs < this.reportNs || timeNs > this.reportNs + 1e9) this.history = [];
+    this.report = report;
+    this.reportNs = timeNs;
+    this.lateObjects = new Map();
+    for (const pair of report.pairs) if (!isKnown(pair)) this.noteLate(pair);
+    const minimum = this.minimum();
+    this.history.push({
+      s: timeNs * 1e-9, distance: minimum?.distance, lower: minimum?.lower,
+      tick: report.publish_ns ? (report.publish_ns - report.clock_offset_ns - report.now_ns) * 1e-3 : undefined,
+      pairs: report.pairs,
+    });
+    const first = this.history.findIndex(({ s }) => s > timeNs * 1e-9 - HISTORY_S);
+    if (first > 200) this.history.splice(0, first);
+  }
+
+  // Which of a pair's objects is the cause: the one whose pose is older, or was never seen.
+  noteLate({ pair, age_a_ns, age_b_ns, status }) {
+    const { a, b } = this.pairs[pair];
+    const older = (x, y) => x < 0 || (y >= 0 && x > y);
+    const [object, age] = older(age_a_ns, age_b_ns) ? [a, age_a_ns] : [b, age_b_ns];
+    if (!this.scene.objects[object].fixed) this.lateObjects.set(object, { age, status });
+  }
+
+  takeHealth(health, timeNs) {
+    if (this.health && health.overruns > this.health.overruns && health.daemon === this.health.daemon) {
+      this.overrun = { count: health.overruns - this.health.overruns, ns: timeNs, us: health.tick_second_max_us };
+    }
+    this.health = health;
+  }
+
+  // The least pair; undefined while it is not known: a stale minimum is none.
+  minimum() {
+    const { report } = this;
+    return report && report.minimum_known && isKnown(report.minimum) ? report.minimum : undefined;
+  }
+
+  // "inside", "leaving", "outside" of its zones, "free" of any, or "lost".
+  levelOf(pair) {
+    if (!isKnown(pair)) return "lost";
+    const { zones, margins } = this.pairs[pair.pair];
+    const clearance = pair.lower - margins;
+    if (zones.some(({ enter_below }) => clearance < enter_below)) return "inside";
+    if (zones.some(({ leave_above }) => clearance < leave_above)) return "leaving";
+    return zones.length ? "outside" : "free";
+  }
+
+  secondsSilent() {
+    return this.reportNs ? (this.timeNs - this.reportNs) * 1e-9 : 0;
+  }
+
+  zoneStates() {
+    const at = (this.timeNs - Number(this.timeline?.begin_ns ?? 0)) * 1e-9;
+    return this.scene.zones.map((zone, id) => {
+      const state = this.zones.get(id);
+      const active = this.timeline
+        ? this.timeline.zones.some(({ zone: each, begin, end }) => each === id && begin <= at + 1e-6 && at <= end)
+        : state?.active;
+      const cause = active && state?.cause > 1 ? `${CAUSE[state.cause]} ${this.scene.objects[state.cause_object]?.name}` : "";
+      return { id, zone, active, known: this.timeline !== null || state !== undefined, cause };
+    });
+  }
+
+  // What must not be overlooked: [{level: "lost" | "alarm" | "near", text}], the worst first; frozen: what is shown is
+  // not what is.
+  alarms() {
+    const found = [];
+    if (!this.connected) found.push({ level: "alarm", frozen: true, text: "Connection to clearance-view lost" });
+    for (const { level, text } of this.statuses.values()) {
+      found.push({ level: level > 1 ? "alarm" : "near", frozen: true, text });
+    }
+    const silent = this.secondsSilent();
+    if (this.connected && !found.length && silent > SILENT_S) {
+      found.push({ level: "alarm", frozen: true, text: `No report for ${silent.toFixed(1)} s` });
+    }
+    return found.concat(this.doubts());
+  }
+
+  doubts() {
+    const found = [];
+    const { report } = this;
+    if (report && !report.minimum_known) found.push({ level: "lost", text: "Least distance not known: no pair has been evaluated" });
+    if (report && report.stale + report.unknown > 0) {
+      const names = [...(this.lateObjects ?? [])].slice(0, 4).map(([object, { age }]) =>
+        `${this.scene.objects[object].name} ${age < 0 ? "never seen" : `${(age * 1e-6).toFixed(0)} ms old`}`);
+      found.push({ level: "lost", text: `${report.stale} pairs stale, ${report.unknown} unknown${names.length ? `: ${names.join(", ")}` : ""}` });
+    }
+    if (this.overrun && Math.abs(this.timeNs - this.overrun.ns) * 1e-9 < TOLD_FOR_S) {
+      found.push({ level: "near", text: `${this.overrun.count} overruns in the last second, longest tick ${(this.overrun.us / 1000).toFixed(2)} ms` });
+    }
+    return found;
+  }
+}

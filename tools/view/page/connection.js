@@ -1,0 +1,69 @@
+// A client of Foxglove's WebSocket protocol, version 1, that connects again when it is cut off.
+import { decoder, transforms } from "./cdr.js";
+
+const AGAIN_MS = 1000;
+
+export class Connection {
+  // `topics`: those wanted. Called back: message(topic, value, timeNs), time(ns), status(id, level,
+  // text), parameters({name: value}), open(), closed().
+  constructor(url, topics, on) {
+    this.url = url;
+    this.topics = topics;
+    this.on = on;
+    this.connect();
+  }
+
+  connect() {
+    this.subscriptions = [];
+    this.socket = new WebSocket(this.url, ["foxglove.websocket.v1"]);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onmessage = ({ data }) => (typeof data === "string" ? this.text(JSON.parse(data)) : this.binary(new DataView(data)));
+    this.socket.onclose = () => {
+      this.on.closed();
+      setTimeout(() => this.connect(), AGAIN_MS);
+    };
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+  set(name, value) {
+    this.send({ op: "setParameters", parameters: [{ name, value }] });
+  }
+
+  text(message) {
+    switch (message.op) {
+      case "advertise":
+        this.subscribe(message.channels);
+        break;
+      case "status":
+        this.on.status(message.id, message.level, message.message);
+        break;
+      case "removeStatus":
+        for (const id of message.statusIds) this.on.status(id, 0, "");
+        break;
+      case "parameterValues":
+        this.on.parameters(Object.fromEntries(message.parameters.map(({ name, value }) => [name, value])));
+        break;
+    }
+  }
+
+  subscribe(channels) {
+    for (const channel of channels.filter(({ topic }) => this.topics.includes(topic))) {
+      const decode = channel.schemaEncoding === "omgidl" ? decoder(channel.schema, channel.schemaName) : transforms;
+      this.subscriptions.push({ topic: channel.topic, channelId: channel.id, decode });
+    }
+    this.send({ op: "subscribe", subscriptions: this.subscriptions.map(({ channelId }, id) => ({ id, channelId })) });
+    this.send({ op: "subscribeParameterUpdates", parameterNames: [] });
+    this.send({ op: "getParameters", parameterNames: [], id: "all" });
+    this.on.open();
+  }
+
+  binary(view) {
+    const ns = (at) => view.getUint32(at + 4, true) * 2 ** 32 + view.getUint32(at, true);
+    if (view.getUint8(0) === 2) return this.on.time(ns(1));
+    const subscription = this.subscriptions[view.getUint32(1, true)];
+    if (!subscription) return;
+    this.on.message(subscription.topic, subscription.decode(new DataView(view.buffer, 13)), ns(5));
+  }
+}

@@ -1,0 +1,189 @@
+// clearance-view's page: joins the server's messages, the view and the controls.
+import { addressOf, asked } from "./address.js";
+import { CellState } from "./cell_state.js";
+import { Connection } from "./connection.js";
+import { onKeys } from "./keys.js";
+import { PairTable } from "./pair_table.js";
+import { Plots } from "./plots.js";
+import { drawLegend, drawReadouts } from "./readouts.js";
+import { SceneView } from "./scene_view.js";
+import { Timeline } from "./timeline.js";
+
+const element = (id) => document.getElementById(id);
+const json = async (path) => (await fetch(path)).json();
+
+const [scene, timeline] = await Promise.all([json("/scene.json"), json("/timeline.json")]);
+const state = new CellState(scene, timeline);
+const chosen = new Set();
+document.title = `${scene.name} – Clearance`;
+element("cell-name").textContent = scene.name;
+
+// ---- Theme
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+let theme = asked.theme;
+function applyTheme() {
+  document.documentElement.dataset.theme = theme ?? (dark.matches ? "dark" : "light");
+}
+applyTheme();
+
+// ---- The parts of the page
+
+const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), objectChosen: chooseObject });
+const table = new PairTable(choose, changed);
+const plots = new Plots();
+const topics = scene.topics;
+const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, "/tf"], {
+  open: () => {
+    state.connected = true;
+    if (asked.time !== undefined && timeline) connection.set("playback.time", asked.time);
+  },
+  closed: () => (state.connected = false),
+  time: (ns) => (state.timeNs = ns),
+  status: (id, level, text) => (text ? state.statuses.set(id, { level, text }) : state.statuses.delete(id)),
+  parameters: (values) => track?.parameters(values),
+  message: (topic, value, ns) => {
+    if (topic === "/tf") view.moved(value);
+    else if (topic === topics.distances) state.takeReport(value, ns);
+    else if (topic === topics.zones) state.zones.set(value.zone, value);
+    else if (topic === topics.health) state.takeHealth(value, ns);
+  },
+});
+const track = timeline && new Timeline(timeline, scene.zones, (name, value) => connection.set(name, value));
+drawLegend();
+
+// ---- Selection
+
+// A pair, alone or, `more`, with those already chosen; chosen once more, it is not any longer.
+function choose(pair, more) {
+  const was = chosen.has(pair);
+  if (!more) chosen.clear();
+  if (was) chosen.delete(pair);
+  else chosen.add(pair);
+  selected();
+  table.scrollTo(pair);
+}
+function chooseObject(object) {
+  if (object === undefined) return clear();
+  table.filter = scene.objects[object].name;
+  chosen.clear();
+  selected();
+  view.bodies.choose([object]);
+  ++view.changes;
+}
+function clear() {
+  chosen.clear();
+  table.filter = "";
+  selected();
+}
+function selected() {
+  view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
+  table.drawnMs = plots.drawnMs = 0;
+  changed();
+}
+
+// ---- Address
+
+const secondsIn = () => (timeline ? (state.timeNs - Number(timeline.begin_ns)) * 1e-9 : undefined);
+const pairName = (id) => `${scene.objects[state.pairs[id].a].name}~${scene.objects[state.pairs[id].b].name}`;
+function address(withCamera) {
+  return addressOf({
+    time: secondsIn(), pairs: [...chosen].map(pairName), filter: table.filter, sort: table.key, theme,
+    camera: withCamera ? view.place : asked.camera, shells: view.shells.visible,
+  });
+}
+function changed() {
+  history.replaceState(null, "", address(false));
+}
+for (const name of asked.pairs) {
+  const found = state.pairs.find(({ id }) => pairName(id) === name);
+  if (found) chosen.add(found.id);
+}
+table.filter = asked.filter;
+if (asked.sort) table.sortBy(asked.sort, false);
+view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
+view.shells.visible = asked.shells;
+if (asked.camera) view.place = asked.camera;
+
+// ---- Buttons and keys
+
+function toast(text) {
+  element("toast").textContent = text;
+  element("toast").hidden = false;
+  setTimeout(() => (element("toast").hidden = true), 1800);
+}
+const actions = {
+  fit: () => view.fit(),
+  look: (side) => view.fit(side),
+  theme: () => {
+    theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    applyTheme();
+    view.retheme();
+    changed();
+  },
+  shells: () => {
+    view.shells.visible = !view.shells.visible;
+    element("shells").setAttribute("aria-pressed", view.shells.visible);
+    changed();
+  },
+  share: async () => {
+    const link = address(true);
+    history.replaceState(null, "", link);
+    await navigator.clipboard?.writeText(link).catch(() => {});
+    toast("The link to this view is in the address bar, and copied");
+  },
+  picture: () => {
+    const link = document.createElement("a");
+    link.download = `${scene.name}-${state.report?.cycle ?? 0}.png`;
+    link.href = element("view").toDataURL("image/png");
+    link.click();
+  },
+  filter: () => element("filter").focus(),
+  clear,
+  row: (by) => {
+    const next = table.neighbour([...chosen].at(-1), by);
+    if (next !== undefined && !chosen.has(next)) choose(next, false);
+  },
+  help: () => element("keys").showModal(),
+};
+for (const id of ["fit", "shells", "theme", "share", "picture", "help"]) element(id).onclick = actions[id];
+element("shells").setAttribute("aria-pressed", view.shells.visible);
+dark.addEventListener("change", () => {
+  applyTheme();
+  view.retheme();
+});
+onKeys(actions, track);
+
+// ---- Frames
+
+let firstMs, drawnReport, frames = 0;
+const times = [];
+function frame(nowMs) {
+  requestAnimationFrame(frame);
+  const frozen = drawReadouts(state, track?.playing, nowMs);
+  view.draw(state, chosen, frozen, nowMs);
+  table.draw(state, chosen, nowMs);
+  plots.draw(state, chosen, nowMs);
+  if (track && state.timeNs) track.draw(secondsIn());
+  if (state.report && view.fitted) firstMs ??= nowMs;
+  drawnReport = state.reportNs;
+  ++frames;
+  times.push(nowMs);
+  if (times.length > 120) times.shift();
+}
+requestAnimationFrame(frame);
+
+// For tests and pictures: what the page shows.
+window.clearance = {
+  state, view, connection,
+  shownFor: () => (firstMs === undefined ? -1 : (performance.now() - firstMs) / 1000),
+  // Whether the recording stands at this time, s, and has been drawn there, tables and plots as well.
+  isAt: (time) => {
+    const there = drawnReport !== undefined && Math.abs(secondsIn() - Math.min(time, timeline.duration)) < 1e-3 &&
+      Math.abs(drawnReport - state.timeNs) < 1e9 && view.fitted;
+    if (!there) window.clearance.since = undefined;
+    else window.clearance.since ??= frames;
+    return there && frames > window.clearance.since + 12;
+  },
+  framesPerSecond: () => (times.length < 2 ? 0 : (1000 * (times.length - 1)) / (times.at(-1) - times[0])),
+};

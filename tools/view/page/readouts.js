@@ -1,0 +1,113 @@
+// The header, the alarm below it and the health: what a person reads from across the cell.
+import { css, micro, mm, milliseconds, put, seconds } from "./format.js";
+import { COLOUR } from "./pair_lines.js";
+
+const element = (id) => document.getElementById(id);
+
+function drawMinimum(state, frozen) {
+  const box = element("minimum"), value = element("minimum-value"), minimum = state.minimum();
+  const level = minimum ? state.levelOf(minimum) : "lost";
+  box.className = `minimum ${{ inside: "alarm", leaving: "near", lost: "unknown" }[level] ?? ""}`;
+  box.dataset.cycle = state.report?.cycle ?? "";
+  box.dataset.distance = minimum && !frozen ? minimum.distance : "";
+  if (!minimum) {
+    put(value, state.report ? "not known" : "–");
+    put(element("minimum-pair"), state.report ? "poses are late or were never seen" : "no report yet");
+    put(element("minimum-bounds"), state.report ? `every pair at least ${mm(state.report.lower_all)} mm` : "");
+    return;
+  }
+  if (value.lastChild?.nodeName !== "SMALL") value.innerHTML = "<span></span><small>mm</small>";
+  put(value.firstChild, mm(minimum.distance));
+  put(element("minimum-pair"), `${frozen ? "was " : ""}${state.pairs[minimum.pair].name}`);
+  put(element("minimum-bounds"), `[${mm(minimum.lower, 3)}, ${mm(minimum.upper, 3)}]  ${state.report.minimum_certified ? "certified" : "NOT certified"}`);
+}
+
+function drawZones(state, frozen) {
+  const chips = state.zoneStates().map(({ zone, active, known, cause }) => {
+    const kind = frozen || !known ? "" : active ? (cause ? "lost" : "alarm") : "live";
+    const text = `${zone.name} ${!known ? "?" : active ? "ACTIVE" : "clear"}${cause ? `: ${cause}` : ""}`;
+    return [kind, text, `below ${mm(zone.enter_below)} mm between ${zone.between.join(" and ")}, left above ${mm(zone.leave_above)} mm`];
+  });
+  const key = JSON.stringify(chips);
+  if (element("zones").dataset.key === key) return;
+  element("zones").dataset.key = key;
+  element("zones").replaceChildren(...chips.map(([kind, text, title]) => Object.assign(document.createElement("span"), { className: `chip ${kind}`, textContent: text, title })));
+}
+
+function drawAlarm(alarms) {
+  const box = element("alarm"), key = JSON.stringify(alarms);
+  if (box.dataset.key === key) return;
+  box.dataset.key = key;
+  box.hidden = alarms.length === 0;
+  box.className = alarms[0]?.level ?? "";
+  box.replaceChildren(...alarms.map(({ text }) => Object.assign(document.createElement("span"), { textContent: text })));
+}
+
+function drawState(state, frozen, playing) {
+  const chip = element("state");
+  const [kind, text] = !state.connected ? ["alarm", "not connected"] : state.timeline ? ["replay", playing ? "recording, playing" : "recording"]
+    : frozen ? ["alarm", "not live"] : state.report ? ["live", `live  ${state.scene.rate_hz.toFixed(0)} Hz`] : ["", "waiting"];
+  chip.className = `chip ${kind}`;
+  put(chip, text);
+  element("scene").classList.toggle("frozen", frozen);
+  element("scene").classList.toggle("doubtful", !frozen && state.doubts().some(({ level }) => level === "lost"));
+}
+
+// Rows of the health: [term, text, is bad].
+function healthRows({ report, health }) {
+  const rows = [];
+  if (report) {
+    rows.push(["Pairs", `${report.pairs_total}: ${report.evaluated} evaluated, ${report.carried} carried, ${report.stale} stale, ${report.unknown} unknown`, report.stale + report.unknown > 0]);
+    rows.push(["Cycle", `${report.cycle}, refreshed within ${report.oldest_evaluation_cycles} ticks`]);
+    if (report.newest_pose_ns) {
+      const age = (ns) => milliseconds(report.now_ns + report.clock_offset_ns - ns);
+      rows.push(["Poses", `${age(report.newest_pose_ns)} to ${age(report.oldest_pose_ns)} ms old`]);
+    }
+  }
+  if (!health) return rows;
+  rows.push(["Tick", `p50 ${micro(health.tick_p50_us)}, p99.9 ${micro(health.tick_p999_us)}, max ${micro(health.tick_max_us)}, last second ${micro(health.tick_second_max_us)}`]);
+  rows.push(["Wake-up", `p50 ${micro(health.wakeup_p50_us)}, p99.9 ${micro(health.wakeup_p999_us)}, max ${micro(health.wakeup_max_us)}`]);
+  rows.push(["Overruns", `${health.overruns}, ${health.skipped_cycles} cycles skipped, ${health.dropped_reports} reports dropped`, health.overruns + health.skipped_cycles + health.dropped_reports > 0]);
+  for (const { source, batches, lost_batches } of health.sources) rows.push(["Source", `${source}: ${batches} batches, ${lost_batches} lost`, lost_batches > 0]);
+  for (const { name, age_ns, contradicted } of health.inputs.filter(({ stale }) => stale).slice(0, 6)) {
+    rows.push(["Late", `${name}: ${age_ns < 0 ? "never seen" : `${milliseconds(age_ns)} ms`}${contradicted ? ", contradicted" : ""}`, true]);
+  }
+  for (const { object, cause, count } of health.rejected.slice(0, 6)) rows.push(["Refused", `${object}: ${cause} (${count})`, true]);
+  if (health.recording) rows.push(["Recording", health.recording]);
+  return rows;
+}
+
+function drawHealth(state) {
+  const rows = healthRows(state), key = JSON.stringify(rows);
+  if (element("health").dataset.key === key) return;
+  element("health").dataset.key = key;
+  element("health").replaceChildren(...rows.flatMap(([term, text, bad]) => [
+    Object.assign(document.createElement("dt"), { textContent: term }),
+    Object.assign(document.createElement("dd"), { textContent: text, className: bad ? "bad" : "" }),
+  ]));
+}
+
+export function drawLegend() {
+  const meanings = { inside: "in a zone", leaving: "leaving it", outside: "outside its zones", free: "in no zone", lost: "late or unknown" };
+  element("legend").replaceChildren(...Object.entries(meanings).map(([level, text]) => {
+    const entry = document.createElement("span"), mark = document.createElement("i");
+    mark.style.background = `var(${COLOUR[level]})`;
+    entry.append(mark, text);
+    return entry;
+  }));
+}
+
+let healthDrawnMs = 0;
+export function drawReadouts(state, playing, nowMs) {
+  const alarms = state.alarms();
+  const frozen = alarms.some((alarm) => alarm.frozen);
+  drawAlarm(alarms);
+  drawState(state, frozen, playing);
+  drawMinimum(state, frozen);
+  drawZones(state, frozen);
+  if (nowMs - healthDrawnMs > 200) {
+    healthDrawnMs = nowMs;
+    drawHealth(state);
+  }
+  return frozen;
+}

@@ -1,0 +1,95 @@
+#include "tools/view/recording_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/loop/ports.hpp"
+
+namespace clearance::view {
+namespace {
+
+// Read before a place that is jumped to, so that objects that move seldom are there as well.
+constexpr std::int64_t kLookBackNs = 1'000'000'000;
+constexpr double kSlowest = 0.01, kFastest = 100.0;
+
+}  // namespace
+
+RecordingSource::RecordingSource(const Scene& scene, std::filesystem::path file, Timeline timeline)
+    : scene_(scene),
+      file_(std::move(file)),
+      timeline_(std::move(timeline)),
+      frame_(scene),
+      time_ns_(timeline_.begin_ns) {}
+
+std::int64_t RecordingSource::at(double seconds) const {
+  const double ns = std::clamp(1e9 * seconds, 0.0,
+                               static_cast<double>(timeline_.end_ns - timeline_.begin_ns));
+  return timeline_.begin_ns + std::llround(ns);
+}
+
+nlohmann::json RecordingSource::parameters() const {
+  const double seconds = 1e-9 * static_cast<double>(time_ns_ - timeline_.begin_ns);
+  return {{{"name", "playback.playing"}, {"value", playing_}},
+          {{"name", "playback.time"}, {"value", seconds}},
+          {{"name", "playback.rate"}, {"value", rate_}}};
+}
+
+void RecordingSource::set(const std::string& name, const nlohmann::json& value) {
+  if (name == "playback.playing" && value.is_boolean()) {
+    playing_ = value;
+    // Played from its end, it begins again.
+    if (playing_ && time_ns_ >= timeline_.end_ns) time_ns_ = timeline_.begin_ns;
+  } else if (name == "playback.time" && value.is_number()) {
+    time_ns_ = at(value);
+  } else if (name == "playback.rate" && value.is_number()) {
+    rate_ = std::clamp(value.get<double>(), kSlowest, kFastest);
+  } else if (name == "playback.step" && value.is_number()) {
+    playing_ = false;
+    step(std::llround(std::clamp(value.get<double>(), -1e6, 1e6)));
+  }
+  changed_ = true;
+}
+
+void RecordingSource::step(std::int64_t reports) {
+  const auto& times = timeline_.reports;
+  const auto here = std::ranges::upper_bound(times, time_ns_) - times.begin() - 1;
+  const auto there =
+      std::clamp<std::int64_t>(here + reports, 0, static_cast<std::int64_t>(times.size()) - 1);
+  time_ns_ = times[static_cast<std::size_t>(there)];
+}
+
+void RecordingSource::advance(Server& server) {
+  go_on(SystemClock().monotonic_ns());
+  read_up_to(time_ns_);
+  server.set_time(time_ns_);
+  frame_.publish(server);
+  if (std::exchange(changed_, false)) server.parameters_changed();
+}
+
+void RecordingSource::go_on(std::int64_t steady_ns) {
+  const std::int64_t passed = steady_ns - std::exchange(steady_ns_, steady_ns);
+  if (!playing_) return;
+  time_ns_ += std::llround(static_cast<double>(passed) * rate_);
+  if (time_ns_ < timeline_.end_ns) return;
+  time_ns_ = timeline_.end_ns;
+  playing_ = false;
+  changed_ = true;
+}
+
+// Reads on, or, to go back or far ahead, begins anew a little before.
+void RecordingSource::read_up_to(std::int64_t time_ns) {
+  if (!reader_ || time_ns < read_ns_ || time_ns > read_ns_ + 2 * kLookBackNs) {
+    const auto from = static_cast<std::uint64_t>(
+        std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
+    reader_ = std::make_unique<RecordingReader>(file_, McapWindow{.start_ns = from});
+    frame_.jump();
+    has_next_ = reader_->next(next_);
+  }
+  while (has_next_ && next_.log_ns <= time_ns) {
+    frame_.take(next_.kind, next_.log_ns, next_.cdr);
+    has_next_ = reader_->next(next_);
+  }
+  read_ns_ = time_ns;
+}
+
+}  // namespace clearance::view

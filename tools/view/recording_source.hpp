@@ -1,0 +1,52 @@
+// A recording, played like a film: every viewer of the server sees the same moment, and any of them
+// may move it, by parameters:
+//   playback.playing  true or false
+//   playback.time     s after the first report; of what is set, the last report up to then is shown
+//   playback.rate     multiples of the recorded speed, 0.01 to 100
+//   playback.step     set only: so many reports on, negative: back
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "monitor/recording/reader.hpp"
+#include "tools/view/frame.hpp"
+#include "tools/view/source.hpp"
+#include "tools/view/timeline.hpp"
+
+namespace clearance::view {
+
+class RecordingSource final : public Source {
+ public:
+  // `timeline` is of this file and without an error; `scene` must outlive it.
+  RecordingSource(const Scene& scene, std::filesystem::path file, Timeline timeline);
+
+  void advance(Server& server) override;
+  [[nodiscard]] nlohmann::json parameters() const override;
+  void set(const std::string& name, const nlohmann::json& value) override;
+  [[nodiscard]] std::string timeline() const override { return timeline_.json(); }
+
+ private:
+  void go_on(std::int64_t steady_ns);
+  void go_to(std::int64_t time_ns);
+  void step(std::int64_t reports);
+  void read_up_to(std::int64_t time_ns);
+  [[nodiscard]] std::int64_t at(double seconds) const;
+
+  const Scene& scene_;
+  std::filesystem::path file_;
+  Timeline timeline_;
+  Frame frame_;
+  std::unique_ptr<RecordingReader> reader_;
+  RecordedMessage next_;      // read, and still to come
+  bool has_next_ = false;
+  std::int64_t read_ns_ = 0;  // everything up to then has been taken
+  std::int64_t time_ns_;      // what is shown
+  std::int64_t steady_ns_ = 0;
+  bool playing_ = false, changed_ = true;
+  double rate_ = 1.0;
+};
+
+}  // namespace clearance::view

@@ -1,0 +1,160 @@
+#include "tools/view/scene_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "monitor/visual/body_mesh.hpp"
+
+namespace clearance::view {
+namespace {
+
+using nlohmann::json;
+
+// More parts than these around a group are no picture of a zone any more.
+constexpr std::size_t kMostShells = 120;
+
+// Six digits: micrometres in a cell of a metre; text of a third of the length.
+double rounded(double value) { return std::round(value * 1e6) * 1e-6; }
+
+void add(const Vec3& v, json& numbers) {
+  for (int i = 0; i < 3; ++i) numbers.push_back(rounded(v[i]));
+}
+
+json pose_json(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.orientation.normalized();
+  const Vec3& p = pose.position;
+  return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+json mesh_json(const BodyMesh& mesh) {
+  json all = {{"positions", json::array()},
+              {"normals", json::array()},
+              {"triangles", json::array()},
+              {"edges", json::array()}};
+  for (const Vec3& p : mesh.positions) add(p, all["positions"]);
+  for (const Vec3& n : mesh.normals) add(n, all["normals"]);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) all["triangles"].push_back(corner);
+  }
+  for (const auto& edge : mesh.edges) {
+    add(edge[0], all["edges"]);
+    add(edge[1], all["edges"]);
+  }
+  return all;
+}
+
+// Numbers meshes as they come; equal ones have one number.
+class Meshes {
+ public:
+  std::size_t number_of(const BodyMesh& mesh) {
+    json found = mesh_json(mesh);
+    const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
+    if (is_new) list_.push_back(std::move(found));
+    return entry->second;
+  }
+  [[nodiscard]] json take() { return std::move(list_); }
+
+ private:
+  std::map<std::string, std::size_t> numbers_;
+  json list_ = json::array();
+};
+
+json objects_json(const Scene& scene) {
+  json list = json::array();
+  for (const Object& object : scene.objects) {
+    json entry = {{"name", object.name},
+                  {"groups", object.groups},
+                  {"fixed", object.fixed},
+                  {"margin", object.margin},
+                  {"parts", json::array()}};
+    for (const Part& part : object.parts) entry["parts"].push_back(part.name);
+    if (object.fixed) entry["pose"] = pose_json(object.world_from_object);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+json parts_json(const Scene& scene, Meshes& meshes) {
+  json list = json::array();
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    for (const Part& part : scene.objects[i].parts) {
+      json entry = {{"object", i}, {"pose", pose_json(part.object_from_part)}};
+      if (is_half_space(part.shape)) {
+        const Facet& plane = part.shape.facets.front();
+        entry["plane"] = {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset};
+      } else {
+        entry["mesh"] = meshes.number_of(body_mesh(part.shape));
+        entry["unbounded"] = !part.shape.bounded();
+      }
+      list.push_back(std::move(entry));
+    }
+  }
+  return list;
+}
+
+json pairs_json(const Scene& scene) {
+  json list = json::array();
+  for (const ObjectPair& pair : scene.pairs) {
+    list.push_back({pair.first, pair.second, pair.publish ? 1 : 0});
+  }
+  return list;
+}
+
+// The objects that the zone's pairs have on one side: the side with fewer of them, and of these
+// the bounded ones. A margin is part of what must be kept clear.
+json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
+  std::set<std::uint32_t> first, second;
+  for (const std::uint32_t pair : zone.pairs) {
+    first.insert(scene.pairs[pair].first);
+    second.insert(scene.pairs[pair].second);
+  }
+  json list = json::array();
+  for (const std::uint32_t i : first.size() <= second.size() ? first : second) {
+    const Object& object = scene.objects[i];
+    for (const Part& part : object.parts) {
+      if (!part.shape.bounded()) continue;
+      if (list.size() == kMostShells) return json::array();
+      list.push_back(
+          {{"object", i},
+           {"pose", pose_json(part.object_from_part)},
+           {"mesh", meshes.number_of(body_mesh(part.shape, zone.enter_below + object.margin))}});
+    }
+  }
+  return list;
+}
+
+json zones_json(const Scene& scene, Meshes& meshes) {
+  json list = json::array();
+  for (const Zone& zone : scene.zones) {
+    list.push_back({{"name", zone.name},
+                    {"between", {zone.group_a, zone.group_b}},
+                    {"enter_below", zone.enter_below},
+                    {"leave_above", zone.leave_above},
+                    {"pairs", zone.pairs},
+                    {"shells", shells_json(scene, zone, meshes)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string scene_json(const Scene& scene) {
+  Meshes meshes;
+  json all = {{"name", scene.name},
+              {"revision", std::to_string(scene.revision)},
+              {"rate_hz", scene.rate_hz},
+              {"topics",
+               {{"distances", scene.topics.distances},
+                {"zones", scene.topics.zones},
+                {"health", scene.topics.health}}},
+              {"objects", objects_json(scene)},
+              {"parts", parts_json(scene, meshes)},
+              {"pairs", pairs_json(scene)},
+              {"zones", zones_json(scene, meshes)}};
+  all["meshes"] = meshes.take();
+  return all.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace clearance::view

@@ -1,0 +1,14 @@
+// The cell as the page draws it: objects, meshes of their parts, pairs and zones, as JSON.
+#pragma once
+
+#include <string>
+
+#include "config/scene.hpp"
+
+namespace clearance::view {
+
+// Equal meshes occur once. A pose is [x, y, z, qx, qy, qz, qw], lengths are in m. Zones have
+// shells: the parts of one of their groups, enlarged by what the zone is entered below.
+[[nodiscard]] std::string scene_json(const Scene& scene);
+
+}  // namespace clearance::view

@@ -1,0 +1,182 @@
+#include "tools/view/timeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "monitor/pair_name.hpp"
+#include "monitor/recording/reader.hpp"
+#include "monitor/report.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance::view {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct Least {
+  std::int64_t time_ns;
+  double distance, lower;
+  std::uint32_t pair;
+};
+
+class Scan {
+ public:
+  explicit Scan(const Scene& scene) : scene_(scene) {}
+
+  void take(const RecordedMessage& message) {
+    if (message.kind == TopicKind::kDistances && decoder_.decode(message.cdr, report_)) {
+      take_report(message.log_ns);
+    } else if (message.kind == TopicKind::kZones && decoder_.decode(message.cdr, zone_)) {
+      take_zone(message.log_ns);
+    } else if (message.kind == TopicKind::kHealth && decoder_.decode(message.cdr, health_)) {
+      take_health(message.log_ns);
+    }
+  }
+  [[nodiscard]] Timeline result();
+
+ private:
+  void take_report(std::int64_t log_ns);
+  void take_zone(std::int64_t log_ns);
+  void take_health(std::int64_t log_ns);
+  void add(std::int64_t time_ns, const char* kind, std::string text) {
+    if (found_.moments.size() < kMostMoments) {
+      found_.moments.push_back({time_ns, kind, std::move(text)});
+    }
+  }
+  void gather_stretches();
+
+  const Scene& scene_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_ZoneState> zone_;
+  Sample<clearance_msg_Health> health_;
+  Timeline found_;
+  std::vector<Least> least_;                      // one a report
+  std::map<std::uint32_t, std::int64_t> active_;  // zones, since when
+  std::optional<std::uint64_t> overruns_;
+};
+
+void Scan::take_report(std::int64_t log_ns) {
+  const clearance_msg_PairDistance& minimum = report_->minimum;
+  const bool known = report_->minimum_known &&
+                     minimum.status < static_cast<std::uint8_t>(PairStatus::kStale);
+  found_.reports.push_back(log_ns);
+  least_.push_back({log_ns, known ? minimum.distance : kNaN, known ? minimum.lower : kNaN,
+                    minimum.pair});
+}
+
+void Scan::take_zone(std::int64_t log_ns) {
+  const auto since = active_.find(zone_->zone);
+  if (zone_->active && since == active_.end()) {
+    active_[zone_->zone] = log_ns;
+    if (!found_.reports.empty() || zone_->cause == static_cast<std::uint8_t>(ZoneCause::kNear)) {
+      add(log_ns, "zone",
+          fmt::format("zone {} entered: {}", zone_->name, pair_name(scene_, zone_->pair)));
+    }
+  } else if (!zone_->active && since != active_.end()) {
+    found_.zones.push_back({zone_->zone, since->second, log_ns});
+    active_.erase(since);
+  }
+}
+
+// Told once a second: the moment is when it was told.
+void Scan::take_health(std::int64_t log_ns) {
+  if (overruns_ && health_->overruns > *overruns_) {
+    add(log_ns, "overrun",
+        fmt::format("{} overruns within the second before; the longest tick took {:.0f} us",
+                    health_->overruns - *overruns_, health_->tick_second_max_us));
+  }
+  overruns_ = health_->overruns;
+}
+
+// The reports in equal stretches of time, of each the least.
+void Scan::gather_stretches() {
+  const auto span = static_cast<double>(found_.end_ns - found_.begin_ns) + 1.0;
+  std::size_t last = kMostStretches;
+  for (const Least& least : least_) {
+    const auto stretch = static_cast<std::size_t>(
+        static_cast<double>(least.time_ns - found_.begin_ns) / span * kMostStretches);
+    if (stretch != last) {
+      found_.stretches.push_back({least.time_ns, least.distance, least.lower});
+      last = stretch;
+      continue;
+    }
+    Stretch& known = found_.stretches.back();
+    if (std::isnan(known.distance) || least.distance < known.distance) {
+      known = {least.time_ns, least.distance, least.lower};
+    }
+  }
+}
+
+Timeline Scan::result() {
+  if (found_.reports.empty()) return std::move(found_);
+  found_.begin_ns = found_.reports.front();
+  found_.end_ns = found_.reports.back();
+  for (const auto& [zone, since] : active_) found_.zones.push_back({zone, since, found_.end_ns});
+  gather_stretches();
+  const auto least = std::ranges::min_element(least_, {}, [](const Least& each) {
+    return std::isnan(each.distance) ? std::numeric_limits<double>::infinity() : each.distance;
+  });
+  if (!std::isnan(least->distance)) {
+    found_.moments.push_back({least->time_ns, "closest",
+                              fmt::format("least distance: {:.2f} mm, {}", 1e3 * least->distance,
+                                          pair_name(scene_, least->pair))});
+  }
+  std::ranges::stable_sort(found_.moments, {}, &Moment::time_ns);
+  return std::move(found_);
+}
+
+}  // namespace
+
+Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
+                       const std::function<void(double)>& progress) {
+  RecordingReader reader(file);
+  RecordedMessage message;
+  Scan scan(scene);
+  while (reader.next(message)) {
+    scan.take(message);
+    if (progress) progress(reader.progress());
+  }
+  Timeline found = scan.result();
+  if (!reader.readable()) {
+    found.error = reader.error();
+  } else if (found.reports.empty()) {
+    found.error = fmt::format(
+        "{} holds no reports; --offline computes them from the recorded poses", file.string());
+  }
+  return found;
+}
+
+// Times as seconds after the begin, which is a text: a double does not hold its nanoseconds.
+std::string Timeline::json() const {
+  const auto after = [this](std::int64_t ns) { return 1e-9 * static_cast<double>(ns - begin_ns); };
+  const auto number = [](double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+  };
+  nlohmann::json all = {{"begin_ns", std::to_string(begin_ns)},
+                        {"duration", after(end_ns)},
+                        {"reports", reports.size()},
+                        {"stretches", nlohmann::json::array()},
+                        {"zones", nlohmann::json::array()},
+                        {"moments", nlohmann::json::array()}};
+  for (const Stretch& each : stretches) {
+    all["stretches"].push_back({after(each.time_ns), number(each.distance), number(each.lower)});
+  }
+  for (const ZoneSpan& each : zones) {
+    all["zones"].push_back(
+        {{"zone", each.zone}, {"begin", after(each.begin_ns)}, {"end", after(each.end_ns)}});
+  }
+  for (const Moment& each : moments) {
+    all["moments"].push_back(
+        {{"time", after(each.time_ns)}, {"kind", each.kind}, {"text", each.text}});
+  }
+  return all.dump();
+}
+
+}  // namespace clearance::view

@@ -1,0 +1,49 @@
+// What a person wants to see of a recording at a glance: the least distance over time, when zones
+// were active, and the moments that are worth a look.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace clearance::view {
+
+struct Moment {
+  std::int64_t time_ns = 0;  // log time
+  std::string kind;          // "closest", "zone", "overrun"
+  std::string text;          // for a person
+};
+
+struct ZoneSpan {
+  std::uint32_t zone = 0;
+  std::int64_t begin_ns = 0, end_ns = 0;
+};
+
+// The least over a stretch of time; NaN where no minimum was known in it.
+struct Stretch {
+  std::int64_t time_ns = 0;  // of the least, or of the stretch's begin
+  double distance = 0.0, lower = 0.0;  // m
+};
+
+struct Timeline {
+  std::string error;  // not empty: the file cannot be read, or holds no report
+  std::int64_t begin_ns = 0, end_ns = 0;
+  std::vector<std::int64_t> reports;  // log times
+  std::vector<Stretch> stretches;     // at most kMostStretches, in order
+  std::vector<ZoneSpan> zones;
+  std::vector<Moment> moments;  // in order of time; "closest" is the least of all
+
+  [[nodiscard]] std::string json() const;
+};
+
+inline constexpr std::size_t kMostStretches = 2000, kMostMoments = 200;
+
+// Reads the whole file once; `progress` is told the share that was read, 0 to 1.
+[[nodiscard]] Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
+                                     const std::function<void(double)>& progress = {});
+
+}  // namespace clearance::view
