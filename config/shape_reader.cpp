@@ -355,7 +355,8 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   const auto file = read_text(*file_node, "the path of a mesh file", diagnostics);
   if (!file || diagnostics.count() != before) return std::nullopt;
   use.file = *file;
-  return mesh_hull(use, *file_node, node);
+  auto hull = mesh_hull(use, *file_node, node);
+  return hull ? rounded(rounding, *std::move(hull)) : std::nullopt;
 }
 
 std::optional<ShapeResult> ShapeReader::mesh_hull(const MeshUse& use, const YamlNode& file_node,
@@ -374,7 +375,7 @@ std::optional<ShapeResult> ShapeReader::mesh_hull(const MeshUse& use, const Yaml
                           farthest, use.reach));
     return std::nullopt;
   }
-  return rounded(rounding, polyhedron_from_vertices(placed));
+  return polyhedron_from_vertices(placed);
 }
 
 }  // namespace clearance

@@ -120,6 +120,7 @@ struct ConvexPolyhedron {
 
   [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
+  [[nodiscard]] bool is_half_space() const noexcept { return facets.size() == 1; }
 
   // Unit, away from the vertex, along the i-th of its edges.
   [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {

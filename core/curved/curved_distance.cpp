@@ -59,7 +59,7 @@ DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron
                                const RelativePose& a_from_b, CurvedTrackingState& state,
                                bool depth) noexcept {
   if (!a.bounded() && !b.bounded()) return of_unknown();
-  if (is_half_space(a) || is_half_space(b)) return distance_of_half_space(a, b, a_from_b, state);
+  if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
   CurvedPair pair(a, b, a_from_b);
   forget_nonsense(state, a, b);
   int supports = 0;

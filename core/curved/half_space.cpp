@@ -26,12 +26,10 @@ double error_of(double reach, double plane, const RelativePose& pose) noexcept {
 
 }  // namespace
 
-bool is_half_space(const ConvexPolyhedron& body) noexcept { return body.facets.size() == 1; }
-
 DistanceResult distance_of_half_space(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                       const RelativePose& a_from_b,
                                       CurvedTrackingState& state) noexcept {
-  const bool of_a = is_half_space(a);
+  const bool of_a = a.is_half_space();
   const ConvexPolyhedron &plane = of_a ? a : b, &body = of_a ? b : a;
   const Facet& facet = plane.facets.front();
   const Mat3& turn = a_from_b.rotation;

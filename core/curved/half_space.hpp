@@ -6,8 +6,6 @@
 
 namespace clearance {
 
-[[nodiscard]] bool is_half_space(const ConvexPolyhedron& body) noexcept;
-
 // A or B is a half-space, the other one is bounded. Writes the state's points.
 [[nodiscard]] DistanceResult distance_of_half_space(const ConvexPolyhedron& a,
                                                     const ConvexPolyhedron& b,

@@ -60,10 +60,6 @@ double reach_of(const Part& part) noexcept {
   return rounded_up(rounded_up(farthest) + error + part.shape.position_error + part.shape.radius);
 }
 
-bool is_half_space(const ConvexPolyhedron& shape) noexcept {
-  return shape.facets.size() == 1 && shape.edges.empty();
-}
-
 double extent_of(const ConvexPolyhedron& shape) noexcept {
   if (!shape.bounded()) return kInfinity;
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
@@ -153,7 +149,7 @@ std::vector<PosedPart> parts_of(const Scene& scene) {
       placed.sphere_in_part = sphere_around(part.shape);
       placed.offset_length = part.object_from_part.position.norm();
       placed.sphere_offset = placed.sphere_in_part.centre.norm();
-      placed.keeps_direction = part.shape.bounded() || is_half_space(part.shape);
+      placed.keeps_direction = part.shape.bounded() || part.shape.is_half_space();
       parts.push_back(placed);
     }
   }

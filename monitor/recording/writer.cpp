@@ -22,6 +22,15 @@ void RecordingWriter::open() {
     channels_[index(topic.kind)] =
         mcap_->add_channel(topic_schema(topic.kind), topics_.*topic.name, kCdrEncoding);
   }
+  // In the same order, so with the same ids.
+  for (const auto& [schema, topic] : more_channels_) {
+    mcap_->add_channel(schema, topic, kCdrEncoding);
+  }
+}
+
+std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::string& topic) {
+  more_channels_.emplace_back(schema, topic);
+  return mcap_->add_channel(schema, topic, kCdrEncoding);
 }
 
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -49,13 +50,12 @@ class RecordingWriter {
   // asked where a file may end: behind a report and what belongs to it. True: it did.
   bool roll(std::int64_t log_ns);
 
-  // A channel beside those of our topics, with CDR messages; returns its id.
-  [[nodiscard]] std::uint16_t add_channel(const McapSchema& schema, std::string_view topic) {
-    return mcap_.add_channel(schema, topic, kCdrEncoding);
-  }
+  // A channel beside those of our topics, in this file and every one after it, with CDR messages;
+  // returns its id.
+  [[nodiscard]] std::uint16_t add_channel(const McapSchema& schema, const std::string& topic);
   void write(std::uint16_t channel, std::int64_t log_ns, std::span<const std::byte> cdr) {
     const auto time_ns = static_cast<std::uint64_t>(log_ns);
-    mcap_.write(channel, time_ns, time_ns, cdr);
+    mcap_->write(channel, time_ns, time_ns, cdr);
   }
 
   // What was written so far survives a crash.
@@ -83,6 +83,7 @@ class RecordingWriter {
   RecordingOptions options_;
   std::optional<McapWriter> mcap_;
   std::array<std::uint16_t, kTopics.size()> channels_{};
+  std::vector<std::pair<McapSchema, std::string>> more_channels_;  // and their topics, in order
   CdrEncoder encoder_;
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file

@@ -7,15 +7,14 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "monitor/visual/curved_mesh.hpp"
+#include "monitor/visual/mesh_builder.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // Edges whose facets meet at less than this are not drawn as lines, rad: hulls of meshes have many.
 constexpr double kSharpEdge = 0.35;
-
-int steps_of(double angle) { return std::max(1, static_cast<int>(std::ceil(angle / kArcStep))); }
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -29,37 +28,16 @@ Vec3 along_arc(const Vec3& a, const Vec3& b, double t) {
       .normalized();
 }
 
-class MeshBuilder {
- public:
-  std::uint32_t add(const Vec3& position, const Vec3& normal) {
-    mesh.positions.push_back(position);
-    mesh.normals.push_back(normal);
-    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
-  }
-  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    mesh.triangles.push_back({a, b, c});
-  }
-  // Between two rows of as many points each, the first to the right of the second.
-  void strip(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to) {
-    for (std::size_t i = 0; i + 1 < from.size(); ++i) {
-      triangle(from[i], from[i + 1], to[i + 1]);
-      triangle(from[i], to[i + 1], to[i]);
-    }
-  }
-
-  BodyMesh mesh;
-};
-
 // A capsule, or with start == end a sphere: rings of latitude about the axis.
 BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius) {
   const Vec3 axis = start == end ? Vec3(Vec3::UnitZ()) : Vec3((end - start).normalized());
   const Vec3 across = axis.unitOrthogonal(), third = axis.cross(across);
-  const int around = steps_of(2.0 * kPi), quarter = steps_of(kPi / 2.0);
+  const int around = arc_steps(2.0 * std::numbers::pi), quarter = arc_steps(std::numbers::pi / 2.0);
   MeshBuilder builder;
   const auto ring = [&](const Vec3& centre, double latitude) {
     std::vector<std::uint32_t> row;
     for (int i = 0; i <= around; ++i) {
-      const double longitude = 2.0 * kPi * (i % around) / around;
+      const double longitude = 2.0 * std::numbers::pi * (i % around) / around;
       const Vec3 normal =
           std::sin(latitude) * axis +
           std::cos(latitude) * (std::cos(longitude) * across + std::sin(longitude) * third);
@@ -69,7 +47,8 @@ BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius) {
   };
   std::vector<std::uint32_t> below;
   for (int i = -quarter; i <= quarter; ++i) {
-    std::vector<std::uint32_t> row = ring(i <= 0 ? start : end, 0.5 * kPi * i / quarter);
+    std::vector<std::uint32_t> row =
+        ring(i <= 0 ? start : end, 0.5 * std::numbers::pi * i / quarter);
     if (!below.empty()) builder.strip(below, row);
     below = std::move(row);
     if (i != 0 || start == end) continue;
@@ -103,8 +82,7 @@ void add_facets(const ConvexPolyhedron& body, double radius, MeshBuilder& builde
   for (const Facet& facet : body.facets) {
     std::vector<std::uint32_t> loop;
     for (const std::int32_t vertex : corners(body, facet)) {
-      loop.push_back(
-          builder.add(position_of(body, vertex) + radius * facet.normal, facet.normal));
+      loop.push_back(builder.add(position_of(body, vertex) + radius * facet.normal, facet.normal));
     }
     for (std::size_t i = 2; i < loop.size(); ++i) builder.triangle(loop[0], loop[i - 1], loop[i]);
   }
@@ -115,7 +93,7 @@ void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radiu
                     MeshBuilder& builder) {
   const Vec3& left = normal_of(body, edge.facet[0]);
   const Vec3& right = normal_of(body, edge.facet[1]);
-  const int steps = steps_of(angle_between(left, right));
+  const int steps = arc_steps(angle_between(left, right));
   std::vector<std::uint32_t> at_start, at_end;
   for (int i = 0; i <= steps; ++i) {
     const Vec3 normal = along_arc(left, right, static_cast<double>(i) / steps);
@@ -126,10 +104,10 @@ void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radiu
 }
 
 // One sector of the sphere's patch at a vertex: from its middle to the arc from a to b.
-void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a,
-                const Vec3& b, MeshBuilder& builder) {
-  const int steps = steps_of(angle_between(a, b));
-  const int rows = steps_of(std::max(angle_between(middle, a), angle_between(middle, b)));
+void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a, const Vec3& b,
+                MeshBuilder& builder) {
+  const int steps = arc_steps(angle_between(a, b));
+  const int rows = arc_steps(std::max(angle_between(middle, a), angle_between(middle, b)));
   std::vector<std::uint32_t> inner;
   for (int j = 0; j <= rows; ++j) {
     std::vector<std::uint32_t> row;
@@ -198,14 +176,11 @@ ShapeResult cut_off(const ConvexPolyhedron& body, double reach) {
 }  // namespace
 
 BodyMesh body_mesh(const ConvexPolyhedron& body, double offset, double reach) {
+  if (body.is_curved()) return curved_mesh(body.curved, body.radius + offset);
   if (body.bounded()) return bounded_mesh(body, body.radius + offset);
   const ShapeResult cut = cut_off(body, reach);
   const auto* const bounded = std::get_if<ConvexPolyhedron>(&cut);
   return bounded == nullptr ? BodyMesh{} : bounded_mesh(*bounded, body.radius + offset);
-}
-
-bool is_half_space(const ConvexPolyhedron& body) noexcept {
-  return body.facets.size() == 1 && body.vertices.empty();
 }
 
 }  // namespace clearance

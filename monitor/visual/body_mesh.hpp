@@ -1,9 +1,9 @@
 // A convex body as triangles, for viewers: facets flat, what is rounded by its radius smooth.
 //
 // Rounded bodies are tessellated as they are: each facet moved out by the radius, a strip of a
-// cylinder along each edge, a patch of a sphere at each vertex. Every vertex lies on the surface to
-// a double's rounding, and chords leave it by at most 1 - cos(kArcStep / 2) of the radius: 0.4 %.
-// Nothing that is decided rests on a mesh.
+// cylinder along each edge, a patch of a sphere at each vertex; curved ones by curved_mesh.hpp.
+// Every vertex lies on the surface to a double's rounding, and chords leave it by at most 1 -
+// cos(kArcStep / 2) of the radius: 0.4 %. Nothing that is decided rests on a mesh.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace clearance {
 // In the body's frame, m.
 struct BodyMesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // one a position, unit, outward
+  std::vector<Vec3> normals;                            // one a position, unit, outward
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise as seen from outside
   std::vector<std::array<Vec3, 2>> edges;               // sharp ones, as lines
 
@@ -31,8 +31,5 @@ inline constexpr double kArcStep = 0.175;
 // cube of half width `reach` (m) around the frame's origin; empty when nothing lies in it.
 [[nodiscard]] BodyMesh body_mesh(const ConvexPolyhedron& body, double offset = 0.0,
                                  double reach = 20.0);
-
-// A body that is one half-space, which viewers draw as a grid on its plane.
-[[nodiscard]] bool is_half_space(const ConvexPolyhedron& body) noexcept;
 
 }  // namespace clearance

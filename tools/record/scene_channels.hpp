@@ -1,5 +1,5 @@
-// The channels of a recording that 3D viewers draw: bodies once, transforms and closest pairs of
-// some reports.
+// The channels of a recording that 3D viewers draw: bodies once a file, transforms and closest
+// pairs of some reports.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,13 @@ class SceneChannels {
         writer_(writer),
         poses_(scene),
         transforms_(writer.add_channel(ros::transforms_schema(), kTransformsTopic)),
-        closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)) {
-    writer.write(writer.add_channel(ros::markers_schema(), kBodiesTopic), now_ns,
-                 bodies_message(scene));
+        closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)),
+        bodies_(writer.add_channel(ros::markers_schema(), kBodiesTopic)) {
+    write_bodies(now_ns);
   }
+
+  // Belongs into every file.
+  void write_bodies(std::int64_t now_ns) { writer_.write(bodies_, now_ns, bodies_message(scene_)); }
 
   void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
 
@@ -40,7 +43,7 @@ class SceneChannels {
   const Scene& scene_;
   RecordingWriter& writer_;
   ObjectPoses poses_;
-  std::uint16_t transforms_, closest_;
+  std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };
 

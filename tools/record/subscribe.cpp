@@ -162,7 +162,7 @@ void show(const Subscription& subscription, const RecordingWriter& writer, const
 
 // Records until it is stopped, the time is up, or the file cannot be written.
 void record_until(std::int64_t end_ns, Subscription& subscription, Participant& participant,
-                  RecordingWriter& writer, StopSignal& stop) {
+                  RecordingWriter& writer, SceneChannels* scene, StopSignal& stop) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   DataWait wait(participant, subscription.readers());
@@ -170,7 +170,7 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
   while (writer.ok() && !stop.wait(0) && dds_time() < end_ns) {
     wait.wait(20'000'000);  // a signal is heard within 20 ms
     subscription.take_all();
-    writer.roll(dds_time());
+    if (writer.roll(dds_time()) && scene != nullptr) scene->write_bodies(dds_time());
     if (dds_time() - shown_ns < kSecond) continue;
     shown_ns = dds_time();
     writer.flush();
@@ -195,11 +195,12 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
   std::optional<SceneChannels> channels;
   if (arguments.scene && scene != nullptr) channels.emplace(*scene, writer, dds_time());
-  Subscription subscription(participant, topics, writer, options, channels ? &*channels : nullptr);
+  SceneChannels* const drawn = channels ? &*channels : nullptr;
+  Subscription subscription(participant, topics, writer, options, drawn);
   const std::int64_t end_ns = arguments.seconds > 0.0
                                   ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
                                   : std::numeric_limits<std::int64_t>::max();
-  record_until(end_ns, subscription, participant, writer, stop);
+  record_until(end_ns, subscription, participant, writer, drawn, stop);
   if (!writer.close()) {
     print(stderr, "clearance-record: {}\n", writer.error());
     return kFailed;

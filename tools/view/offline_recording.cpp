@@ -19,7 +19,7 @@ class Copy {
       : scene_(scene), out_(std::move(out)), stamps_(scene.objects.size()) {}
 
   void add(const ReplayedTick& tick) {
-    if (!recorder_) recorder_.emplace(out_, scene_, tick.report.now_ns, true);
+    if (!recorder_) recorder_.emplace(out_, scene_, tick.report.now_ns, RecordingOptions{});
     recorder_->poses(moved_in(tick.monitor));
     const SourceUse used{batch_.source, batch_.sequence_number};
     recorder_->report(tick.report, {&used, 1});

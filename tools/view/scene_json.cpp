@@ -81,7 +81,7 @@ json parts_json(const Scene& scene, Meshes& meshes) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     for (const Part& part : scene.objects[i].parts) {
       json entry = {{"object", i}, {"pose", pose_json(part.object_from_part)}};
-      if (is_half_space(part.shape)) {
+      if (part.shape.is_half_space()) {
         const Facet& plane = part.shape.facets.front();
         entry["plane"] = {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset};
       } else {

@@ -14,7 +14,7 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-constexpr int kSteps = 1'000'000, kJudgedEvery = 31'250;
+constexpr int kTrackedSteps = 1'000'000, kJudgedEvery = 31'250;
 
 struct PairOfPoses {
   Pose a, b;
@@ -68,7 +68,7 @@ TEST_P(LongTracking, HoldsAfterAMillionSteps) {
   DistanceJudge judge(GetParam().body, GetParam().body);
   TrackingState state;
   int apart = 0;
-  for (int k = 1; k <= kSteps; ++k) {
+  for (int k = 1; k <= kTrackedSteps; ++k) {
     const auto [a, b] = GetParam().at(1e-3 * k);
     const DistanceResult result = judge.ask(a, b, state);
     apart += result.status == DistanceStatus::kConverged ? 1 : 0;
@@ -80,7 +80,7 @@ TEST_P(LongTracking, HoldsAfterAMillionSteps) {
     expect_as_promised(result, truth,
                        judge.a().bounding_radius + judge.b().bounding_radius + between);
   }
-  EXPECT_GT(apart, kSteps / 2);
+  EXPECT_GT(apart, kTrackedSteps / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, LongTracking, testing::ValuesIn(kRuns),

@@ -1,0 +1,40 @@
+// What the meshes of bodies are put together with.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "monitor/visual/body_mesh.hpp"
+
+namespace clearance {
+
+// Into how many an arc of this angle, rad, is cut.
+inline int arc_steps(double angle) {
+  return std::max(1, static_cast<int>(std::ceil(angle / kArcStep)));
+}
+
+class MeshBuilder {
+ public:
+  std::uint32_t add(const Vec3& position, const Vec3& normal) {
+    mesh.positions.push_back(position);
+    mesh.normals.push_back(normal);
+    return static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  }
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh.triangles.push_back({a, b, c});
+  }
+  // Between two rows of as many points each, the first to the right of the second.
+  void strip(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to) {
+    for (std::size_t i = 0; i + 1 < from.size(); ++i) {
+      triangle(from[i], from[i + 1], to[i + 1]);
+      triangle(from[i], to[i + 1], to[i]);
+    }
+  }
+
+  BodyMesh mesh;
+};
+
+}  // namespace clearance
