@@ -2,6 +2,7 @@
 // nothing is known of it, until something is taken again and an age limit has passed since.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -10,9 +11,10 @@ namespace clearance {
 // Times are the tick's.
 class Contradiction {
  public:
-  // A sample was refused for what it says: what follows has to agree for `hold_ns`.
+  // A sample was refused for what it says: what follows has to agree for `hold_ns`, and as long as
+  // others before it asked for.
   void meet(std::int64_t now_ns, std::int64_t hold_ns) noexcept {
-    until_ns_ = now_ns + hold_ns;
+    until_ns_ = std::max(until_ns_, now_ns + hold_ns);
     agrees_again_ = false;
   }
   // One was taken.

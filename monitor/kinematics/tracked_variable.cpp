@@ -10,6 +10,9 @@
 namespace clearance {
 namespace {
 
+// By no more than this factor are velocity limits of descriptions taken to be too low.
+constexpr double kLimitTooLow = 4.0;
+
 bool usable(double x) noexcept { return std::abs(x) <= kLargestJoint; }
 
 // Without one, or one that is a number: 0.
@@ -18,12 +21,14 @@ double speed_of(const JointSample& sample) noexcept {
 }
 
 // The age limit is how far off in time the cell lets a position be. What is sent as its velocity
-// may exceed the limit, which many descriptions have wrong; what positions say may not: that is in
-// question.
+// may exceed the limit, which many descriptions have wrong, but not so far that any leap would
+// excuse itself; what positions say may not: that is in question.
 bool can_reach(const JointVariable& variable, const JointSample& sample, std::int64_t stamp_ns,
                const TrackedVariable& state) noexcept {
   const double time = seconds(elapsed(state.stamp_ns, stamp_ns)) + seconds(variable.age_limit_ns);
-  const double fastest = std::max({variable.max_speed, state.sent_speed, speed_of(sample)});
+  const double sent = std::max(state.sent_speed, speed_of(sample));
+  const double fastest =
+      std::max(variable.max_speed, std::min(sent, kLimitTooLow * variable.max_speed));
   return std::abs(sample.position - state.position) <= rounded_up(fastest * time);
 }
 

@@ -17,8 +17,6 @@ constexpr double kUsualSpeed = 1.0;
 // sixth is found out.
 constexpr std::int64_t kAnchorAgeLimits = 6;
 
-// Over how long twists are summed up, in age limits: over more, noise comes to something.
-constexpr std::int64_t kReckoningAgeLimits = 50;
 // The mean of two twists says nothing of what lies between them if that is longer, in age limits.
 constexpr std::int64_t kGapAgeLimits = 2;
 // By which share of itself a twist may be off.
@@ -62,8 +60,8 @@ std::vector<Vec3> corners_of(const Object& object) {
 
 // Each is the corner farthest from those before it.
 Landmarks::Landmarks(const Object& object) {
-  const std::vector<Vec3> corners = corners_of(object);
-  if (corners.empty()) return;
+  std::vector<Vec3> corners = corners_of(object);
+  if (corners.empty()) corners.push_back(Vec3::Zero());  // a half-space has none
   points_[count_++] = corners.front();
   while (count_ < points_.size()) {
     const auto apart = [&](const Vec3& corner) {
@@ -119,26 +117,32 @@ bool Repetition::frozen(const Object& object) const noexcept {
 
 bool Reckoning::follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
                         bool same, const Object& object, const Landmarks& landmarks) noexcept {
-  const bool goes_on = any_ && sample.has_twist &&
-                       elapsed(since_ns_, stamp_ns) <= kReckoningAgeLimits * object.age_limit_ns &&
+  leads_elsewhere_ = false;
+  if (!sample.has_twist) return true;
+  const bool goes_on = any_ && elapsed(since_ns_, stamp_ns) <= kAgeLimits * object.age_limit_ns &&
                        elapsed(last_ns_, stamp_ns) <= kGapAgeLimits * object.age_limit_ns;
   if (!goes_on) {
-    start(sample, pose, stamp_ns);
+    start(sample, pose, stamp_ns, landmarks);
     return true;
   }
   add(sample.twist, stamp_ns, landmarks);
-  const double limit = usual_speed_of(object) * seconds(object.age_limit_ns) + kTwistError * path_;
-  if (landmarks.stay_within(limit, pose_, pose)) return true;
-  if (!same) start(sample, pose, stamp_ns);
+  // Twists that come an age limit late miss the last of the way, which no twist has told of yet,
+  // and sum up instead what was before the first of it.
+  const double missed = std::max(usual_speed_of(object), fastest_) + fastest_;
+  const double limit = missed * seconds(object.age_limit_ns) + kTwistError * path_;
+  leads_elsewhere_ = !landmarks.stay_within(limit, pose_, pose);
+  if (!leads_elsewhere_) return true;
+  if (!same) start(sample, pose, stamp_ns, landmarks);
   return false;
 }
 
-void Reckoning::start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns) noexcept {
-  any_ = sample.has_twist;
-  if (!any_) return;
+void Reckoning::start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+                      const Landmarks& landmarks) noexcept {
+  any_ = true;
   pose_ = pose;
   path_ = 0.0;
   last_ = sample.twist;
+  last_speed_ = fastest_ = landmarks.length(last_);
   since_ns_ = last_ns_ = stamp_ns;
 }
 
@@ -148,9 +152,12 @@ void Reckoning::add(const Twist& twist, std::int64_t stamp_ns,
   const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));
   const Twist step{.linear = half * (last_.linear + twist.linear),
                    .angular = half * (last_.angular + twist.angular)};
+  const double speed = landmarks.length(twist);
+  path_ += half * (last_speed_ + speed);
+  fastest_ = std::max(fastest_, speed);
   last_ = twist;
+  last_speed_ = speed;
   last_ns_ = stamp_ns;
-  path_ += landmarks.length(step);
   pose_.position += step.linear;
   const Eigen::Quaterniond half_turn(0.0, 0.5 * step.angular.x(), 0.5 * step.angular.y(),
                                      0.5 * step.angular.z());

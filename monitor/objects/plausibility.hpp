@@ -79,7 +79,10 @@ class Repetition {
 
 // Where the twists lead from an older pose: poses that are elsewhere contradict them. A twist may
 // be off in time by the age limit, and by a sixth of itself; over the whole time that is summed up,
-// noise comes to nothing and an offset to no more than a fiftieth of the object's speed.
+// noise comes to little, where samples come as often as age limits or their noise is below a
+// thirtieth of the object's speed, and an offset to no more than a fiftieth of that. Samples
+// without a twist are left out; where twists come less often than every two age limits, nothing is
+// told.
 class Reckoning {
  public:
   // Adds the sample's twist, if it has one. False: it leads elsewhere. `stamp_ns` is in the tick's
@@ -87,17 +90,26 @@ class Reckoning {
   [[nodiscard]] bool follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
                              bool same, const Object& object, const Landmarks& landmarks) noexcept;
 
-  // How long what follows must agree, in age limits.
-  static constexpr std::int64_t kAgreesAfterAgeLimits = 6;
+  // Whether the last sample was elsewhere.
+  [[nodiscard]] bool leads_elsewhere() const noexcept { return leads_elsewhere_; }
+
+  // Over how long twists are summed up, in age limits: over more, noise comes to something.
+  static constexpr std::int64_t kAgeLimits = 50;
+  // How long what follows must agree: over less, what is slow would not be found out again, and a
+  // pose that stays behind for good be known in between.
+  static constexpr std::int64_t kAgreesAfterAgeLimits = kAgeLimits + 1;
 
  private:
-  void start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns) noexcept;
+  void start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+             const Landmarks& landmarks) noexcept;
   void add(const Twist& twist, std::int64_t stamp_ns, const Landmarks& landmarks) noexcept;
 
-  bool any_ = false;
-  Pose pose_;          // where they lead
-  double path_ = 0.0;  // how far it is to there, m
+  bool any_ = false, leads_elsewhere_ = false;
+  Pose pose_;             // where they lead
+  double path_ = 0.0;     // how far it is to there, m
+  double fastest_ = 0.0;  // of the twists since then, m/s
   Twist last_;
+  double last_speed_ = 0.0;  // of the fastest point by that, at most, m/s
   std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 

@@ -24,10 +24,11 @@ bool SourceClock::confirms(std::int64_t new_ns, std::int64_t old_ns, std::int64_
   const auto on_time = [&](std::int64_t stamp) {
     return elapsed(now_ns, stamp) <= limits.future_ns && elapsed(stamp, now_ns) <= limits.age_ns;
   };
-  const bool agrees = on_time(new_ns) && !on_time(old_ns);
-  if (agrees && !agrees_) agrees_since_ns_ = now_ns;
-  agrees_ = agrees;
-  return agrees && elapsed(agrees_since_ns_, now_ns) >= kConfirmedAfterNs;
+  const bool only_new = on_time(new_ns) && !on_time(old_ns);
+  const bool fits_both = agrees_ && on_time(new_ns) && new_ns < old_ns;
+  if (only_new && !agrees_) agrees_since_ns_ = now_ns;
+  agrees_ = only_new || fits_both;
+  return only_new && elapsed(agrees_since_ns_, now_ns) >= kConfirmedAfterNs;
 }
 
 }  // namespace clearance

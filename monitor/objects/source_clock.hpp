@@ -7,6 +7,8 @@
 // under way) only they can show. So the old relation holds, by which no pose is taken for younger
 // than it is, until for half a second every pose has been on time by the new one and none by the
 // old one. Poses that are held up come all at once in the end, so not all of them can be on time.
+// Where the new relation makes all poses older, those that are on time by both do not count
+// against it: what is in the future by the old one shows that it is wrong, and nobody gets younger.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +42,7 @@ class SourceClock {
   bool heard_ = false;
   std::int64_t offset_ns_ = 0;  // stamps less the tick's time
   // Whether the new relation agrees with all that was heard since then, in the tick's time, and the
-  // old one with nothing.
+  // old one with nothing, or with nothing that it does not make younger.
   bool agrees_ = false;
   std::int64_t agrees_since_ns_ = 0;
 };

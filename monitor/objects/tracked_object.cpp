@@ -144,7 +144,7 @@ std::optional<Reject> take(const Object& object, const PoseSample& sample, std::
       cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= object.age_limit_ns;
   if (cause && !reordered) {
     const std::int64_t age_limits =
-        cause == Reject::kOtherWay ? Reckoning::kAgreesAfterAgeLimits : 1;
+        state.reckoning.leads_elsewhere() ? Reckoning::kAgreesAfterAgeLimits : 1;
     state.contradiction.meet(limits.now_ns, age_limits * object.age_limit_ns);
   }
   return cause;
@@ -167,6 +167,10 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
   state.owner.forget_age(now_ns);
   state.contradiction.forget_age();
+  state.anchor.set(state.pose, state.stamp_ns);
+  state.repetition.add(false, now_ns);
+  state.reckoning = {};
+  state.other_place = {};
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {

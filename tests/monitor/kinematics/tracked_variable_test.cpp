@@ -139,6 +139,18 @@ TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
   EXPECT_EQ(take(at(101 * kMs, 0.9)), Reject::kTooFast);
 }
 
+TEST_F(Variable, WildVelocityDoesNotExcuseALeap) {
+  EXPECT_EQ(take(at(0, -0.5)), std::nullopt);
+  JointSample wild = at(kMs, 0.5);
+  wild.has_velocity = true;
+  wild.velocity = 1e6;
+  EXPECT_EQ(take(wild), Reject::kTooFast);
+  wild.stamp_ns = 2 * kMs;
+  wild.position = -0.5;
+  EXPECT_EQ(take(wild), std::nullopt);
+  EXPECT_EQ(take(at(3 * kMs, 0.5)), Reject::kTooFast) << "nor does that of the one before";
+}
+
 TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
   EXPECT_EQ(take(at(10 * kMs, 0.0)), std::nullopt);
   EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);

@@ -109,7 +109,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
       if (below(30'000) == 0) source.held_up_until = now_ + below(2 * kOneSecond);
       if (below(20'000) == 0) source.sequence = 0;  // started again
       if (below(40'000) == 0) {
-        source.lies_until = now_ + (below(2) == 0 ? 2 * kTick : below(kSecond));
+        source.lies_until = now_ + (below(2) == 0 ? 2 * kTick : below(kOneSecond));
         source.lie = random_.in_box(3.0);
       }
     }

@@ -57,6 +57,20 @@ TEST(SourceClock, ProgramOfThisMachineIsFollowedHalfASecondAfterAStepAndNeverToo
   }
 }
 
+// A step ahead by little more than what a stamp may be ahead: some poses are on time by both
+// clocks.
+TEST(SourceClock, ProgramOfThisMachineIsFollowedAfterAStepThatOnlySomeStampsShow) {
+  StampStream stream;
+  stream.set_both(10);
+  EXPECT_EQ(stream.age_ms(0, 1), 1);
+  stream.set_both(20);
+  const auto latency = [](std::int64_t ms) { return ms * 5 % 9; };
+  std::int64_t ms = 1;
+  for (; stream.age_ms(ms, ms + latency(ms)) != latency(ms); ++ms) ASSERT_LT(ms, 600);
+  EXPECT_GE(ms, kConfirmedMs);
+  for (; ms < 1500; ++ms) ASSERT_EQ(stream.age_ms(ms, ms + latency(ms)), latency(ms));
+}
+
 TEST(SourceClock, PosesUnderWayWhileTheClockIsSteppedKeepTheirAge) {
   for (const std::int64_t step : {-2000, 2000}) {
     StampStream stream;
