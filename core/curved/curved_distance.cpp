@@ -43,6 +43,13 @@ void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& stat
                         : Vec3(0.5 * (points.a + points.b));
 }
 
+// With the pieces that are thought to be active, and if others are with a search for them. Returns
+// how many support points that took.
+int find_direction(CurvedPair& pair, Vec3& n, ActivePieces& active) noexcept {
+  const int supports = refine_direction(pair, active, n).supports;
+  return pair.is_tight() ? supports : supports + search_direction(pair, n, active).supports;
+}
+
 DistanceResult of_unknown() noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   DistanceResult r;
@@ -64,15 +71,12 @@ DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron
   forget_nonsense(state, a, b);
   int supports = 0;
   if (!state.normal.isZero()) {
-    supports += refine_direction(pair, state.active, state.normal).supports;
-    if (!pair.is_tight()) {
-      supports += search_direction(pair, state.normal, state.active).supports;
-    }
+    supports += find_direction(pair, state.normal, state.active);
   }
   if (!pair.is_tight()) {
-    state.active = {};
-    const CurvedStart start = start_direction(pair);
-    if (!start.meet) supports += search_direction(pair, start.normal, state.active).supports;
+    CurvedStart start = start_direction(pair);
+    state.active = start.pieces;
+    if (!start.meet) supports += find_direction(pair, start.normal, state.active);
   }
   double deep = -kInfinity;
   const bool meet = !pair.is_tight() && pair.bounds.lower < 0.0;

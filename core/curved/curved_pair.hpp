@@ -37,6 +37,7 @@ struct CurvedBounds {
   PointPair deepest{};         // where the bodies overlap: that meet when B is moved by its depth
 };
 
+// The bodies and the pose outlive it.
 class CurvedPair {
  public:
   CurvedPair(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
@@ -45,6 +46,10 @@ class CurvedPair {
   PieceSource a, b;
   CurvedBounds bounds;
   double size;  // m: what ulps are counted in
+
+  // B as seen from A.
+  [[nodiscard]] const Mat3& rotation() const noexcept { return pose_.rotation; }
+  [[nodiscard]] const Vec3& translation() const noexcept { return pose_.translation; }
 
   [[nodiscard]] Vec3 direction_to_b(const Vec3& v) const noexcept {
     return pose_.rotation.transpose() * v;
@@ -78,7 +83,7 @@ class CurvedPair {
   [[nodiscard]] double error() const noexcept;
 
  private:
-  RelativePose pose_;
+  const RelativePose& pose_;
 };
 
 }  // namespace clearance

@@ -10,9 +10,10 @@ namespace clearance {
 namespace {
 
 // Of one pass, and of all: near-symmetric pairs would take more than anyone waits for.
-constexpr int kSupportsOfPass = 6000, kSupports = 16000;
-// The tolerances of the passes, by the pair's size.
-constexpr double kTolerances[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0x1p-47, 0x1p-49};
+constexpr int kSupportsOfPass = 2500, kSupports = 6000;
+// By the pair's size: the tolerance, and what less fine ones are tried where that takes too long.
+constexpr double kTolerance = 0x1p-49;
+constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
 
 // Every point of an ellipsoid's surface is on a ball of this radius that lies inside.
@@ -93,9 +94,9 @@ class DepthSearch {
 
   DepthBounds run() noexcept {
     descend(pair_.bounds.normal);
-    for (const double tolerance : kTolerances) {
-      if (!pass(tolerance * pair_.size)) break;
-      if (depth() - found_.lower <= pair_.gap_tolerance()) break;
+    if (pass(kTolerance * pair_.size)) return found_;
+    for (const double tolerance : kCoarser) {
+      if (tolerance * pair_.size < depth() - found_.lower && !pass(tolerance * pair_.size)) break;
     }
     return found_;
   }

@@ -4,178 +4,152 @@
 #include <cmath>
 
 #include "core/curved/direction_programme.hpp"
-#include "core/curved/piece-inl.hpp"
+#include "core/curved/placed_body.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr int kSteps = 6;
+constexpr int kSteps = 5;
 // The witness points are along the direction to this, or to rounding.
 constexpr double kAlong = 0x1p-34;
+// A direction so near to the axis of a truncated cone is left to others.
+constexpr double kLargestTurn = 0x1p30;
+
+// One of the pairs of pieces that are active.
+struct ActivePair {
+  PlacedPiece a, b;
+  Vec3 difference;  // from A's support point to B's
+  double weight;
+};
 
 class Newton {
  public:
   Newton(CurvedPair& pair, const ActivePieces& active, Vec3& n) noexcept
-      : pair_(pair), active_(active), n_(n), tolerance_(pair.gap_tolerance()) {
-    weights_.fill(1.0 / static_cast<double>(active.count));
+      : pair_(pair),
+        active_(active),
+        n_(n),
+        a_(*pair.a.body, kNotTurned, kOrigin),
+        b_(*pair.b.body, pair.rotation(), pair.translation()) {
+    const double equal = 1.0 / static_cast<double>(active.count);
+    for (std::size_t i = 0; i < active.count; ++i) {
+      const auto& [a, b] = active.pieces[i];
+      pairs_[i] = {a_.piece(a), b_.piece(b), Vec3::Zero(), equal};
+    }
   }
 
   NewtonEnd run() noexcept {
-    double before = -kInfinity;
+    double before = 0.0;
     for (end_.supports = 1; end_.supports <= kSteps; ++end_.supports) {
-      if (!look()) return end_;
-      if (active_.count > 1 && !solve()) return end_;
-      if (is_close()) {
-        end_.tight = certify();
-        return end_;
-      }
+      look();
+      const double gain = least_ - before;
       // Steps that lead nowhere are left to the search, which shortens them.
-      if (!(least_ > before - tolerance_)) return end_;
+      if (!(least_ > 0.0) || !(gain > -pair_.gap_tolerance())) break;
       before = least_;
-      if (active_.count == 1) step_of_one();
-      n_ = (n_ + step_.x() * tangents_.x + step_.y() * tangents_.y).normalized();
+      const double trace = hessian_.trace();
+      if (!(trace < kLargestTurn * pair_.size) || !find_step()) break;
+      const double square = step_.squaredNorm();
+      n_ = (n_ + step_).normalized();
+      // The next step would be about the square of this one.
+      if (square * trace > kAlong * least_) continue;
+      ++end_.supports;
+      certify();
+      break;
     }
     return end_;
   }
 
  private:
-  [[nodiscard]] static bool is_cone(const PieceSource& source) noexcept {
-    return source.body->curved.kind == CurvedShape::Kind::kTruncatedCone;
-  }
-  [[nodiscard]] static double turn_of_rim(const FacedBody& faced) noexcept {
-    if (!is_cone(faced.source)) return 0.0;
-    const auto& [low, high] = faced.source.body->curved.discs;
-    return std::max(low.radius, high.radius) / faced.azimuth.across;
-  }
+  static inline const Mat3 kNotTurned = Mat3::Identity();
+  static inline const Vec3 kOrigin = Vec3::Zero();
 
-  // Tangents along the rim that turns fastest, so that its radius stays out of what lies across.
-  void set_tangents(const FacedBody& a, const FacedBody& b) noexcept {
-    const double turn_a = turn_of_rim(a), turn_b = turn_of_rim(b);
-    if (turn_a > 0.0 || turn_b > 0.0) {
-      const Vec2& to = turn_a >= turn_b ? a.azimuth.to : b.azimuth.to;
-      const Vec3 along(-to.y(), to.x(), 0.0);
-      tangents_.x = turn_a >= turn_b ? along : pair_.direction_to_a(along);
-    } else {
-      // The axis that n is farthest from is far enough off.
-      const bool x = std::abs(n_.x()) < 0.6;
-      const Vec3 along = x ? Vec3(0.0, n_.z(), -n_.y()) : Vec3(-n_.z(), 0.0, n_.x());
-      tangents_.x = along / along.norm();
-    }
-    tangents_.y = n_.cross(tangents_.x);
-    tangents_in_b_ = {pair_.direction_to_b(tangents_.x), pair_.direction_to_b(tangents_.y)};
-  }
-
-  // What there is to know at n_. False: it is an axis, or the bodies are not apart along it.
-  bool look() noexcept {
-    const FacedBody a = faced(pair_.a, n_), b = faced(pair_.b, -pair_.direction_to_b(n_));
-    constexpr double kNearAxis = 0x1p-40;
-    if ((is_cone(pair_.a) && a.azimuth.across < kNearAxis) ||
-        (is_cone(pair_.b) && b.azimuth.across < kNearAxis)) {
-      return false;
-    }
+  // What there is to know at n_.
+  void look() noexcept {
+    const PlacedView a = a_.view(n_), b = b_.view(n_);
     least_ = kInfinity;
+    double radii_a = 0.0, radii_b = 0.0;
     for (std::size_t i = 0; i < active_.count; ++i) {
-      const PiecePair& pieces = active_.pieces[i];
-      At& at = at_[i];
-      at.points.a = support_point(a, pieces.a);
-      at.points.own_b = support_point(b, pieces.b);
-      at.points.b = pair_.point_to_a(at.points.own_b);
-      at.difference = at.points.difference();
-      at.apart = n_.dot(at.difference);
-      least_ = std::min(least_, at.apart);
+      ActivePair& p = pairs_[i];
+      p.difference = (p.b.middle - p.b.radius * b.out) - (p.a.middle + p.a.radius * a.out);
+      least_ = std::min(least_, n_.dot(p.difference));
+      radii_a += p.weight * p.a.radius;
+      radii_b += p.weight * p.b.radius;
     }
-    if (!(least_ > 0.0)) return false;
-    if (active_.count == 1) {
-      mean_ = at_[0].points;
-      difference_ = at_[0].difference;
-      if (is_close()) return true;
-    }
-    set_tangents(a, b);
-    hessian_ = {least_, 0.0, least_};
-    for (std::size_t i = 0; i < active_.count; ++i) {
-      const PiecePair& pieces = active_.pieces[i];
-      at_[i].slope = {at_[i].difference.dot(tangents_.x), at_[i].difference.dot(tangents_.y)};
-      hessian_.add(weights_[i], radii_of_curvature(a, pieces.a, tangents_));
-      hessian_.add(weights_[i], radii_of_curvature(b, pieces.b, tangents_in_b_));
-    }
+    hessian_ = {least_, 0.0, 0.0, least_, 0.0, least_};
+    hessian_.add(radii_a, a.turn);
+    hessian_.add(radii_b, b.turn);
+  }
+
+  [[nodiscard]] bool find_step() noexcept {
+    if (active_.count > 1) return meet();
+    const Vec3& w = pairs_[0].difference;
+    step_ = hessian_.solve(w - least_ * n_);
     return true;
   }
 
-  void step_of_one() noexcept {
-    const double determinant = hessian_.xx * hessian_.yy - hessian_.xy * hessian_.xy;
-    const Vec2& slope = at_[0].slope;
-    step_ = Vec2(hessian_.yy * slope.x() - hessian_.xy * slope.y(),
-                 hessian_.xx * slope.y() - hessian_.xy * slope.x()) /
-            determinant;
-  }
-
-  // The direction in which all functions are equal, and their weights there. False: one of them has
-  // no weight, which means that fewer count.
-  bool solve() noexcept {
+  // To the direction in which all functions are equal, and their weights there. False: one of them
+  // has no weight, which means that fewer count.
+  [[nodiscard]] bool meet() noexcept {
+    const bool x = std::abs(n_.x()) < 0.6;
+    const Vec3 along = x ? Vec3(0.0, n_.z(), -n_.y()) : Vec3(-n_.z(), 0.0, n_.x());
+    const Vec3 u = along / along.norm(), v = n_.cross(u);
+    const Vec3 of_u = hessian_ * u, of_v = hessian_ * v;
     std::array<PlaneFunction, 3> functions{};
     for (std::size_t i = 0; i < active_.count; ++i) {
-      functions[i] = {at_[i].apart - least_, at_[i].slope};
+      const Vec3& w = pairs_[i].difference;
+      functions[i] = {n_.dot(w) - least_, Vec2(u.dot(w), v.dot(w))};
     }
-    const MeetingPoint met = meeting_point(functions, active_.count, hessian_);
-    step_ = met.step;
-    weights_ = met.weights;
-    mean_ = {};
+    const MeetingPoint met =
+        meeting_point(functions, active_.count, {u.dot(of_u), u.dot(of_v), v.dot(of_v)});
+    step_ = met.step.x() * u + met.step.y() * v;
     for (std::size_t i = 0; i < active_.count; ++i) {
-      if (!(weights_[i] >= 0.0)) return false;
-      mean_.a += weights_[i] * at_[i].points.a;
-      mean_.own_b += weights_[i] * at_[i].points.own_b;
+      pairs_[i].weight = met.weights[i];
+      if (!(met.weights[i] >= 0.0)) return false;
     }
-    mean_.b = pair_.point_to_a(mean_.own_b);
-    difference_ = mean_.difference();
     return true;
   }
 
-  // Means of support points are points of the bodies: no pulling inside.
-  [[nodiscard]] bool is_close() const noexcept {
-    const double upper = difference_.norm(), along = n_.dot(difference_);
-    if (!(upper - least_ <= tolerance_)) return false;
-    const Vec3 across = difference_ - along * n_;
-    const double limit = std::max(kAlong * upper, 4.0 * tolerance_);
-    return across.squaredNorm() <= limit * limit;
-  }
-
-  // No other piece is nearer along n_.
-  bool certify() noexcept {
-    (void)pair_.support(n_);
-    const double upper = difference_.norm();
-    if (upper < pair_.bounds.upper) {
-      pair_.bounds.upper = upper;
-      pair_.bounds.points = mean_;
+  // Bounds at n_, of all pieces, and in the bodies' own frames. Means of support points are points
+  // of the bodies.
+  void certify() noexcept {
+    const SupportPair best = pair_.support(n_);
+    PointPair mean = best.points;
+    if (active_.count > 1) {
+      mean = {};
+      for (std::size_t i = 0; i < active_.count; ++i) {
+        const PiecePair& pieces = active_.pieces[i];
+        const PointPair points =
+            pieces == best.pieces ? best.points : pair_.support_of(pieces, n_).points;
+        mean.a += pairs_[i].weight * points.a;
+        mean.own_b += pairs_[i].weight * points.own_b;
+      }
+      mean.b = pair_.point_to_a(mean.own_b);
     }
-    return pair_.is_tight();
+    const Vec3 difference = mean.difference();
+    const double upper = difference.norm();
+    const Vec3 across = difference - n_.dot(difference) * n_;
+    const double limit = std::max(4.0 * kAlong * upper, 8.0 * pair_.gap_tolerance());
+    if (!(across.squaredNorm() <= limit * limit)) return;
+    pair_.bounds.upper = upper;
+    pair_.bounds.points = mean;
+    end_.tight = pair_.is_tight();
   }
-
-  struct At {
-    PointPair points;
-    Vec3 difference;
-    double apart;
-    Vec2 slope;
-  };
 
   CurvedPair& pair_;
   const ActivePieces& active_;
   Vec3& n_;
-  double tolerance_;
-  std::array<At, 3> at_;
-  std::array<double, 3> weights_{};
+  PlacedBody a_, b_;
+  std::array<ActivePair, 3> pairs_;
   double least_ = 0.0;  // how far the active pieces are apart along n_, m
-  PointPair mean_;
-  Vec3 difference_;
-  Tangents tangents_, tangents_in_b_;
-  PlaneMatrix hessian_;
-  Vec2 step_;
+  SymmetricMatrix hessian_;
+  Vec3 step_;
   NewtonEnd end_;
 };
 
 }  // namespace
 
 NewtonEnd refine_direction(CurvedPair& pair, const ActivePieces& active, Vec3& n) noexcept {
-  if (active.count == 0) return {};
+  const bool bounded = pair.a.body->bounded() && pair.b.body->bounded();
+  if (active.count == 0 || !bounded) return {};
   return Newton(pair, active, n).run();
 }
 

@@ -1,5 +1,6 @@
 #include "core/curved/start.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -69,20 +70,20 @@ class NearestOfSimplex {
 // Up to four points of B - A.
 class CurvedSimplex {
  public:
-  void add(const PointPair& points) noexcept { points_[size_++] = points; }
+  void add(const SupportPair& found) noexcept { points_[size_++] = found; }
 
   // Keeps what the point closest to the origin needs. True: the simplex holds the origin.
   [[nodiscard]] bool reduce(CurvedPair& pair, Vec3& closest) noexcept {
     std::array<Vec3, 4> differences;
-    for (std::size_t i = 0; i < size_; ++i) differences[i] = points_[i].difference();
+    for (std::size_t i = 0; i < size_; ++i) differences[i] = points_[i].points.difference();
     const Weights weights = NearestOfSimplex(differences, size_).weights();
     PointPair mean;
     std::size_t kept = 0;
     closest = Vec3::Zero();
     for (std::size_t i = 0; i < size_; ++i) {
       if (!(weights[i] > 0.0)) continue;
-      mean.a += weights[i] * points_[i].a;
-      mean.own_b += weights[i] * points_[i].own_b;
+      mean.a += weights[i] * points_[i].points.a;
+      mean.own_b += weights[i] * points_[i].points.own_b;
       closest += weights[i] * differences[i];
       points_[kept++] = points_[i];
     }
@@ -91,8 +92,19 @@ class CurvedSimplex {
     return size_ == 4;
   }
 
+  // Each once; of those that are kept when it does not hold the origin.
+  [[nodiscard]] ActivePieces pieces() const noexcept {
+    ActivePieces found;
+    for (std::size_t i = 0; i < size_ && found.count < found.pieces.size(); ++i) {
+      const auto end = found.pieces.begin() + static_cast<std::ptrdiff_t>(found.count);
+      if (std::find(found.pieces.begin(), end, points_[i].pieces) != end) continue;
+      found.pieces[found.count++] = points_[i].pieces;
+    }
+    return found;
+  }
+
  private:
-  std::array<PointPair, 4> points_{};
+  std::array<SupportPair, 4> points_{};
   std::size_t size_ = 0;
 };
 
@@ -100,20 +112,22 @@ class CurvedSimplex {
 
 CurvedStart start_direction(CurvedPair& pair) noexcept {
   const Vec3 between = pair.point_to_a(Vec3::Zero());
-  CurvedStart start{unit_along(between)};
+  CurvedStart start;
+  start.normal = unit_along(between);
   if (!(start.normal.norm() > 0.5)) start.normal = Vec3::UnitX();
   CurvedSimplex simplex;
   for (int round = 0; round < kRounds; ++round) {
     const SupportPair found = pair.support(start.normal);
-    if (pair.bounds.lower > 0.5 * pair.bounds.upper) break;
-    simplex.add(found.points);
+    simplex.add(found);
     Vec3 closest;
     start.meet = simplex.reduce(pair, closest);
+    if (pair.bounds.lower > 0.5 * pair.bounds.upper) break;
     const Vec3 next = unit_along(closest);
     if (start.meet || !(next.norm() > 0.5)) break;
     start.normal = next;
   }
   start.normal = pair.bounds.normal;
+  start.pieces = simplex.pieces();
   return start;
 }
 

@@ -1,0 +1,68 @@
+// A recorded run of the shipped cell of curved bodies, replayed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "config/cell_file.hpp"
+#include "config/simulation.hpp"
+#include "monitor/recording/recorder.hpp"
+#include "monitor/replay/offline_replay.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+
+Scene round_arm() {
+  return std::get<Scene>(
+      read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells/round_arm.yaml"));
+}
+
+// Records ticks of the cell's own motion, as the daemon does, from `start_s` on. Returns the least
+// distance that was reported.
+double record(const Scene& scene, const std::filesystem::path& file, double start_s, int ticks) {
+  Monitor monitor(scene);
+  Recorder recorder(file, scene, kStart);
+  std::vector<PoseAt> poses;
+  double least = kInfinity;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const std::int64_t now_ns = kStart + tick * kTick;
+    poses_at(scene, start_s + 1e-9 * static_cast<double>(tick * kTick), poses);
+    PoseBatch batch{SourceName("arm"), static_cast<std::uint64_t>(tick) + 1, scene.revision, {}};
+    for (const PoseAt& pose : poses) {
+      batch.samples.push_back(test::sample(pose.object, pose.world_from_object, now_ns));
+      batch.samples.back().twist = pose.twist;
+      batch.samples.back().has_twist = true;
+    }
+    recorder.poses(batch);
+    const Report& report = monitor.tick(batch.samples, now_ns);
+    least = std::min(least, report.minimum.distance);
+    const std::array uses{SourceUse{batch.source, batch.sequence_number}};
+    recorder.report(report, uses);
+  }
+  EXPECT_TRUE(recorder.close()) << recorder.error();
+  return least;
+}
+
+TEST(CurvedReplay, GivesTheRecordedReportsBitForBitAndMeetsExpectations) {
+  const test::ScratchFolder folder;
+  const Scene scene = round_arm();
+  // Around where the tool comes nearest to the table.
+  const double least = record(scene, folder / "run.mcap", 0.05, 400);
+  EXPECT_GT(least, 0.02);
+  const OfflineReplay same =
+      replay_offline(scene, folder / "run.mcap",
+                     {.compare = Comparison::kBits, .expect_min_distance = 0.99 * least});
+  EXPECT_TRUE(same.ok()) << same.text();
+  const OfflineReplay nearer =
+      replay_offline(scene, folder / "run.mcap", {.expect_min_distance = 1.01 * least});
+  EXPECT_FALSE(nearer.ok());
+}
+
+}  // namespace
+}  // namespace clearance
