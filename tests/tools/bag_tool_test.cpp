@@ -106,6 +106,8 @@ TEST_F(BagTool, TellsWhatIsMissing) {
   EXPECT_EQ(1, replay("nowhere.db3", {}));
   EXPECT_THAT(output, HasSubstr("nowhere.db3: No such file"));
   EXPECT_EQ(2, run(kReplay, {path("bag"), "--tick-hz", "100"}));
+  EXPECT_EQ(1, run(kReplay, {path("bag")}));
+  EXPECT_THAT(output, HasSubstr("--offline replays it as it is"));
 }
 
 TEST_F(BagTool, ConvertedBagReplaysToTheSameBytes) {

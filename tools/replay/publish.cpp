@@ -10,6 +10,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -267,6 +268,13 @@ int Publishing::finish(const RecordingReader& reader) {
 }  // namespace
 
 int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
+  if (is_input_log(arguments.recording())) {
+    print(stderr,
+          "clearance-replay: {} holds no topics of Clearance; --offline replays it as it is, and "
+          "clearance-record --from-bag (or --from-csv) makes a recording of it\n",
+          arguments.recording());
+    return kFailed;
+  }
   const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     print(stderr, "clearance-replay: {}\n", found.error);
