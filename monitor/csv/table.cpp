@@ -17,6 +17,8 @@
 namespace clearance {
 namespace {
 
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 // Quotes are stripped, not parsed: no column of ours holds a comma.
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\n\"";
@@ -41,6 +43,27 @@ std::string joined(std::span<const std::string_view> names) {
 }
 
 }  // namespace
+
+// A line of usual length: of another file, more is not needed to see that it is no table.
+std::vector<std::string> csv_column_names(const std::filesystem::path& file) {
+  constexpr std::size_t kLongestLine = 65536;
+  std::vector<std::string> names;
+  const gzFile opened = gzopen(file.c_str(), "rb");
+  if (opened == nullptr) return names;
+  std::string line(kLongestLine, '\0');
+  const bool read = gzgets(opened, line.data(), static_cast<int>(line.size())) != nullptr;
+  gzclose(opened);
+  if (!read) return names;
+  line.resize(line.find('\0'));
+  if (line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+  std::string_view rest = line;
+  for (std::size_t comma = 0; comma != std::string_view::npos;) {
+    comma = rest.find(',');
+    names.emplace_back(trimmed(rest.substr(0, comma)));
+    if (comma != std::string_view::npos) rest.remove_prefix(comma + 1);
+  }
+  return names;
+}
 
 // unique_ptr needs a deleter; void keeps zlib.h out of the header.
 void CsvTable::CloseGzip::operator()(void* file) const { gzclose(static_cast<gzFile>(file)); }
@@ -112,7 +135,7 @@ bool CsvTable::read_header() {
     line_ = 1;
     return fail(fmt::format("is empty{}", expected));
   }
-  if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // byte order mark
+  if (text_.starts_with(kByteOrderMark)) text_.erase(0, kByteOrderMark.size());
   split(text_);
   width_ = fields_.size();
   for (std::size_t column = 0; column < columns_.size(); ++column) {

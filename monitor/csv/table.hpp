@@ -14,6 +14,9 @@ namespace clearance {
 
 // A subset of RFC 4180: fields are separated by commas and may be quoted, but contain neither
 // commas nor line breaks.
+// The names in the first line; empty: the file cannot be read, or has none.
+[[nodiscard]] std::vector<std::string> csv_column_names(const std::filesystem::path& file);
+
 class CsvTable {
  public:
   // `columns` must all be there, each once, in any order; others are ignored. A column is known by

@@ -160,9 +160,8 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
 }  // namespace
 
 int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
-  Participant participant(scene == nullptr
-                              ? arguments.dds.resolve(0, "")
-                              : arguments.dds.resolve(scene->domain, scene->partition));
+  Participant participant(scene == nullptr ? arguments.dds.resolve()
+                                           : arguments.dds.resolve(*scene));
   const Topics topics = scene == nullptr ? Topics{} : scene->topics;
   RecordingWriter writer(arguments.out, topics);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.

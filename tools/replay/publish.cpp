@@ -287,11 +287,11 @@ int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;
   }
-  DdsOptions dds = arguments.dds.resolve(0, "");
+  DdsOptions dds = arguments.dds.resolve();
   if (!arguments.cell.empty()) {
     const auto scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
-    dds = arguments.dds.resolve(scene->domain, scene->partition);
+    dds = arguments.dds.resolve(*scene);
   }
   use_precise_timers();
   return Publishing(arguments, dds, found.first_ns, stop).run();
