@@ -8,15 +8,14 @@
 #include <optional>
 #include <set>
 #include <utility>
-#include <variant>
 
+#include "config/chain_rounding.hpp"
+#include "config/joint_reader.hpp"
 #include "config/link_parts.hpp"
-#include "config/mesh_file.hpp"
+#include "config/robot_description.hpp"
 #include "config/robot_exceptions.hpp"
 #include "config/robot_files.hpp"
-#include "config/robot_model.hpp"
 #include "config/spelling.hpp"
-#include "config/urdf.hpp"
 
 namespace clearance {
 namespace {
@@ -27,17 +26,11 @@ struct RobotKeys {
   const YamlNode* urdf_node = nullptr;
   const YamlNode* srdf_node = nullptr;
   const YamlNode* base_node = nullptr;
-  std::string name, prefix;
+  const YamlNode* joints_node = nullptr;
+  std::string name, prefix, joint_states;
+  JointStamps stamps = JointStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
-};
-
-// A URDF, its SRDF if there is one, and the tree that they describe.
-struct Description {
-  std::filesystem::path urdf;
-  UrdfRobot robot;
-  std::optional<Srdf> srdf;
-  RobotModel model;
 };
 
 class RobotReader {
@@ -59,14 +52,14 @@ class RobotReader {
  private:
   RobotKeys read_keys(const YamlNode& node);
   void read_packages(const YamlNode& node, RobotKeys& keys);
-  std::optional<std::filesystem::path> find(const YamlNode& node, const RobotKeys& keys);
-  std::optional<Description> describe_robot(const RobotKeys& keys);
+  void read_ros(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void read_base(const YamlNode& node, const RobotList& list, RobotBase& base);
   void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
-  void add_links(const RobotKeys& keys, const Description& description, Robot& robot);
-  void allow(const RobotKeys& keys, const Description& description, Robot& robot,
+  void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
+  void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
              PairExceptions& may_touch);
+  void account_for_rounding(const RobotList& list);
 
   const std::filesystem::path& file_;
   const ObjectDefaults& defaults_;
@@ -94,6 +87,28 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   }
 }
 
+// Where on ROS 2 its joint states are, and what their stamps are worth.
+void RobotReader::read_ros(MapReader& map, RobotKeys& keys) {
+  if (const YamlNode* node = map.optional("joint_states")) {
+    const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
+    if (topic && !topic->starts_with('/')) {
+      diagnostics_.add(*node, fmt::format("found '{}'; expected a topic of ROS 2 with its "
+                                          "namespace: /joint_states, /left/joint_states",
+                                          *topic));
+    }
+    keys.joint_states = topic.value_or("");
+  }
+  if (const YamlNode* node = map.optional("stamps")) {
+    const auto text = read_text(*node, "message or sent", diagnostics_);
+    if (text && *text != "message" && *text != "sent") {
+      diagnostics_.add(*node, fmt::format("found '{}'; expected message (the stamp in it) or sent "
+                                          "(when it was sent)",
+                                          *text));
+    }
+    if (text == "sent") keys.stamps = JointStamps::kSent;
+  }
+}
+
 RobotKeys RobotReader::read_keys(const YamlNode& node) {
   RobotKeys keys;
   keys.limits = defaults_;
@@ -102,6 +117,8 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   keys.urdf_node = map.required("urdf");
   keys.srdf_node = map.optional("srdf");
   keys.base_node = map.optional("base");
+  keys.joints_node = map.optional("joints");
+  read_ros(map, keys);
   if (keys.name_node != nullptr) {
     keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
   }
@@ -130,65 +147,6 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
                                  keys.name, same->second));
   }
   return keys;
-}
-
-// The file that a key names, which has to be there.
-std::optional<std::filesystem::path> RobotReader::find(const YamlNode& node,
-                                                       const RobotKeys& keys) {
-  const auto name = read_text(node, "a file", diagnostics_);
-  if (!name) return std::nullopt;
-  const auto path = RobotFiles{file_, keys.packages}.find(*name);
-  if (!path) {
-    const std::string package = package_of(*name);
-    diagnostics_.add(node,
-                     fmt::format("found '{}', and no directory for the package '{}'; expected "
-                                 "packages: {{{}: DIRECTORY}}",
-                                 *name, package, package));
-    return std::nullopt;
-  }
-  const auto bytes = read_bytes(path->string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-    diagnostics_.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
-                                       "relative to the cell file",
-                                       fault->reason));
-    return std::nullopt;
-  }
-  revision_.add(std::get<std::string>(bytes));
-  return path;
-}
-
-// Both files are read even if the first is wrong, so that one run reports what is wrong with
-// either.
-std::optional<Description> RobotReader::describe_robot(const RobotKeys& keys) {
-  if (keys.urdf_node == nullptr) return std::nullopt;
-  Description description;
-  const auto urdf = find(*keys.urdf_node, keys);
-  const auto srdf = keys.srdf_node == nullptr ? std::nullopt : find(*keys.srdf_node, keys);
-  const std::size_t before = diagnostics_.count();
-  if (srdf) {
-    auto read = read_srdf(*srdf);
-    if (const auto* faults = std::get_if<UrdfFaults>(&read))
-      refuse_robot(*keys.srdf_node, *faults, diagnostics_);
-    if (auto* good = std::get_if<Srdf>(&read)) description.srdf = std::move(*good);
-  }
-  if (!urdf || (keys.srdf_node != nullptr && !srdf)) return std::nullopt;
-  description.urdf = *urdf;
-  auto read = read_urdf(*urdf);
-  if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
-    refuse_robot(*keys.urdf_node, *faults, diagnostics_);
-    return std::nullopt;
-  }
-  description.robot = std::get<UrdfRobot>(std::move(read));
-  if (description.srdf) {
-    refuse_robot(*keys.srdf_node, faults_of(*description.srdf, *srdf, description.robot, *urdf),
-                 diagnostics_);
-  }
-  auto model = robot_model(description.robot, *urdf, keys.prefix);
-  if (const auto* faults = std::get_if<UrdfFaults>(&model))
-    refuse_robot(*keys.urdf_node, *faults, diagnostics_);
-  if (diagnostics_.count() != before) return std::nullopt;
-  description.model = std::get<RobotModel>(std::move(model));
-  return description;
 }
 
 // Poses and joint states of two links or joints of one name could not be told apart.
@@ -258,7 +216,8 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotBa
 }
 
 // Joints come in an order in which the link before is known to move or not.
-void RobotReader::add_links(const RobotKeys& keys, const Description& description, Robot& robot) {
+void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
+                            Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
   for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
   LinkParts parts({description.urdf, keys.packages}, *keys.urdf_node, shapes_, diagnostics_);
@@ -298,7 +257,7 @@ void RobotReader::add_links(const RobotKeys& keys, const Description& descriptio
 }
 
 // What may touch is said of links, without the prefix.
-void RobotReader::allow(const RobotKeys& keys, const Description& description, Robot& robot,
+void RobotReader::allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
                         PairExceptions& may_touch) {
   LinkNames shaped, fixed;
   std::map<std::string, std::uint32_t> objects;
@@ -318,26 +277,48 @@ void RobotReader::allow(const RobotKeys& keys, const Description& description, R
   }
 }
 
+// Of the robot that was read last. What nothing moves is where the cell says.
+void RobotReader::account_for_rounding(const RobotList& list) {
+  const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
+  const std::vector<RobotLink>& links = list.robots.back().links;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].object == RobotLink::kNoObject) continue;
+    Object& object = objects_.objects[links[i].object];
+    if (!object.fixed) account_for(errors[i], object);
+  }
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   const RobotKeys keys = read_keys(node);
-  auto description = describe_robot(keys);
+  auto description = read_description({.urdf = keys.urdf_node,
+                                       .srdf = keys.srdf_node,
+                                       .files = {file_, keys.packages},
+                                       .prefix = keys.prefix},
+                                      diagnostics_, revision_);
   Robot robot;
   if (description) robot = std::move(description->model.robot);
   robot.name = keys.name;
+  robot.prefix = keys.prefix;
+  robot.joint_states = keys.joint_states;
+  robot.stamps = keys.stamps;
   if (keys.base_node != nullptr) read_base(*keys.base_node, list, robot.base);
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
   const auto first = static_cast<std::uint32_t>(list.variables.size());
-  for (JointVariable& variable : description->model.variables) {
+  std::vector<JointVariable>& variables = description->model.variables;
+  for (JointVariable& variable : variables) {
     variable.age_limit_ns = keys.limits.age_limit_ns;
     variable.source = keys.limits.source;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
-    list.variables.push_back(std::move(variable));
   }
+  if (keys.joints_node != nullptr)
+    read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
+  list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   add_links(keys, *description, robot);
   allow(keys, *description, robot, list.may_touch);
   list.robots.push_back(std::move(robot));
+  account_for_rounding(list);
   return true;
 }
 

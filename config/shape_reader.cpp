@@ -255,10 +255,10 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
     revision_.add(std::get<std::string>(bytes));
     auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
     if (const auto* fault = std::get_if<MeshFault>(&result)) {
-      quantities_.diagnostics().add(file_node,
-                                    fmt::format("found a mesh file that cannot be used: '{}': {}; "
-                                                "expected a mesh with faces, in one file",
-                                                path.string(), fault->reason));
+      quantities_.diagnostics().add(
+          file_node, fmt::format("found a mesh file that cannot be used: '{}': {}; "
+                                 "expected an undamaged mesh with faces, in one file",
+                                 path.string(), fault->reason));
       return nullptr;
     }
     vertices = std::get<std::vector<Vec3>>(std::move(result));

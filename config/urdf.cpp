@@ -80,17 +80,29 @@ class XmlReader {
     return found == nullptr ? "" : attribute(*found, name);
   }
 
-  // One finite number. URDF is in SI units.
+  // A length or a radius. URDF is in SI units.
+  double size(const XMLElement& element, const char* name) {
+    double value = 0.0;
+    numbers(element, name, std::span(&value, 1), Sign::kPositive);
+    return value;
+  }
+  Vec3 sizes(const XMLElement& element, const char* name) {
+    std::array<double, 3> values{};
+    numbers(element, name, values, Sign::kPositive);
+    return {values[0], values[1], values[2]};
+  }
+
+  // A finite number.
   double number(const XMLElement& element, const char* name) {
     double value = 0.0;
-    numbers(element, name, std::span(&value, 1));
+    numbers(element, name, std::span(&value, 1), Sign::kAny);
     return value;
   }
 
   // Three finite numbers.
   Vec3 vector(const XMLElement& element, const char* name) {
     std::array<double, 3> values{};
-    numbers(element, name, values);
+    numbers(element, name, values, Sign::kAny);
     return {values[0], values[1], values[2]};
   }
 
@@ -105,8 +117,10 @@ class XmlReader {
   }
 
  private:
+  enum class Sign { kAny, kPositive };
+
   // Exactly values.size() finite numbers, separated by blanks.
-  void numbers(const XMLElement& element, const char* name, std::span<double> values) {
+  void numbers(const XMLElement& element, const char* name, std::span<double> values, Sign sign) {
     if (element.Attribute(name) == nullptr) {
       static_cast<void>(attribute(element, name));
       return;
@@ -122,13 +136,15 @@ class XmlReader {
       skip_blanks();
       if (at != end && *at == '+') ++at;
       const auto result = std::from_chars(at, end, value);
-      good = good && result.ec == std::errc() && std::isfinite(value);
+      good = good && result.ec == std::errc() && std::isfinite(value) &&
+             (sign == Sign::kAny || value > 0.0);
       at = result.ptr;
     }
     skip_blanks();
     if (!good || at != end) {
-      report(element, fmt::format("found {}=\"{}\"; expected {}{}", name, text, values.size(),
-                                  values.size() == 1 ? " number" : " numbers"));
+      report(element,
+             fmt::format("found {}=\"{}\"; expected {} number{}{}", name, text, values.size(),
+                         values.size() == 1 ? "" : "s", sign == Sign::kPositive ? " above 0" : ""));
     }
   }
 
@@ -154,12 +170,12 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
     if (mesh->Attribute("scale") != nullptr) shape.scale = xml.vector(*mesh, "scale");
     collision.shape = shape;
   } else if (const XMLElement* box = geometry->FirstChildElement("box")) {
-    collision.shape = UrdfBox{xml.vector(*box, "size")};
+    collision.shape = UrdfBox{xml.sizes(*box, "size")};
   } else if (const XMLElement* cylinder = geometry->FirstChildElement("cylinder")) {
-    const double radius = xml.number(*cylinder, "radius");
-    collision.shape = UrdfCylinder{radius, xml.number(*cylinder, "length")};
+    const double radius = xml.size(*cylinder, "radius");
+    collision.shape = UrdfCylinder{radius, xml.size(*cylinder, "length")};
   } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
-    collision.shape = UrdfSphere{xml.number(*sphere, "radius")};
+    collision.shape = UrdfSphere{xml.size(*sphere, "radius")};
   } else {
     xml.report(*geometry,
                "found a geometry of an unknown kind; expected mesh, box, cylinder or sphere");

@@ -42,8 +42,9 @@ enum class Reject : std::uint8_t {
   kOtherSource,    // another source sends this object's poses
   kTooFast,        // farther from the pose in use, or with a faster twist, than the object moves
   kFrozen,         // the same pose again and again, with a twist that says that it moves
+  kOtherWay,       // elsewhere than the twists lead
 };
-inline constexpr std::size_t kRejects = 9;
+inline constexpr std::size_t kRejects = 10;
 [[nodiscard]] const char* name(Reject cause) noexcept;
 
 // Who sent a batch. Fixed size: copied in the tick thread.

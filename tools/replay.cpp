@@ -186,8 +186,10 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_option("--only", arguments.only, "Publish this topic only; repeatable")
       ->excludes(offline)
       ->group(kDds);
-  app.add_flag("--restamp", arguments.restamp,
-               "Move the stamps of poses to now, so that a running daemon takes them as fresh")
+  app.add_flag(
+         "--restamp", arguments.restamp,
+         "Move the stamps of poses to now, so that a running daemon takes them as fresh; twists "
+         "are scaled with --rate. Objects that are then faster than the cell says are refused")
       ->excludes(offline)
       ->group(kDds);
   arguments.dds.add_to(app);

@@ -41,17 +41,16 @@ std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint
                                         zone.clearance, zone.swept_clearance);
   switch (zone.cause) {
     case ZoneCause::kUnknown:
-      return fmt::format("entered at cycle {}: {} unknown, no pose of {} has come", cycle, pair,
-                         object);
+      return fmt::format("entered at cycle {} because no pose of {} has come: {} unknown", cycle,
+                         object, pair);
     case ZoneCause::kLate:
       return fmt::format(
           "entered at cycle {} because poses of {} are late, not by distance: {}, at least {}",
           cycle, object, pair, clear);
     case ZoneCause::kContradicted:
       return fmt::format(
-          "entered at cycle {} because poses of {} contradict each other or the cell, not by "
-          "distance: {}, at least {}",
-          cycle, object, pair, clear);
+          "entered at cycle {} because poses of {} contradict each other or the cell: {} unknown",
+          cycle, object, pair);
     case ZoneCause::kDiscontinuous:
       return fmt::format(
           "entered at cycle {}: {}, unknown since the last tick: the pose of {} is discontinuous",
@@ -186,7 +185,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
-  health_log_.update(*sample);
+  health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
 void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {

@@ -10,9 +10,9 @@ namespace clearance {
 // Times are the tick's.
 class Contradiction {
  public:
-  // A sample was refused for what it says.
-  void meet(std::int64_t now_ns, std::int64_t age_limit_ns) noexcept {
-    until_ns_ = now_ns + age_limit_ns;
+  // A sample was refused for what it says: what follows has to agree for `hold_ns`.
+  void meet(std::int64_t now_ns, std::int64_t hold_ns) noexcept {
+    until_ns_ = now_ns + hold_ns;
     agrees_again_ = false;
   }
   // One was taken.

@@ -8,19 +8,18 @@ namespace clearance {
 namespace {
 
 // Why not, if the sample is not taken.
-std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+std::optional<Reject> take_in_time(const PoseSample& sample, const Scene& scene,
+                                   Inputs& inputs) noexcept {
   const Object& object = scene.objects[sample.object];
   TrackedObject& state = inputs.objects[sample.object];
   const std::int64_t stamp_ns = inputs.sources[sample.source].in_tick_time(
       sample.stamp_ns, inputs.time,
       {.future_ns = scene.future_limit_ns, .age_ns = object.age_limit_ns});
-  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
-  const auto cause = refusal(object, sample, stamp_ns, limits, state);
-  if (!cause) accept(object, sample, stamp_ns, inputs.time.now_ns, state);
-  return cause;
+  return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns}, state);
 }
 
-std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+std::optional<Reject> take_in_time(const JointSample& sample, const Scene& scene,
+                                   Inputs& inputs) noexcept {
   const JointVariable& variable = scene.variables[sample.variable];
   TrackedVariable& state = inputs.robots.variables()[sample.variable];
   const std::int64_t now_ns = inputs.time.now_ns;
@@ -37,7 +36,7 @@ std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs
 void ingest(std::span<const JointSample> joints, const Scene& scene, Inputs& inputs) noexcept {
   for (const JointSample& sample : joints) {
     const bool known = sample.variable < scene.variables.size() && sample.source < kMaxSources;
-    const auto cause = known ? take(sample, scene, inputs) : Reject::kUnknownObject;
+    const auto cause = known ? take_in_time(sample, scene, inputs) : Reject::kUnknownObject;
     if (!cause) continue;
     ++inputs.rejected[static_cast<std::size_t>(*cause)];
     if (known) {
@@ -86,7 +85,7 @@ void ingest(std::span<const PoseSample> samples, std::span<const JointSample> jo
       refuse(sample.object, Reject::kUnknownObject, inputs);
     } else if (inputs.robots.follows_joints(sample.object)) {
       refuse(sample.object, Reject::kOtherSource, inputs);
-    } else if (const auto cause = take(sample, scene, inputs)) {
+    } else if (const auto cause = take_in_time(sample, scene, inputs)) {
       refuse(sample.object, *cause, inputs);
     }
   }

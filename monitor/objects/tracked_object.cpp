@@ -73,20 +73,47 @@ bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
   return true;
 }
 
-// What is against a well-formed sample of the object's source, given those before it.
+// What is against a well-formed sample of the object's source, given those before it. `pose` is the
+// sample's, as queries take it.
 std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
-                                    std::int64_t stamp_ns, const SampleLimits& limits,
-                                    TrackedObject& state) noexcept {
+                                    const Pose& pose, std::int64_t stamp_ns,
+                                    const SampleLimits& limits, TrackedObject& state) noexcept {
   if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
   if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
-  const Pose pose = as_queries_take_it(sample.world_from_object);
   const bool same = state.seen && same_pose(pose, state.pose);
-  state.repetition.add(same, stamp_ns, sample, object, state.landmarks);
-  if (same && state.repetition.frozen(pose, object, state.landmarks)) return Reject::kFrozen;
+  state.repetition.add(same, stamp_ns);
+  if (same && state.repetition.frozen(object)) return Reject::kFrozen;
   if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
+  if (!state.reckoning.follows(sample, pose, stamp_ns, same, object, state.landmarks)) {
+    return same ? Reject::kFrozen : Reject::kOtherWay;
+  }
   return std::nullopt;
+}
+
+void use(const Object& object, const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+         std::int64_t now_ns, TrackedObject& state) noexcept {
+  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
+  if (sample.has_twist) {
+    state.twist = sample.twist;
+    state.twist_known = true;
+  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
+    // of that age does.
+    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
+    const double seconds = static_cast<double>(apart_ns) * 1e-9;
+    state.twist =
+        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
+  }
+  state.pose = pose;
+  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
+  state.anchor.follow(state.pose, stamp_ns, object);
+  state.other_place.clear();
+  state.contradiction.agree();
+  state.stamp_ns = stamp_ns;
+  state.owner.take(sample.source, now_ns);
+  state.seen = true;
 }
 
 }  // namespace
@@ -103,51 +130,32 @@ TrackedObject initial_state(const Object& object) {
   return state;
 }
 
-std::optional<Reject> refusal(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-                              const SampleLimits& limits, TrackedObject& state) noexcept {
+std::optional<Reject> take(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+                           const SampleLimits& limits, TrackedObject& state) noexcept {
   if (const auto cause = malformed(sample)) return cause;
   if (state.owner.refuses(sample.source, limits.now_ns, object.age_limit_ns)) {
     return Reject::kOtherSource;
   }
-  const auto cause = contradiction(object, sample, stamp_ns, limits, state);
+  const Pose pose = as_queries_take_it(sample.world_from_object);
+  const auto cause = contradiction(object, sample, pose, stamp_ns, limits, state);
+  if (!cause) use(object, sample, pose, stamp_ns, limits.now_ns, state);
   // Of poses that come in another order than they were made one is as good as the other.
   const bool reordered =
       cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= object.age_limit_ns;
   if (cause && !reordered) {
-    state.contradiction.meet(limits.now_ns, object.age_limit_ns);
+    const std::int64_t age_limits =
+        cause == Reject::kOtherWay ? Reckoning::kAgreesAfterAgeLimits : 1;
+    state.contradiction.meet(limits.now_ns, age_limits * object.age_limit_ns);
   }
   return cause;
 }
 
-void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-            std::int64_t now_ns, TrackedObject& state) noexcept {
-  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
-  if (sample.has_twist) {
-    state.twist = sample.twist;
-    state.twist_known = true;
-  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
-    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
-    // of that age does.
-    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
-    const double seconds = static_cast<double>(apart_ns) * 1e-9;
-    state.twist =
-        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
-  }
-  state.pose = as_queries_take_it(sample.world_from_object);
-  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
-  state.anchor.follow(state.pose, stamp_ns, object);
-  state.other_place.clear();
-  state.contradiction.agree();
-  state.stamp_ns = stamp_ns;
-  state.owner.take(sample.source, now_ns);
-  state.seen = true;
-}
-
-void follow(const LinkState& link, TrackedObject& state) noexcept {
+void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
+  const bool known = link.known && link.error(state.reach) <= object.pose_error;
   state.follows_joints = true;
-  state.joints_late = !link.known || link.late;
-  state.unseen_by_joints = link.known ? link.may_have_moved(state.reach) : kInfinity;
-  if (!link.known) return;
+  state.joints_late = !known || link.late;
+  state.unseen_by_joints = known ? link.may_have_moved(state.reach) : kInfinity;
+  if (!known) return;
   state.joints_contradicted = link.contradicted;
   state.pose = as_queries_take_it(link.pose);
   state.stamp_ns = link.stamp_ns;

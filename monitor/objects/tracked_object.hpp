@@ -65,6 +65,7 @@ struct TrackedObject {
   Landmarks landmarks;
   Anchor anchor;
   Repetition repetition;
+  Reckoning reckoning;
   OtherPlace other_place;
 
   Pose pose_last_tick;
@@ -94,18 +95,16 @@ struct TrackedObject {
 // Before any input: a fixed object stands where the scene says.
 [[nodiscard]] TrackedObject initial_state(const Object& object);
 
-// Why this sample must not be used, if so; notes what that says of the object. `object` is a moving
-// one and the one that the sample names; `stamp_ns` is the sample's, in the tick's time.
-[[nodiscard]] std::optional<Reject> refusal(const Object& object, const PoseSample& sample,
-                                            std::int64_t stamp_ns, const SampleLimits& limits,
-                                            TrackedObject& state) noexcept;
+// Takes a sample into use; else says why it must not be used, and notes what that says of the
+// object. `object` is a moving one and the one that the sample names; `stamp_ns` is the sample's,
+// in the tick's time.
+[[nodiscard]] std::optional<Reject> take(const Object& object, const PoseSample& sample,
+                                         std::int64_t stamp_ns, const SampleLimits& limits,
+                                         TrackedObject& state) noexcept;
 
-// Takes an unrefused sample into use.
-void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-            std::int64_t now_ns, TrackedObject& state) noexcept;
-
-// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere.
-void follow(const LinkState& link, TrackedObject& state) noexcept;
+// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere;
+// so may one whose pose rounding puts farther off than Object::pose_error says.
+void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;

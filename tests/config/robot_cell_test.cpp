@@ -152,9 +152,11 @@ TEST_F(RobotCellFile, FaultsNameFileAndLine) {
     return fault();
   };
   EXPECT_THAT(with("radius=\"0.1\"", "radius=\"wide\""),
-              HasSubstr("little.urdf:7: found radius=\"wide\"; expected 1 number"));
+              HasSubstr("little.urdf:7: found radius=\"wide\"; expected 1 number above 0"));
+  EXPECT_THAT(with("radius=\"0.1\"", "radius=\"-1\""),
+              HasSubstr("little.urdf:7: found radius=\"-1\"; expected 1 number above 0"));
   EXPECT_THAT(with("0.4 0.4 0.1", "0.4 0.4"),
-              HasSubstr("little.urdf:3: found size=\"0.4 0.4\"; expected 3 numbers"));
+              HasSubstr("little.urdf:3: found size=\"0.4 0.4\"; expected 3 numbers above 0"));
   EXPECT_THAT(with("<sphere radius=\"0.12\"/>", "<cone/>"),
               HasSubstr("little.urdf:9: found a geometry of an unknown kind"));
   EXPECT_THAT(with("name=\"frame\"", "name=\"foot\""),
@@ -182,8 +184,8 @@ TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
         "</robot>\n");
   const std::string urdf = options_.urdf.string(), srdf = options_.srdf.string();
   EXPECT_EQ(
-      urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers\n" +  //
-          urdf + ":7: found radius=\"wide\"; expected 1 number\n" + urdf +
+      urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers above 0\n" +  //
+          urdf + ":7: found radius=\"wide\"; expected 1 number above 0\n" + urdf +
           ":9: found a geometry of an unknown kind; expected mesh, box, cylinder or sphere\n" +
           urdf + ":15: found a joint of the link 'farm', which does not exist\n" + srdf +
           ":2: found <enable_collisions>; expected <disable_collisions> only\n" + srdf +

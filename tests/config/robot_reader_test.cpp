@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 // Every type of joint, written leaf first: the order of a file means nothing.
-const std::string kUrdf = R"(<robot name="walker">
+const std::string kWalkerUrdf = R"(<robot name="walker">
   <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
   <link name="mast"><collision><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></collision></link>
   <link name="arm"><collision><geometry><box size="1 0.1 0.1"/></geometry></collision></link>
@@ -35,7 +35,7 @@ const std::string kUrdf = R"(<robot name="walker">
 </robot>
 )";
 
-const std::string kSrdf = R"(<robot name="walker">
+const std::string kWalkerSrdf = R"(<robot name="walker">
   <disable_collisions link1="arm" link2="mast" reason="Adjacent"/>
   <disable_collisions link1="foot" link2="mast" reason="Adjacent"/>
 </robot>
@@ -45,8 +45,8 @@ class Robots : public testing::Test {
  protected:
   Robots() {
     std::filesystem::create_directories(folder_ / "walker_description");
-    test::write_text(folder_ / "walker_description/walker.urdf", kUrdf);
-    test::write_text(folder_ / "walker_description/walker.srdf", kSrdf);
+    test::write_text(folder_ / "walker_description/walker.urdf", kWalkerUrdf);
+    test::write_text(folder_ / "walker_description/walker.srdf", kWalkerSrdf);
     test::write_text(
         folder_ / "walker_description/tip.obj",
         "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
@@ -211,7 +211,7 @@ TEST_F(Robots, MistakesOfTheCellAreNamedAtTheirPlaces) {
 
 TEST_F(Robots, MistakesOfTheUrdfAreNamedByItsLines) {
   const auto faults = [&](const std::string& from, const std::string& to) {
-    std::string text = kUrdf;
+    std::string text = kWalkerUrdf;
     text.replace(text.find(from), from.size(), to);
     test::write_text(folder_ / "walker_description/walker.urdf", text);
     return errors(kWalker, kSelf);
@@ -235,7 +235,7 @@ TEST_F(Robots, MistakesOfTheUrdfAreNamedByItsLines) {
 TEST_F(Robots, AnotherDescriptionIsAnotherRevision) {
   const std::uint64_t before = scene(kWalker, kSelf).revision;
   EXPECT_EQ(scene(kWalker, kSelf).revision, before);
-  std::string text = kUrdf;
+  std::string text = kWalkerUrdf;
   text.replace(text.find("xyz=\"1 0 0\""), 11, "xyz=\"2 0 0\"");
   test::write_text(folder_ / "walker_description/walker.urdf", text);
   EXPECT_NE(scene(kWalker, kSelf).revision, before);

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr const char* kCell = R"(name: bench
 units: {length: m, angle: deg}
-defaults: {age_limit_ms: 50, max_speed: 2}
+defaults: {age_limit_ms: 50, max_speed: 2, may_jump: true}
 objects:
   - {name: hand, groups: [robot], sphere: {radius: 0.05}}
   - {name: tool, groups: [robot], box: {size: [0.1, 0.1, 0.1]}}

@@ -54,10 +54,22 @@ class Writers {
   std::map<std::string, dds_entity_t> writers_;
 };
 
-// Decodes and writes one message, under its original source stamp.
+// Log times to times at which a replay of some rate publishes, CLOCK_REALTIME.
+struct Schedule {
+  double rate = 1.0;
+  std::int64_t began_log_ns = 0, began_ns = 0;
+
+  [[nodiscard]] std::int64_t of(std::int64_t log_ns) const noexcept {
+    return began_ns + std::llround(static_cast<double>(log_ns - began_log_ns) / rate);
+  }
+};
+
+// Decodes and writes one message, under its original source stamp, or as it would be at the rate of
+// the schedule.
 class Sender {
  public:
   explicit Sender(bool restamp) : restamp_(restamp) {}
+  void begin(const Schedule& schedule) { schedule_ = schedule; }
 
   // False: the bytes are not what the channel says.
   bool send(const RecordedMessage& message, dds_entity_t writer) {
@@ -92,12 +104,16 @@ class Sender {
     return true;
   }
 
-  // Keeps the age that the pose had when it was recorded.
-  static std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) {
-    const std::int64_t shift = dds_time() - message.log_ns;
-    for (std::uint32_t i = 0; i < batch.poses._length; ++i)
-      batch.poses._buffer[i].stamp_ns += shift;
-    return message.publish_ns + shift;
+  // By the schedule, not by the moment of sending: stamps are no more uneven than they were.
+  std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) const {
+    for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
+      clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
+      pose.stamp_ns = schedule_.of(pose.stamp_ns);
+      for (clearance_msg_Vector3* v : {&pose.linear, &pose.angular}) {
+        *v = {v->x * schedule_.rate, v->y * schedule_.rate, v->z * schedule_.rate};
+      }
+    }
+    return schedule_.of(message.publish_ns);
   }
 
   static std::int64_t moved_to_now(const RecordedMessage& message,
@@ -108,6 +124,7 @@ class Sender {
   }
 
   bool restamp_;
+  Schedule schedule_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;
   Sample<clearance_msg_PoseBatch> poses_;
@@ -211,6 +228,7 @@ bool Publishing::publish(const RecordedMessage& message) {
   if (began_log_ns_ < 0) {
     began_log_ns_ = message.log_ns;
     began_ns_ = monotonic_ns();
+    sender_.begin({arguments_.rate, began_log_ns_, dds_time()});
   }
   const auto after = static_cast<double>(message.log_ns - began_log_ns_) / arguments_.rate;
   if (!wait_until(began_ns_ + static_cast<std::int64_t>(after), stop_)) return false;
@@ -280,11 +298,11 @@ int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;
   }
-  DdsOptions dds = arguments.dds.resolve(0, "");
+  DdsOptions dds = arguments.dds.resolve();
   if (!arguments.cell.empty()) {
     const auto scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
-    dds = arguments.dds.resolve(scene->domain, scene->partition);
+    dds = arguments.dds.resolve(*scene);
   }
   use_precise_timers();
   return Publishing(arguments, dds, found.first_ns, stop).run();
