@@ -13,6 +13,7 @@
 #include "monitor/app/program.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/bags/robot_description.hpp"
+#include "monitor/dds/robot_description.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -39,16 +40,16 @@ std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
     robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   if (!robot.urdf.empty()) return read_single_robot(robot);
-  std::string error;
-  const auto described = robot_description_file(arguments.recording(), error);
+  const std::optional<std::string> described = robot_description(arguments.recording());
   if (!described) {
     say(
-        fmt::format("no cell: {}; expected --urdf R.urdf and --srdf R.srdf of the robot that {} is "
-                    "of, or --cell with a cell file that names it under 'robots:'",
-                    error, arguments.recording()));
+        fmt::format("{} holds no cell and no robot_description; expected --urdf R.urdf and --srdf "
+                    "R.srdf of the robot that it is of, or --cell with a cell file that names it "
+                    "under 'robots:'",
+                    arguments.recording()));
     return std::nullopt;
   }
-  robot.urdf = *described;
+  robot.urdf = keep_robot_description(*described);
   return read_single_robot(robot);
 }
 
