@@ -154,6 +154,11 @@ void CellReader::read_dds(const YamlNode& node, Scene& scene) {
               describe(*partition), kMaxDdsName));
     }
   }
+  if (const YamlNode* interface = map.optional("interface")) {
+    scene.interface =
+        read_text(*interface, "lo, default or the name of a network card", diagnostics_)
+            .value_or("lo");
+  }
   if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, scene.topics);
   map.refuse_unknown_keys();
 }
@@ -182,7 +187,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     list.names_known = false;
   }
   refuse_same_names(list, diagnostics_);
-  refuse_too_many_sources(list, diagnostics_);
+  refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
   GroupIndex group_index(list, diagnostics_);
   PairList pairs;
   pairs.complete = false;

@@ -271,16 +271,19 @@ void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics) {
   }
 }
 
-void refuse_too_many_sources(const ObjectList& list, Diagnostics& diagnostics) {
+void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVariable>& joints,
+                             const YamlNode* robots, Diagnostics& diagnostics) {
   std::set<std::string> sources;
+  const auto add = [&](const std::string& source, const YamlNode& place) {
+    if (source.empty() || !sources.insert(source).second) return;
+    if (sources.size() != kMaxNamedSources + 1) return;
+    diagnostics.add(place, fmt::format("found the source '{}' after {} others; expected at most {}",
+                                       source, kMaxNamedSources, kMaxNamedSources));
+  };
   for (std::size_t i = 0; i < list.objects.size(); ++i) {
-    const std::string& source = list.objects[i].source;
-    if (source.empty() || !sources.insert(source).second) continue;
-    if (sources.size() != kMaxNamedSources + 1) continue;
-    diagnostics.add(*list.places[i],
-                    fmt::format("found the source '{}' after {} others; expected at most {}",
-                                source, kMaxNamedSources, kMaxNamedSources));
+    add(list.objects[i].source, *list.places[i]);
   }
+  for (const JointVariable& joint : joints) add(joint.source, *robots);
 }
 
 }  // namespace clearance

@@ -44,9 +44,12 @@ inline constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
 [[nodiscard]] ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                                       const Quantities& quantities, ShapeReader& shapes);
 
-// Of all objects, those that are links of robots included: no two may have one name, nor may they
-// name more sources than are heard.
+// Of all objects, those that are links of robots included: no two may have one name.
 void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics);
-void refuse_too_many_sources(const ObjectList& list, Diagnostics& diagnostics);
+
+// Nor may they name more sources than are heard, together with the joints of `robots`, which may be
+// null.
+void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVariable>& joints,
+                             const YamlNode* robots, Diagnostics& diagnostics);
 
 }  // namespace clearance

@@ -82,8 +82,17 @@ struct RobotBase {
   Pose base_from_root;                // where, in the frame of that
 };
 
+// When a joint state of ROS 2 held: as its header says, or when it was sent, by the clock of the
+// machine that sent it.
+enum class JointStamps : std::uint8_t { kMessage, kSent };
+
 struct Robot {
   std::string name;
+  std::string prefix;  // of its names in this cell
+  // The topic of ROS 2 whose joints are this robot's, with or without the prefix, and no other
+  // topic's are; "/left/joint_states". Empty: any topic, by the names with the prefix.
+  std::string joint_states;
+  JointStamps stamps = JointStamps::kMessage;
   RobotBase base;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;

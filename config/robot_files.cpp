@@ -1,5 +1,7 @@
 #include "config/robot_files.hpp"
 
+#include <cstdlib>
+#include <sstream>
 #include <system_error>
 
 namespace clearance {
@@ -7,8 +9,20 @@ namespace {
 
 const std::string kPackage = "package://", kFile = "file://";
 
+// Where an installation of ROS 2 or a workspace of it says that packages are: PREFIX/share/NAME.
+std::optional<std::filesystem::path> installed_package(const std::string& package) {
+  const char* const prefixes = std::getenv("AMENT_PREFIX_PATH");
+  std::istringstream list(prefixes == nullptr ? "" : prefixes);
+  for (std::string prefix; std::getline(list, prefix, ':');) {
+    const std::filesystem::path directory = std::filesystem::path(prefix) / "share" / package;
+    if (std::error_code fault; !prefix.empty() && std::filesystem::is_directory(directory, fault))
+      return directory;
+  }
+  return std::nullopt;
+}
+
 // A package that is named wins. Otherwise the search goes upwards, as packages usually contain the
-// description that refers to them.
+// description that refers to them; what ROS 2 has installed comes last.
 std::optional<std::filesystem::path> directory_of(const std::string& package,
                                                   const RobotFiles& files) {
   for (const auto& [name, directory] : files.packages) {
@@ -21,7 +35,7 @@ std::optional<std::filesystem::path> directory_of(const std::string& package,
     if (std::error_code fault; std::filesystem::is_directory(at / package, fault))
       return at / package;
   }
-  return std::nullopt;
+  return installed_package(package);
 }
 
 }  // namespace

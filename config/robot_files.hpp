@@ -18,7 +18,7 @@ namespace clearance {
 struct RobotFiles {
   std::filesystem::path named_in;
   // package:// names and where they are. Others are looked for in the directory of `named_in` and
-  // those above it: a directory of that name, or one within.
+  // those above it, a directory of that name or one within, and then where AMENT_PREFIX_PATH says.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
 
   // The absolute path, whether there is such a file or not; nothing: its package is nowhere.

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "config/chain_rounding.hpp"
+#include "config/joint_reader.hpp"
 #include "config/link_parts.hpp"
 #include "config/robot_description.hpp"
 #include "config/robot_exceptions.hpp"
@@ -24,7 +26,9 @@ struct RobotKeys {
   const YamlNode* urdf_node = nullptr;
   const YamlNode* srdf_node = nullptr;
   const YamlNode* base_node = nullptr;
-  std::string name, prefix;
+  const YamlNode* joints_node = nullptr;
+  std::string name, prefix, joint_states;
+  JointStamps stamps = JointStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
 };
@@ -48,12 +52,14 @@ class RobotReader {
  private:
   RobotKeys read_keys(const YamlNode& node);
   void read_packages(const YamlNode& node, RobotKeys& keys);
+  void read_ros(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void read_base(const YamlNode& node, const RobotList& list, RobotBase& base);
   void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
   void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
   void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
              PairExceptions& may_touch);
+  void account_for_rounding(const RobotList& list);
 
   const std::filesystem::path& file_;
   const ObjectDefaults& defaults_;
@@ -81,6 +87,28 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   }
 }
 
+// Where on ROS 2 its joint states are, and what their stamps are worth.
+void RobotReader::read_ros(MapReader& map, RobotKeys& keys) {
+  if (const YamlNode* node = map.optional("joint_states")) {
+    const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
+    if (topic && !topic->starts_with('/')) {
+      diagnostics_.add(*node, fmt::format("found '{}'; expected a topic of ROS 2 with its "
+                                          "namespace: /joint_states, /left/joint_states",
+                                          *topic));
+    }
+    keys.joint_states = topic.value_or("");
+  }
+  if (const YamlNode* node = map.optional("stamps")) {
+    const auto text = read_text(*node, "message or sent", diagnostics_);
+    if (text && *text != "message" && *text != "sent") {
+      diagnostics_.add(*node, fmt::format("found '{}'; expected message (the stamp in it) or sent "
+                                          "(when it was sent)",
+                                          *text));
+    }
+    if (text == "sent") keys.stamps = JointStamps::kSent;
+  }
+}
+
 RobotKeys RobotReader::read_keys(const YamlNode& node) {
   RobotKeys keys;
   keys.limits = defaults_;
@@ -89,6 +117,8 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   keys.urdf_node = map.required("urdf");
   keys.srdf_node = map.optional("srdf");
   keys.base_node = map.optional("base");
+  keys.joints_node = map.optional("joints");
+  read_ros(map, keys);
   if (keys.name_node != nullptr) {
     keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
   }
@@ -247,6 +277,17 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
   }
 }
 
+// Of the robot that was read last. What nothing moves is where the cell says.
+void RobotReader::account_for_rounding(const RobotList& list) {
+  const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
+  const std::vector<RobotLink>& links = list.robots.back().links;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].object == RobotLink::kNoObject) continue;
+    Object& object = objects_.objects[links[i].object];
+    if (!object.fixed) account_for(errors[i], object);
+  }
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   const RobotKeys keys = read_keys(node);
   auto description = read_description({.urdf = keys.urdf_node,
@@ -257,20 +298,27 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   Robot robot;
   if (description) robot = std::move(description->model.robot);
   robot.name = keys.name;
+  robot.prefix = keys.prefix;
+  robot.joint_states = keys.joint_states;
+  robot.stamps = keys.stamps;
   if (keys.base_node != nullptr) read_base(*keys.base_node, list, robot.base);
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
   const auto first = static_cast<std::uint32_t>(list.variables.size());
-  for (JointVariable& variable : description->model.variables) {
+  std::vector<JointVariable>& variables = description->model.variables;
+  for (JointVariable& variable : variables) {
     variable.age_limit_ns = keys.limits.age_limit_ns;
     variable.source = keys.limits.source;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
-    list.variables.push_back(std::move(variable));
   }
+  if (keys.joints_node != nullptr)
+    read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
+  list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   add_links(keys, *description, robot);
   allow(keys, *description, robot, list.may_touch);
   list.robots.push_back(std::move(robot));
+  account_for_rounding(list);
   return true;
 }
 

@@ -119,8 +119,24 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   return {.age_ns = state.age_ns,
           .stale = state.late,
           .contradicted = state.contradicted,
+          .follows_joints = state.follows_joints,
           .source = state.owner.source(),
           .other_source = state.owner.other_source()};
+}
+
+// Of a robot of which nothing was heard no joint is advanced.
+InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
+  const TrackedVariable& state = state_->inputs.robots.variables()[variable];
+  return {.age_ns = state.age_ns,
+          .stale = !state.seen || state.late,
+          .contradicted = state.contradicted,
+          .source = state.owner.source(),
+          .other_source = state.owner.other_source()};
+}
+
+const std::array<std::uint64_t, kRejects>& Monitor::rejected_joints(
+    std::uint32_t variable) const noexcept {
+  return state_->inputs.robots.variables()[variable].rejected;
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {

@@ -17,9 +17,10 @@
 namespace clearance {
 
 struct InputAge {
-  std::int64_t age_ns = -1;   // now - stamp, never negative; 0 for a fixed object, -1: never seen
-  bool stale = false;         // older than the object's limit, or contradicted
-  bool contradicted = false;  // by a pose that came since and that the object cannot have
+  std::int64_t age_ns = -1;     // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  bool stale = false;           // older than the object's limit, or contradicted
+  bool contradicted = false;    // by what came since and the object or joint cannot have
+  bool follows_joints = false;  // a link whose pose follows from joints: its age is theirs
   // PoseSample::source of who sends it, and of the last other one that was refused for that.
   std::uint32_t source = kNoSource, other_source = kNoSource;
 };
@@ -61,6 +62,13 @@ class Monitor {
 
   // How old an object's pose was at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;
+
+  // The same of a joint's variable.
+  [[nodiscard]] InputAge joint_age(std::uint32_t variable) const noexcept;
+
+  // Refused samples of one variable, by cause.
+  [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected_joints(
+      std::uint32_t variable) const noexcept;
 
   // Refused samples of one object, by cause (for the health topic).
   [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(

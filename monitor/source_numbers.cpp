@@ -5,12 +5,20 @@
 
 namespace clearance {
 
-// The reader of cells refuses more names than there are places.
+std::vector<SourceName> named_sources(const Scene& scene) {
+  std::vector<SourceName> named;
+  const auto add = [&named](const std::string& source) {
+    const SourceName name(source);
+    if (!source.empty() && std::ranges::find(named, name) == named.end()) named.push_back(name);
+  };
+  for (const Object& object : scene.objects) add(object.source);
+  for (const JointVariable& variable : scene.variables) add(variable.source);
+  return named;
+}
+
 SourceNumbers::SourceNumbers(const Scene& scene) {
-  for (const Object& object : scene.objects) {
-    if (object.source.empty()) continue;
-    const std::uint32_t number = of(SourceName(object.source));
-    named_ = std::max<std::size_t>(named_, number + 1);
+  for (const SourceName& source : named_sources(scene)) {
+    named_ = std::max<std::size_t>(named_, of(source) + 1);
   }
 }
 

@@ -4,11 +4,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "config/scene.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {
+
+// Whose poses or joints the cell asks for, each once, in its order. The reader of cells refuses more
+// than there are places.
+[[nodiscard]] std::vector<SourceName> named_sources(const Scene& scene);
 
 // The sources that the cell names come first, in its order; the others follow as they are first
 // heard. One beyond kMaxSources takes the number of the one, not named by the cell, that was heard

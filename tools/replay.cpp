@@ -33,28 +33,31 @@ Examples:
 
 // Instead of a cell.
 void add_robot_options(CLI::App& app, ReplayArguments& arguments, CLI::Option* offline) {
-  CLI::Option* const urdf =
-      app.add_option("--urdf", arguments.robot.urdf,
-                     "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in "
-                     "the world, and every pair of its links is watched")
-          ->excludes("--cell")
-          ->needs(offline)
-          ->group(kOffline);
+  app.add_option("--urdf", arguments.robot.urdf,
+                 "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in "
+                 "the world, and every pair of its links is watched. Of a bag, the one on its "
+                 "topic robot_description if neither is given")
+      ->excludes("--cell")
+      ->needs(offline)
+      ->group(kOffline);
   app.add_option("--srdf", arguments.robot.srdf,
                  "The robot's SRDF, which disables pairs; without it, a link and the next above it "
                  "that has shapes may touch")
-      ->needs(urdf)
+      ->excludes("--cell")
+      ->needs(offline)
       ->group(kOffline);
   app.add_option("--package", arguments.packages,
                  "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
       ->allow_extra_args(false)
-      ->needs(urdf)
+      ->excludes("--cell")
+      ->needs(offline)
       ->group(kOffline);
   app.add_option("--age-limit-ms", arguments.robot.age_limit_ms,
                  "An older position makes what hangs on the joint stale")
       ->check(positive_number())
       ->capture_default_str()
-      ->needs(urdf)
+      ->excludes("--cell")
+      ->needs(offline)
       ->group(kOffline);
 }
 

@@ -91,7 +91,7 @@ class Display {
 
 int run_watch(const Arguments& arguments, StopSignal& signal) {
   route_dds_log();
-  Participant participant(arguments.dds.resolve(0, ""));
+  Participant participant(arguments.dds.resolve());
   watch::Feed feed(participant, arguments.topics);
   Display display(arguments.plain, participant.where());
   SystemClock clock;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "config/spelling.hpp"
+#include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
@@ -20,6 +21,10 @@ constexpr std::size_t kMostWaiting = 1 << 16;
 constexpr std::int64_t kLastTimeNs = std::int64_t{1} << 62;
 // A stamp that is this far from when its message was recorded is of another clock.
 constexpr std::int64_t kOtherClockNs = 10'000'000'000;
+
+// As rosbag2 names them.
+constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
+constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 
 std::string last_name_of(const std::string& topic) { return topic.substr(topic.rfind('/') + 1); }
 
@@ -37,7 +42,6 @@ BagLog::BagLog(const std::filesystem::path& path, const Scene& scene,
                const InputLogOptions& options)
     : scene_(scene),
       options_(options),
-      names_(scene),
       path_(path),
       bag_(open_bag(path)),
       heard_(scene.variables.size()),
@@ -89,14 +93,16 @@ void BagLog::read_ahead() {
 
 BagLog::Use BagLog::use_of(const BagTopic& topic) const {
   if (topic.encoding != "cdr") return Use::kNothing;
-  if (topic.type == kRosTransforms) {
-    const std::string name = last_name_of(topic.name);
-    return name == "tf" ? Use::kTransforms
-                        : (name == "tf_static" ? Use::kStaticTransforms : Use::kNothing);
+  const std::string last = last_name_of(topic.name);
+  if (topic.type == kTransformsType) {
+    if (last == "tf_static") return Use::kStaticTransforms;
+    return last == "tf" ? Use::kTransforms : Use::kNothing;
   }
-  if (topic.type != kRosJointState) return Use::kNothing;
+  if (topic.type != kJointStateType) return Use::kNothing;
   const std::vector<std::string>& asked = options_.joint_topics;
-  const bool used = asked.empty() ? last_name_of(topic.name) == "joint_states"
+  const bool is_named =
+      std::ranges::find(scene_.robots, topic.name, &Robot::joint_states) != scene_.robots.end();
+  const bool used = asked.empty() ? last == "joint_states" || is_named
                                   : std::ranges::find(asked, topic.name) != asked.end();
   return used ? Use::kJoints : Use::kNothing;
 }
@@ -107,6 +113,7 @@ void BagLog::take(const BagMessage& message) {
   if (added) {
     topic.type = message.topic->type;
     topic.use = use_of(*message.topic);
+    if (topic.use == Use::kJoints) topic.names.emplace(scene_, message.topic->name);
   }
   ++topic.messages;
   read_to_ns_ = std::max(read_to_ns_, message.log_ns);
@@ -131,32 +138,38 @@ std::int64_t BagLog::stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic&
   return log_ns;
 }
 
-// Positions without names, and names without positions, say nothing.
+// What the robot of the first joint that is known wants holds for all, as on DDS.
+JointStamps BagLog::stamps_of(const JointNames& names) const {
+  for (std::uint32_t i = 0; i < joint_state_->name._length; ++i) {
+    const std::uint32_t variable = names.find(joint_state_->name._buffer[i]);
+    if (variable >= scene_.variables.size()) continue;
+    return scene_.robots[scene_.variables[variable].robot].stamps;
+  }
+  return JointStamps::kMessage;
+}
+
+void BagLog::note_unknown(const JointNames& names) {
+  for (std::uint32_t i = 0; i < joint_state_->name._length; ++i) {
+    const char* const name = joint_state_->name._buffer[i];
+    if (names.find(name) == JointNames::kUnknown) unknown_joints_.insert(name);
+  }
+}
+
 void BagLog::take_joints(const BagMessage& message, Topic& topic) {
-  const std::optional<RosJointState> state = ros_joint_state(message.payload);
-  if (!state) {
+  if (!decoder_.decode(message.payload, joint_state_)) {
     ++topic.undecodable;
     return;
   }
-  const std::int64_t stamp_ns = stamp_of(state->stamp_ns, message.log_ns, topic);
-  const bool has_velocities = !state->name.empty() && state->velocity.size() == state->name.size();
+  const bool by_stamp = stamps_of(*topic.names) == JointStamps::kMessage;
+  const std::int64_t stamp =
+      by_stamp ? stamp_of(stamp_ns(joint_state_->header), message.log_ns, topic) : message.log_ns;
   PoseBatch batch;
-  for (std::size_t i = 0; i < std::min(state->name.size(), state->position.size()); ++i) {
-    const std::uint32_t variable = names_.find(state->name[i]);
-    if (variable == JointNames::kUnused) continue;
-    if (variable == JointNames::kUnknown) {
-      unknown_joints_.insert(state->name[i]);
-      continue;
-    }
-    heard_[variable] = true;
-    if (options_.joints.contains(state->name[i])) continue;
-    JointSample& sample = batch.joints.emplace_back();
-    sample.variable = variable;
-    sample.stamp_ns = stamp_ns;
-    sample.position = state->position[i];
-    sample.has_velocity = has_velocities;
-    if (has_velocities) sample.velocity = state->velocity[i];
-  }
+  from_wire(*joint_state_, *topic.names, stamp, batch);
+  note_unknown(*topic.names);
+  std::erase_if(batch.joints, [this](const JointSample& sample) {
+    heard_[sample.variable] = true;
+    return options_.joints.contains(scene_.variables[sample.variable].name);
+  });
   if (batch.joints.empty()) {
     ++topic.empty;
     return;
@@ -167,13 +180,12 @@ void BagLog::take_joints(const BagMessage& message, Topic& topic) {
 
 // Transforms that never change hold whenever anything comes.
 void BagLog::take_transforms(const BagMessage& message, Topic& topic) {
-  const auto transforms = ros_transforms(message.payload);
-  if (!transforms) {
+  if (!decoder_.decode(message.payload, transforms_)) {
     ++topic.undecodable;
     return;
   }
-  for (const RosTransform& transform : *transforms) {
-    tree_.set(transform, topic.use == Use::kStaticTransforms);
+  for (std::uint32_t i = 0; i < transforms_->transforms._length; ++i) {
+    tree_.set(transforms_->transforms._buffer[i], topic.use == Use::kStaticTransforms);
   }
   PoseBatch batch;
   for (const auto& [frame, object] : frames_) {
@@ -226,7 +238,7 @@ std::string BagLog::nothing_of_use() const {
       "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
       "objects. Expected a topic joint_states of type {} with its joints' names, or one that "
       "--joint-topic names; there are {}",
-      path_.string(), kRosJointState, there.empty() ? "no messages" : there);
+      path_.string(), kJointStateType, there.empty() ? "no messages" : there);
 }
 
 std::vector<std::string> BagLog::notes() const {

@@ -13,16 +13,18 @@
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/bags/input_rate.hpp"
-#include "monitor/bags/ros_messages.hpp"
 #include "monitor/bags/tf_tree.hpp"
+#include "monitor/wire/cdr.hpp"
 #include "monitor/wire/joint_names.hpp"
+#include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
 
-// Joint states move the joints of the cell's robots, by name. A moving object that is no link of a
-// robot, and whose name is that of a frame, is where /tf and /tf_static say: in the root of the
-// frames, which is taken to be the cell's world, or, where the way leads over the root link of a
-// robot that stands in the world, by where the cell has that. Each topic is a source of its name.
+// Joint states move the joints of the cell's robots as those that are heard on DDS do. A moving
+// object that is no link of a robot, and whose name is that of a frame, is where /tf and /tf_static
+// say: in the root of the frames, which is taken to be the cell's world, or, where the way leads
+// over the root link of a robot that stands in the world, by where the cell has that. Each topic is
+// a source of its name.
 //
 // Stamps of 0, and those of another clock than the recorder's (more than 10 s away), say nothing of
 // when a position held: then the time is used at which it was recorded.
@@ -43,6 +45,7 @@ class BagLog final : public InputLog {
   struct Topic {
     std::string type;
     Use use = Use::kNothing;
+    std::optional<JointNames> names;  // of joint states: whose they are depends on the topic
     std::uint64_t messages = 0;
     std::uint64_t undecodable = 0, empty = 0, unstamped = 0, of_another_clock = 0;
     std::int64_t clock_difference_ns = 0;  // of the first such stamp
@@ -55,6 +58,8 @@ class BagLog final : public InputLog {
   void take_transforms(const BagMessage& message, Topic& topic);
   void wait(const std::string& source, std::int64_t log_ns, PoseBatch batch);
   [[nodiscard]] Use use_of(const BagTopic& topic) const;
+  void note_unknown(const JointNames& names);
+  [[nodiscard]] JointStamps stamps_of(const JointNames& names) const;
   [[nodiscard]] std::int64_t stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic& topic);
   [[nodiscard]] std::optional<PoseSample> tracked(std::uint32_t object, std::int64_t log_ns,
                                                   Topic& topic);
@@ -62,12 +67,14 @@ class BagLog final : public InputLog {
 
   const Scene& scene_;
   InputLogOptions options_;
-  JointNames names_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;
   std::map<std::string, std::uint32_t> frames_;       // moving objects that are no links, by name
   std::map<std::string, Pose> world_from_root_link_;  // of robots that stand in the world
   TfTree tree_;
+  CdrDecoder decoder_;
+  Sample<sensor_msgs_msg_dds__JointState_> joint_state_;
+  Sample<tf2_msgs_msg_dds__TFMessage_> transforms_;
   std::set<std::string> roots_met_;
 
   std::map<std::string, Topic> topics_;

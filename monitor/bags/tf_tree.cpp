@@ -4,15 +4,22 @@
 
 namespace clearance {
 
+std::int64_t stamp_ns(const std_msgs_msg_dds__Header_& header) noexcept {
+  return std::int64_t{header.stamp.sec} * 1'000'000'000 + std::int64_t{header.stamp.nanosec};
+}
+
 std::string frame_name(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }
 
-void TfTree::set(const RosTransform& transform, bool is_static) {
-  Link& link = links_[frame_name(transform.child)];
-  link.parent = frame_name(transform.parent);
-  link.parent_from_child = transform.parent_from_child;
-  link.stamp_ns = is_static ? std::nullopt : std::optional(transform.stamp_ns);
+void TfTree::set(const geometry_msgs_msg_dds__TransformStamped_& transform, bool is_static) {
+  Link& link = links_[frame_name(transform.child_frame_id)];
+  link.parent = frame_name(transform.header.frame_id);
+  const auto& [translation, rotation] = transform.transform;
+  link.parent_from_child.position = Vec3(translation.x, translation.y, translation.z);
+  link.parent_from_child.orientation =
+      Eigen::Quaterniond(rotation.w, rotation.x, rotation.y, rotation.z);
+  link.stamp_ns = is_static ? std::nullopt : std::optional(stamp_ns(transform.header));
 }
 
 // A way that is longer than there are frames goes round in a circle.

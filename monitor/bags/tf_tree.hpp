@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/pose.hpp"
-#include "monitor/bags/ros_messages.hpp"
+#include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
 
@@ -22,7 +22,7 @@ class TfTree {
   };
 
   // Replaces what was known of the child. `is_static`: it came on /tf_static.
-  void set(const RosTransform& transform, bool is_static);
+  void set(const geometry_msgs_msg_dds__TransformStamped_& transform, bool is_static);
 
   // Nothing: no transform has this frame as child, or they go round in a circle.
   [[nodiscard]] std::optional<Place> find(const std::string& frame) const;
@@ -35,6 +35,9 @@ class TfTree {
   };
   std::map<std::string, Link> links_;  // by child
 };
+
+// Of a message's header, ns; 0: its publisher states none.
+[[nodiscard]] std::int64_t stamp_ns(const std_msgs_msg_dds__Header_& header) noexcept;
 
 // Without the slash in front that some publishers write.
 [[nodiscard]] std::string frame_name(const std::string& name);

@@ -76,6 +76,7 @@ void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
   spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
                scene_.rate_hz, participant_.where());
+  spdlog::info("{}", participant_.how_to_reach());
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();

@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
@@ -14,6 +15,7 @@
 #include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/dds/robot_description.hpp"
 
 namespace clearance {
 namespace {
@@ -28,11 +30,12 @@ constexpr const char* kFooter = R"(Exit status:
      (deleted, moved or changed under way, a disk that is full or too slow). Nothing else depends on it: ticks go on
 
 Example:
-  clearanced config/cells/two_arms.yaml --partition lab --priority 80)";
+  clearanced config/cells/two_arms.yaml --partition lab --priority 80
+  clearanced --urdf panda.urdf --srdf panda.srdf --interface default)";
 
 // The command line, with its defaults.
 struct Arguments {
-  std::string cell;
+  CellArguments cell;
   bool check = false;
   std::string log_level = "info";
   DdsArguments dds;
@@ -42,7 +45,7 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
+  arguments.cell.add_to(app, true);
   app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
   arguments.dds.add_to(app);
   app.add_option("--record", arguments.daemon.record_file,
@@ -66,8 +69,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 // --check: the same reader as for a run, so what passes here starts.
-int check_only(const std::string& cell) {
-  const auto scene = scene_or_errors(read_cell(cell));
+int check_only(const CellArguments& cell) {
+  const auto scene = scene_or_errors(cell.read());
   if (!scene) return kBadCell;
   print(stdout, "{}\n", summary(*scene));
   return kOk;
@@ -75,7 +78,7 @@ int check_only(const std::string& cell) {
 
 // The summary goes to stdout at the end, the log to stderr all the time.
 int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
-  arguments.daemon.dds = arguments.dds.resolve(scene.domain, scene.partition);
+  arguments.daemon.dds = arguments.dds.resolve(scene);
   route_dds_log();
   Daemon daemon(scene, arguments.daemon);
   daemon.run(signal);
@@ -88,7 +91,21 @@ int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
-// Everything that can be refused is refused before DDS is joined.
+// The URDF from ROS 2 becomes a file. False: stopped before it came.
+bool take_robot_description(Arguments& arguments, StopSignal& signal) {
+  route_dds_log();
+  Participant participant(arguments.dds.resolve());
+  const auto urdf =
+      wait_for_robot_description(participant, arguments.cell.description_topic, signal);
+  if (!urdf) return false;
+  arguments.cell.robot.urdf = keep_robot_description(*urdf);
+  spdlog::info("the robot's description from {} is kept as {}", arguments.cell.description_topic,
+               arguments.cell.robot.urdf.string());
+  return true;
+}
+
+// Everything that can be refused is refused before DDS is joined, but for a description that DDS
+// has.
 int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app(
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
@@ -97,14 +114,22 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearanced", arguments.log_level);
 
-  if (arguments.check) {
+  if (arguments.check && arguments.cell.description_topic.empty()) {
     signal.end_with(kFailed, "clearanced: stopped before the cell was checked\n");
     return check_only(arguments.cell);
   }
-  const auto scene = scene_or_errors(read_cell(arguments.cell));
+  if (!arguments.cell.description_topic.empty()) {
+    if (!take_robot_description(arguments, signal)) return kOk;
+  }
+  const auto scene = scene_or_errors(arguments.cell.read());
   if (!scene) return kBadCell;
-  if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {arguments.cell}))
-    return kUsage;
+  if (arguments.check) {
+    print(stdout, "{}\n", summary(*scene));
+    return kOk;
+  }
+  for (const std::filesystem::path& file : arguments.cell.files()) {
+    if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {file})) return kUsage;
+  }
   const auto record_file =
       free_name("clearanced", arguments.daemon.record_file, arguments.record_over);
   if (!record_file) return kIncomplete;

@@ -9,6 +9,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/scene.hpp"
 #include "monitor/app/program.hpp"
@@ -21,7 +22,8 @@ namespace clearance {
 struct DdsArguments {
   std::optional<std::uint32_t> domain;   // not given: the cell's
   std::optional<std::string> partition;  // not given: the cell's
-  DdsOptions options;
+  std::optional<std::string> interface;  // not given: the cell's
+  std::vector<std::string> peers;
 
   // `has_cell`: the program takes a cell, which says what is not given.
   void add_to(CLI::App& app, bool has_cell = true) {
@@ -38,9 +40,12 @@ struct DdsArguments {
                                           "bytes without wildcards (* ? [)",
                                           name);
         });
-    app.add_option("--interface", options.interface, "Network interface; lo stays on this machine")
-        ->capture_default_str();
-    app.add_option("--peer", options.peers, "Address of another machine; repeatable")
+    app.add_option(
+        "--interface", interface,
+        fmt::format("Network interface; lo stays on this machine, default is the network "
+                    "of every program without a configuration; otherwise {}lo",
+                    has_cell ? "the cell's, or " : ""));
+    app.add_option("--peer", peers, "Address of another machine; repeatable")
         ->check([](const std::string& peer) {
           return can_be_looked_up(peer)
                      ? std::string()
@@ -49,14 +54,14 @@ struct DdsArguments {
         });
   }
 
-  // The options with the command line before the cell.
-  [[nodiscard]] DdsOptions resolve(std::uint32_t cell_domain,
-                                   const std::string& cell_partition) const {
-    DdsOptions resolved = options;
-    resolved.domain = domain.value_or(cell_domain);
-    resolved.partition = partition.value_or(cell_partition);
-    return resolved;
+  // The options with the command line before the cell, or without one.
+  [[nodiscard]] DdsOptions resolve(const Scene& scene) const {
+    return {.domain = domain.value_or(scene.domain),
+            .partition = partition.value_or(scene.partition),
+            .interface = interface.value_or(scene.interface),
+            .peers = peers};
   }
+  [[nodiscard]] DdsOptions resolve() const { return resolve(Scene{}); }
 };
 
 // The exit code of a program that uses DDS and was ended by this exception.

@@ -1,10 +1,6 @@
-// make_health fills a sample from counts that only grow. HealthLog compares each sample with the
-// one before and logs the growth, so that the log says when something began.
 #include "monitor/dds/health.hpp"
 
 #include <fmt/format.h>
-
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <string_view>
@@ -16,8 +12,6 @@ namespace {
 
 // Units of the health topic are us.
 constexpr double kUsPerNs = 1e-3;
-// Lines of one update; beyond them it logs only how many it left out.
-constexpr int kLinesAtOnce = 5;
 
 // Times of the loop, as microseconds.
 void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
@@ -55,7 +49,8 @@ const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(caus
 void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
                      clearance_msg_Health& out) {
   const std::vector<RefusedSource> refused = poses.refused_sources();
-  const std::size_t most = 1 + refused.size() + (scene.objects.size() + 1) * kRejects;
+  const std::size_t inputs = scene.objects.size() + scene.variables.size();
+  const std::size_t most = 1 + refused.size() + (inputs + 1) * kRejects;
   reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
   for (const RefusedSource& source : refused) {
     const std::string_view of = source.source.view();
@@ -69,6 +64,13 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
       const std::uint64_t count = statistics.rejected[object][cause];
       nameless[cause] -= std::min(count, nameless[cause]);
       add_rejection(out, scene.objects[object].name, cause_name(cause), count);
+    }
+  }
+  for (std::size_t joint = 0; joint < scene.variables.size(); ++joint) {
+    for (std::size_t cause = 0; cause < kRejects; ++cause) {
+      const std::uint64_t count = statistics.rejected_joints[joint][cause];
+      nameless[cause] -= std::min(count, nameless[cause]);
+      add_rejection(out, "joint " + scene.variables[joint].name, cause_name(cause), count);
     }
   }
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
@@ -94,6 +96,24 @@ void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance
     entry.age_ns = age.age_ns;
     entry.stale = age.stale || entry.age_ns < 0;
     entry.contradicted = age.contradicted;
+    entry.follows_joints = age.follows_joints;
+    copy_name(statistics, age.source, entry.source);
+    copy_name(statistics, age.other_source, entry.other_source);
+  }
+}
+
+void fill_joints(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
+  reserve_sequence(out.joints,
+                   std::min<std::size_t>(scene.variables.size(), clearance_msg_kMaxJoints));
+  for (std::uint32_t variable = 0; variable < scene.variables.size(); ++variable) {
+    if (out.joints._length == out.joints._maximum) return;
+    clearance_msg_JointAge& entry = out.joints._buffer[out.joints._length++];
+    entry.variable = variable;
+    entry.name = dds_string_dup(scene.variables[variable].name.c_str());
+    const InputAge& age = statistics.joint_ages[variable];
+    entry.age_ns = age.age_ns;
+    entry.stale = age.stale;
+    entry.contradicted = age.contradicted;
     copy_name(statistics, age.source, entry.source);
     copy_name(statistics, age.other_source, entry.other_source);
   }
@@ -118,24 +138,6 @@ void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& de
   }
 }
 
-// Why the object's pairs are stale.
-void log_stale(const clearance_msg_InputAge& input) {
-  if (input.contradicted) {
-    spdlog::warn("poses of {} contradict each other or the cell: its pairs are unknown",
-                 input.name);
-  } else {
-    spdlog::warn("the last pose of {} that could be used is {} ms old: its pairs are stale",
-                 input.name, input.age_ns / 1'000'000);
-  }
-}
-
-// One line for what grew, naming by how much.
-void log_growth(const char* what, std::uint64_t now, std::uint64_t& before) {
-  if (now > before)
-    spdlog::warn("{} {} in the last second, {} since the start", now - before, what, now);
-  before = now;
-}
-
 }  // namespace
 
 // A new sample each time: its strings differ in length from second to second.
@@ -151,67 +153,9 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   fill_loop(statistics, *sample);
   fill_rejections(scene, statistics, poses, *sample);
   fill_inputs(scene, statistics, *sample);
+  fill_joints(scene, statistics, *sample);
   fill_sources(poses.tallies(), poses.departed(), *sample);
   return sample;
-}
-
-// No object has been seen at the start, so no object is late.
-HealthLog::HealthLog(const Scene& scene)
-    : stale_(scene.objects.size()), other_source_(scene.objects.size()) {}
-
-// The offset tells by how much, all steps together.
-void HealthLog::log_clock(const clearance_msg_Health& health) {
-  if (health.clock_steps > clock_steps_) {
-    spdlog::warn(
-        "this machine's clock was stepped by {:+.3f} s: ages go on by one that was not; sources of "
-        "this machine are late for half a second, sources of others keep their relation to it",
-        1e-9 * static_cast<double>(health.clock_offset_ns - clock_offset_ns_));
-  }
-  clock_steps_ = health.clock_steps;
-  clock_offset_ns_ = health.clock_offset_ns;
-}
-
-// Refusals, then late inputs, then the totals. The limit on lines is for a cell that loses
-// all its objects at once.
-void HealthLog::update(const clearance_msg_Health& health) {
-  int lines = 0;
-  for (std::uint32_t i = 0; i < health.rejected._length; ++i) {
-    const clearance_msg_RejectCount& entry = health.rejected._buffer[i];
-    std::uint64_t& before = rejected_[fmt::format("{}: {}", entry.object, entry.cause)];
-    if (entry.count > before && lines++ < kLinesAtOnce) {
-      spdlog::warn("{} poses of {} refused in the last second: {} ({} since the start)",
-                   entry.count - before, entry.object, entry.cause, entry.count);
-    }
-    before = entry.count;
-  }
-  for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
-    const clearance_msg_InputAge& input = health.inputs._buffer[i];
-    // An object that was never seen is no news.
-    const bool stale = input.stale && input.age_ns >= 0;
-    if (stale != stale_[input.object] && lines++ < kLinesAtOnce) {
-      if (stale) {
-        log_stale(input);
-      } else {
-        spdlog::info("poses of {} are back", input.name);
-      }
-    }
-    stale_[input.object] = stale;
-    std::string& other = other_source_[input.object];
-    if (other != input.other_source && lines++ < kLinesAtOnce) {
-      spdlog::warn("{} is sent by '{}' and by '{}': poses of the latter are not used", input.name,
-                   input.source, input.other_source);
-    }
-    other = input.other_source;
-  }
-  if (lines > kLinesAtOnce) {
-    spdlog::warn("{} more refusals and late inputs left out", lines - kLinesAtOnce);
-  }
-  log_clock(health);
-  log_growth("batches lost", health.lost_batches, lost_);
-  log_growth("samples that cannot be decoded", health.undecodable_samples, undecodable_);
-  log_growth("reports of other daemons", health.foreign_reports, foreign_);
-  log_growth("overruns", health.overruns, overruns_);
-  log_growth("reports dropped", health.dropped_reports, dropped_);
 }
 
 }  // namespace clearance

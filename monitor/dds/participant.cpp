@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -53,12 +54,68 @@ Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
   return qos;
 }
 
+// As ROS 2 has it, with what its tools look for.
+Qos ros_qos(const RosType& type, bool reliable) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kMaxBlocking);
+  dds_qset_durability(qos.get(),
+                      type.is_latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, type.depth);
+  dds_qset_userdata(qos.get(), type.user_data, std::strlen(type.user_data));
+  return qos;
+}
+
 // How large a datagram may be, and a fragment of a sample in it with its headers.
 struct DatagramSizes {
   int message, fragment;
 };
 
 bool is_loopback(const DdsOptions& options) { return options.interface == "lo"; }
+bool is_default(const DdsOptions& options) { return options.interface == "default"; }
+
+// What chooses the network; nothing for the one that Cyclone chooses.
+std::string interface_xml(const DdsOptions& options) {
+  if (is_default(options)) return "";
+  return fmt::format(
+      "<Interfaces><NetworkInterface name=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>",
+      options.interface, is_loopback(options) ? "false" : "spdp");
+}
+
+// The default of Cyclone allows 9 programs on a machine without multicast.
+std::string discovery_xml(const DdsOptions& options) {
+  std::string xml;
+  if (!is_default(options)) {
+    xml =
+        "<ParticipantIndex>auto</ParticipantIndex>"
+        "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>";
+  }
+  std::string peers;
+  if (is_loopback(options)) peers = "<Peer Address=\"127.0.0.1\"/>";
+  for (const std::string& peer : options.peers)
+    peers += fmt::format("<Peer Address=\"{}\"/>", peer);
+  return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
+}
+
+// What is empty is left out: Cyclone refuses nothing, but a person has to read it.
+std::string element(const char* name, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
+}
+
+// For clients: how large their datagrams are is their own affair.
+std::string reach(const DdsOptions& options) {
+  const std::string on = fmt::format(
+      "in domain {} (ROS_DOMAIN_ID){}", options.domain,
+      options.partition.empty()
+          ? ""
+          : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
+  if (is_default(options) && options.peers.empty())
+    return fmt::format("every program without a configuration reaches it, {}", on);
+  return fmt::format(
+      "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
+      ", {}",
+      element("General", interface_xml(options)), element("Discovery", discovery_xml(options)), on);
+}
 
 // Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and is ten IP
 // fragments on a network.
@@ -87,10 +144,12 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
 }
 
 std::string describe(const DdsOptions& options) {
-  return fmt::format("domain {}, {}, interface {}, datagrams of up to {} B", options.domain,
+  return fmt::format("domain {}, {}, interface {}, datagrams of up to {} B{}", options.domain,
                      options.partition.empty() ? "default partition"
                                                : fmt::format("partition {}", options.partition),
-                     options.interface, datagram_sizes(options).message);
+                     is_default(options) ? "as Cyclone chooses" : options.interface,
+                     datagram_sizes(options).message,
+                     std::getenv("CYCLONEDDS_URI") == nullptr ? "" : ", then CYCLONEDDS_URI");
 }
 
 // "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
@@ -105,15 +164,11 @@ std::string host_of(const std::string& peer) {
 std::string domain_configuration(const DdsOptions& options) {
   const DatagramSizes sizes = datagram_sizes(options);
   std::string xml = fmt::format(
-      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface "
-      "name=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>"
-      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize>"
-      "</General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
-      "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex><Peers>",
-      options.interface, is_loopback(options) ? "false" : "spdp", sizes.message, sizes.fragment);
-  if (is_loopback(options)) xml += "<Peer Address=\"127.0.0.1\"/>";
-  for (const std::string& peer : options.peers) xml += fmt::format("<Peer Address=\"{}\"/>", peer);
-  xml += "</Peers></Discovery></Domain></CycloneDDS>";
+      "<CycloneDDS><Domain id=\"any\"><General>{}"
+      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
+      "{}</Domain></CycloneDDS>",
+      interface_xml(options), sizes.message, sizes.fragment,
+      element("Discovery", discovery_xml(options)));
   // What a person sets for all of Cyclone comes last, so it wins.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;
@@ -164,7 +219,8 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
 
 // The partition is that of publisher and subscriber: endpoints of other partitions are never
 // matched.
-Participant::Participant(const DdsOptions& options) : where_(describe(options)) {
+Participant::Participant(const DdsOptions& options)
+    : where_(describe(options)), how_to_reach_(reach(options)) {
   if (options.domain > kMaxDomain) {
     throw DdsError(fmt::format("joining domain {} (0 to 232 exist)", options.domain),
                    DDS_RETCODE_BAD_PARAMETER);
@@ -213,6 +269,21 @@ dds_entity_t Participant::reader_of_others(const std::string& name,
                    fmt::format("making a reader of {}", name));
 }
 
+dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
+                                     const dds_listener_t* listener) {
+  const Qos qos = ros_qos(type, type.is_latched);
+  return check_dds(
+      dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
+      fmt::format("making a reader of {}", name));
+}
+
+dds_entity_t Participant::ros_writer(const RosType& type, const std::string& name) {
+  const Qos qos = ros_qos(type, true);
+  return check_dds(
+      dds_create_writer(publisher_, make_topic(*type.descriptor, name), qos.get(), nullptr),
+      fmt::format("making a writer of {}", name));
+}
+
 // Depth and durability are those of the table, whatever readers ask for.
 dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
                                  const WriterOptions& options) {
@@ -235,11 +306,13 @@ DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_
       guard_(
           check_dds(dds_create_guardcondition(participant.handle()), "making a guard condition")) {
   check_dds(dds_waitset_attach(waitset_, guard_, 0), "attaching to a waitset");
-  for (const dds_entity_t reader : readers) {
-    const dds_entity_t condition =
-        check_dds(dds_create_readcondition(reader, DDS_ANY_STATE), "making a read condition");
-    check_dds(dds_waitset_attach(waitset_, condition, reader), "attaching to a waitset");
-  }
+  for (const dds_entity_t reader : readers) add(reader);
+}
+
+void DataWait::add(dds_entity_t reader) {
+  const dds_entity_t condition =
+      check_dds(dds_create_readcondition(reader, DDS_ANY_STATE), "making a read condition");
+  check_dds(dds_waitset_attach(waitset_, condition, reader), "attaching to a waitset");
 }
 
 // The guard is reset here, so one wake() ends one wait.

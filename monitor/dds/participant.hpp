@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "monitor/wire/ros_types.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance {
@@ -29,9 +30,11 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 // Where on DDS a program is. Only programs of the same domain, partition and network see each
 // other.
 struct DdsOptions {
-  std::uint32_t domain = 0;             // 0 to 232
-  std::string partition = "";           // empty: the default one
-  std::string interface = "lo";         // network interface; lo: this machine only
+  std::uint32_t domain = 0;    // 0 to 232
+  std::string partition = "";  // empty: the default one
+  // Network interface; lo: this machine only; default: the one that Cyclone chooses for every
+  // program that has no configuration.
+  std::string interface = "lo";
   std::vector<std::string> peers = {};  // addresses to look for others at; for lo none are needed
 };
 
@@ -81,14 +84,21 @@ class Participant {
   // Hears what others write on a distances topic, but no writer of this participant: best-effort,
   // only the newest sample.
   dds_entity_t reader_of_others(const std::string& name, const dds_listener_t* listener);
+  // Endpoints of a topic of ROS 2, "rt/joint_states", in the partition of all others: ROS 2 knows
+  // the default one only. A reader of what is not latched is best-effort: it matches every writer.
+  dds_entity_t ros_reader(const RosType& type, const std::string& name,
+                          const dds_listener_t* listener = nullptr);
+  dds_entity_t ros_writer(const RosType& type, const std::string& name);
   [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
   // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
+  // How another program has to be started to be on the same network: the CYCLONEDDS_URI to copy.
+  [[nodiscard]] const std::string& how_to_reach() const noexcept { return how_to_reach_; }
 
  private:
   dds_entity_t make_topic(const dds_topic_descriptor_t& type, const std::string& name);
 
-  std::string where_;
+  std::string where_, how_to_reach_;
   std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
   dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;
 };
@@ -97,6 +107,8 @@ class Participant {
 class DataWait {
  public:
   DataWait(const Participant& participant, const std::vector<dds_entity_t>& readers);
+  // Any reader may be added, by the thread that waits.
+  void add(dds_entity_t reader);
   // True: samples may be there. False: woken, or the time is up.
   bool wait(std::int64_t timeout_ns);
   void wake() noexcept;

@@ -3,13 +3,17 @@
 // thread never takes.
 #include "monitor/dds/pose_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/source_numbers.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -80,15 +84,10 @@ void log_news(const Admission& admission, const SourceName& source, dds_entity_t
   }
 }
 
-// Once each; the reader of cells refuses more than there are places.
-std::vector<SourceName> named_sources(const Scene& scene) {
-  std::vector<SourceName> named;
-  for (const Object& object : scene.objects) {
-    const SourceName source(object.source);
-    if (!object.source.empty() && std::ranges::find(named, source) == named.end())
-      named.push_back(source);
-  }
-  return named;
+// What a ROS 2 node started from the same shell would join.
+std::string ros_domain() {
+  const char* const id = std::getenv("ROS_DOMAIN_ID");
+  return id == nullptr ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
 }
 
 }  // namespace
@@ -111,12 +110,16 @@ PoseReader::PoseReader(const Scene& scene, Participant& participant)
       undecodable_before_(undecodable_samples()),
       reader_(make_reader(participant, TopicKind::kPoses)),
       joint_reader_(scene.robots.empty() ? 0 : make_reader(participant, TopicKind::kJointStates)),
-      wait_(participant,
-            joint_reader_ == 0 ? std::vector{reader_} : std::vector{reader_, joint_reader_}),
+      where_(participant.where()),
+      present_(participant),
+      ros_joints_(scene, participant),
+      wait_(participant, joint_reader_ == 0
+                             ? std::vector{reader_}
+                             : std::vector{reader_, joint_reader_, present_.reader()}),
       joint_names_(scene),
       ring_(kBatches),
       sources_(named_sources(scene)),
-      slow_poses_(scene) {
+      slow_log_(scene) {
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch_);
@@ -179,6 +182,33 @@ std::uint64_t PoseReader::undecodable() const {
   return undecodable_samples() - undecodable_before_;
 }
 
+std::string PoseReader::senders_of_joints() const {
+  const std::lock_guard lock(tallies_mutex_);
+  const std::size_t own = joint_reader_ == 0 ? 0 : writers_of(joint_reader_).size();
+  const std::size_t heard = own + ros_joints_.writers();
+  if (heard > 0) {
+    std::string unknown;
+    for (const std::string& name : ros_joints_.unknown_names()) {
+      unknown += (unknown.empty() ? "" : ", ") + name;
+    }
+    return fmt::format(
+        "{} publishers of joint states are heard{}", heard,
+        unknown.empty() ? "" : ", of joints that the cell does not have: " + unknown);
+  }
+  for (const auto& [handle, writer] : present_.writers()) {
+    if (writer.type != kRosJointState.descriptor->m_typename) continue;
+    return fmt::format("{} is published in {} and does not reach {}", writer.topic,
+                       writer.partition.empty() ? "the default partition"
+                                                : fmt::format("partition {}", writer.partition),
+                       where_);
+  }
+  return fmt::format(
+      "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
+      "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
+      "(rmw_zenoh)",
+      scene_.topics.joint_states, where_, present_.listed(), ros_domain());
+}
+
 // Takes until nothing is left, into samples that are reused: no allocation for batches that fit,
 // but for the names of joints.
 template <class Taken>
@@ -204,8 +234,22 @@ void PoseReader::run() {
   while (!stop_) {
     if (!wait_.wait(DDS_INFINITY)) continue;
     take_all(reader_, taken_);
-    if (joint_reader_ != 0) take_all(joint_reader_, taken_joints_);
+    if (joint_reader_ == 0) continue;
+    take_all(joint_reader_, taken_joints_);
+    take_from_ros();
   }
+}
+
+void PoseReader::take_from_ros() {
+  bool changed = false;
+  {
+    const std::lock_guard lock(tallies_mutex_);
+    changed = present_.look();
+    if (changed) ros_joints_.look(present_, wait_);
+  }
+  if (changed) note_writers();
+  const std::lock_guard lock(tallies_mutex_);
+  ros_joints_.take_all([this](const RosStates& states) { hand_over(states); });
 }
 
 // Names and places of writers that have left are free.
@@ -214,6 +258,7 @@ void PoseReader::note_writers() {
   if (joint_reader_ != 0) {
     const std::vector<std::uint64_t> of_joints = writers_of(joint_reader_);
     writers.insert(writers.end(), of_joints.begin(), of_joints.end());
+    for (const auto& [handle, writer] : present_.writers()) writers.push_back(handle);
   }
   names_.keep(writers);
   const std::lock_guard lock(tallies_mutex_);
@@ -231,19 +276,6 @@ SourceTally* PoseReader::admit(dds_entity_t reader, const SourceName& source,
   admission.tally->note_sequence(sequence_number);
   admission.tally->last_ns = now_ns;
   return admission.tally;
-}
-
-void PoseReader::log_slow_poses(const PoseBatch& batch) {
-  for (const PoseSample& sample : batch.samples) {
-    const auto interval_ns = slow_poses_.note(sample.object, sample.stamp_ns);
-    if (!interval_ns) continue;
-    const Object& object = scene_.objects[sample.object];
-    spdlog::warn(
-        "poses of {} come every {} ms, its age limit is {} ms: it is late again and again, and its "
-        "zones flicker; age_limit_ms of {} would fit",
-        object.name, *interval_ns / 1'000'000, object.age_limit_ns / 1'000'000,
-        fitting_age_limit_ms(*interval_ns));
-  }
 }
 
 // Counts what is missing, converts into a free slot, and hands it to the tick thread.
@@ -267,29 +299,47 @@ void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer)
         "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
         tally->source.view(), batch.scene_revision, scene_.revision);
   }
-  if (made_for(*slot, scene_.revision)) log_slow_poses(*slot);
+  if (made_for(*slot, scene_.revision)) slow_log_.note(*slot);
   ++tally->batches;
   ring_.push();
 }
 
 // The same of joint states; more names than a cell has any use for are cut.
+template <class Fill>
+void PoseReader::hand_over_joints(SourceTally& tally, const Fill& fill) {
+  PoseBatch* slot = ring_.back();
+  if (slot == nullptr) {
+    ++tally.lost;
+    return;
+  }
+  fill(*slot);
+  if (const std::size_t most = joints_a_batch(scene_); slot->joints.size() > most) {
+    tally.cut_poses += slot->joints.size() - most;
+    slot->joints.resize(most);
+  }
+  slow_log_.note(*slot);
+  ++tally.batches;
+  ring_.push();
+}
+
 void PoseReader::hand_over(clearance_msg_JointStates& states, std::uint64_t writer) {
   const std::lock_guard lock(tallies_mutex_);
   SourceTally* tally = admit(joint_reader_, SourceName(states.source), states.sequence_number,
                              states.names._length, writer);
   if (tally == nullptr) return;
-  PoseBatch* slot = ring_.back();
-  if (slot == nullptr) {
-    ++tally->lost;
-    return;
-  }
-  from_wire(states, joint_names_, *slot);
-  if (const std::size_t most = joints_a_batch(scene_); slot->joints.size() > most) {
-    tally->cut_poses += slot->joints.size() - most;
-    slot->joints.resize(most);
-  }
-  ++tally->batches;
-  ring_.push();
+  hand_over_joints(*tally, [&](PoseBatch& slot) { from_wire(states, joint_names_, slot); });
+}
+
+// The lock is held.
+void PoseReader::hand_over(const RosStates& states) {
+  SourceTally* tally = admit(states.reader, states.source, states.number,
+                             states.message.name._length, states.writer);
+  if (tally == nullptr) return;
+  hand_over_joints(*tally, [&](PoseBatch& slot) {
+    from_wire(states.message, states.names, states.stamp_ns, slot);
+    slot.source = states.source;
+    slot.sequence_number = states.number;
+  });
 }
 
 }  // namespace clearance

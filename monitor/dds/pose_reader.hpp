@@ -1,5 +1,5 @@
-// The topics of poses and joint states as a PoseSource: a thread of its own takes samples and hands
-// them to the tick thread.
+// The topics of poses and joint states, ours and ROS 2's, as a PoseSource: a thread of its own
+// takes samples and hands them to the tick thread.
 #pragma once
 
 #include <array>
@@ -14,7 +14,9 @@
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_sources.hpp"
-#include "monitor/dds/slow_poses.hpp"
+#include "monitor/dds/present_topics.hpp"
+#include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/dds/slow_input_log.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -49,6 +51,9 @@ class PoseReader final : public PoseSource {
   // Samples that Cyclone could not decode since this was made: it drops them with a line in its
   // log, which is where they are counted. Those of other readers of the process count as well.
   [[nodiscard]] std::uint64_t undecodable() const;
+  // Who sends joint states; where nobody does, what is there instead. A sentence for a person who
+  // hears nothing of a robot.
+  [[nodiscard]] std::string senders_of_joints() const;
 
  private:
   dds_entity_t make_reader(Participant& participant, TopicKind kind);
@@ -58,10 +63,14 @@ class PoseReader final : public PoseSource {
   void note_writers();
   void hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer);
   void hand_over(clearance_msg_JointStates& states, std::uint64_t writer);
+  void hand_over(const RosStates& states);
+  // `fill` writes the joints into a slot for the tick.
+  template <class Fill>
+  void hand_over_joints(SourceTally& tally, const Fill& fill);
+  void take_from_ros();
   // Null: the batch, of `count` poses or joints, is refused. Counts what is missing before it.
   SourceTally* admit(dds_entity_t reader, const SourceName& source, std::uint64_t sequence_number,
                      std::size_t count, std::uint64_t writer);
-  void log_slow_poses(const PoseBatch& batch);
 
   const Scene& scene_;
   std::size_t samples_a_batch_;
@@ -70,6 +79,9 @@ class PoseReader final : public PoseSource {
   std::atomic<bool> writers_changed_{false};
   dds_entity_t reader_;
   dds_entity_t joint_reader_;  // 0: the cell has no robots
+  std::string where_;
+  PresentTopics present_;
+  RosJointStates ros_joints_;
   DataWait wait_;
   std::array<Sample<clearance_msg_PoseBatch>, kDepth> taken_;
   std::array<Sample<clearance_msg_JointStates>, kDepth> taken_joints_;
@@ -80,7 +92,7 @@ class PoseReader final : public PoseSource {
   mutable std::mutex
       tallies_mutex_;  // between the taking and the publishing thread; never the tick's
   PoseSources sources_;
-  SlowPoses slow_poses_;
+  SlowInputLog slow_log_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

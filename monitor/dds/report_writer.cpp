@@ -185,7 +185,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
-  health_log_.update(*sample);
+  health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
 void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {

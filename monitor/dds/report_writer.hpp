@@ -8,6 +8,7 @@
 #include "config/scene.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
+#include "monitor/dds/health_log.hpp"
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "config/chain_rounding.hpp"
 #include "core/convex_polyhedron.hpp"
 #include "monitor/kinematics/sine_cosine.hpp"
 #include "monitor/motion/directed_rounding.hpp"
@@ -14,14 +15,6 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::max();
-
-// How far a joint's rotation can be from the exact one, rad, and its step for each metre: the
-// origin's quaternion, made of three angles by some forty operations, is within 2^-48 of its half,
-// the half angle's sine and cosine within 2^-50, and two products of quaternions round eight times
-// more.
-constexpr double kJointError = 0x1p-46;
-// Of a position that is scaled and shifted (mimic), for each radian or metre.
-constexpr double kPositionError = 0x1p-51;
 
 // No rotation moves a point farther than across the circle that it is on.
 constexpr double kAcross = 2.0;

@@ -33,10 +33,12 @@ struct LoopStatistics {
   std::uint64_t overruns = 0;        // ticks that ended after the next deadline
   std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick
   MinimumSeen minimum;
-  std::vector<std::array<std::uint64_t, kRejects>> rejected;  // one an object, by cause
-  std::array<std::uint64_t, kRejects> rejected_total{};       // those of unknown ids as well
-  std::vector<InputAge> ages;                                 // one an object
-  std::array<SourceName, kMaxSources> sources;                // by number: InputAge::source
+  std::vector<std::array<std::uint64_t, kRejects>> rejected;         // one an object, by cause
+  std::array<std::uint64_t, kRejects> rejected_total{};              // those of unknown ids as well
+  std::vector<InputAge> ages;                                        // one an object
+  std::vector<std::array<std::uint64_t, kRejects>> rejected_joints;  // one a joint's variable
+  std::vector<InputAge> joint_ages;                                  // the same
+  std::array<SourceName, kMaxSources> sources;                       // by number: InputAge::source
 };
 
 }  // namespace clearance

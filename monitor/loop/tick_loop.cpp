@@ -23,6 +23,8 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
   joints_.reserve(options_.max_samples);
   statistics_.rejected.resize(scene.objects.size());
   statistics_.ages.resize(scene.objects.size());
+  statistics_.rejected_joints.resize(scene.variables.size());
+  statistics_.joint_ages.resize(scene.variables.size());
 }
 
 // Times are measured around the tick: how late the thread woke, and how long it took until the
@@ -131,6 +133,10 @@ void TickLoop::hand_over_statistics() noexcept {
   for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
     statistics_.rejected[object] = monitor_.rejected(object);
     statistics_.ages[object] = monitor_.input_age(object);
+  }
+  for (std::uint32_t variable = 0; variable < scene_.variables.size(); ++variable) {
+    statistics_.rejected_joints[variable] = monitor_.rejected_joints(variable);
+    statistics_.joint_ages[variable] = monitor_.joint_age(variable);
   }
   for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = sources_.name(i);
   statistics_.clock_steps = time_.steps();

@@ -64,8 +64,9 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
     const std::vector<RobotLink>& links = scene_.robots[robot].links;
     for (std::size_t link = 0; link < links.size(); ++link) {
       if (links[link].object == RobotLink::kNoObject) continue;
-      if (scene_.objects[links[link].object].fixed) continue;
-      follow(kinematics_.links(robot)[link], objects[links[link].object]);
+      const Object& object = scene_.objects[links[link].object];
+      if (object.fixed) continue;
+      follow(kinematics_.links(robot)[link], object, objects[links[link].object]);
     }
   }
 }

@@ -150,11 +150,12 @@ std::optional<Reject> take(const Object& object, const PoseSample& sample, std::
   return cause;
 }
 
-void follow(const LinkState& link, TrackedObject& state) noexcept {
+void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
+  const bool known = link.known && link.error(state.reach) <= object.pose_error;
   state.follows_joints = true;
-  state.joints_late = !link.known || link.late;
-  state.unseen_by_joints = link.known ? link.may_have_moved(state.reach) : kInfinity;
-  if (!link.known) return;
+  state.joints_late = !known || link.late;
+  state.unseen_by_joints = known ? link.may_have_moved(state.reach) : kInfinity;
+  if (!known) return;
   state.joints_contradicted = link.contradicted;
   state.pose = as_queries_take_it(link.pose);
   state.stamp_ns = link.stamp_ns;

@@ -102,8 +102,9 @@ struct TrackedObject {
                                          std::int64_t stamp_ns, const SampleLimits& limits,
                                          TrackedObject& state) noexcept;
 
-// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere.
-void follow(const LinkState& link, TrackedObject& state) noexcept;
+// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere;
+// so may one whose pose rounding puts farther off than Object::pose_error says.
+void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;

@@ -195,6 +195,27 @@ void from_wire(const clearance_msg_JointStates& states, const JointNames& names,
   }
 }
 
+void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
+               std::int64_t stamp_ns, PoseBatch& out) {
+  out.scene_revision = 0;
+  out.samples.clear();
+  out.joints.clear();
+  if (states.position._length == 0) return;
+  const bool has_velocities =
+      states.velocity._length > 0 && states.velocity._length == states.name._length;
+  for (std::uint32_t i = 0; i < states.name._length; ++i) {
+    const std::uint32_t variable = names.find(states.name._buffer[i]);
+    if (variable >= JointNames::kUnused) continue;
+    JointSample& sample = out.joints.emplace_back();
+    sample.variable = variable;
+    sample.stamp_ns = stamp_ns;
+    sample.position = i < states.position._length ? states.position._buffer[i]
+                                                  : std::numeric_limits<double>::quiet_NaN();
+    sample.has_velocity = has_velocities;
+    if (has_velocities) sample.velocity = states.velocity._buffer[i];
+  }
+}
+
 // All samples of a batch have one stamp, and all or none have a velocity.
 Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch, const Scene& scene) {
   Sample<clearance_msg_JointStates> states;

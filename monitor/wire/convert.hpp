@@ -10,6 +10,7 @@
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"
+#include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
 
@@ -43,6 +44,13 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
 // know become samples of no variable, which the tick counts and refuses, as it does positions that
 // are missing.
 void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out);
+
+// Of ROS 2's joint states, which held at `stamp_ns`. Names that the cell has no use for and those
+// that it does not know are left out, and everything when no positions were sent: drivers of
+// grippers send efforts only, and topics carry the joints of other machines. Of a list of positions
+// that is too short the rest is refused by the tick.
+void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
+               std::int64_t stamp_ns, PoseBatch& out);
 
 // Of a batch of joints; allocates.
 [[nodiscard]] Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,

@@ -16,12 +16,19 @@ class JointNames {
   static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
   static constexpr std::uint32_t kUnused = kUnknown - 1;  // of a fixed joint, or one that mimics
 
+  // On our own topic: the names of all robots, with their prefixes.
   explicit JointNames(const Scene& scene);
+  // On a topic of ROS 2, "/left/joint_states": those of the robots that name it, with or without
+  // their prefixes; if none does, those of the robots that name no other, with their prefixes.
+  JointNames(const Scene& scene, std::string_view ros_topic);
 
   // Index into Scene::variables, or one of the above.
   [[nodiscard]] std::uint32_t find(std::string_view name) const;
 
  private:
+  enum class Prefix : std::uint8_t { kKept, kLeftOut };
+  void add(const Scene& scene, std::uint32_t robot, Prefix prefix);
+
   std::map<std::string, std::uint32_t, std::less<>> variables_;
 };
 

@@ -54,6 +54,32 @@ TEST(RobotsInTheTick, DistancesFollowTheJoints) {
               5.0 - 0.45 - 0.05 * std::sin(std::numbers::pi / 3.0), 1e-12);
 }
 
+// Of whatever position within a thousand radians; and the shapes that are asked are wider by it.
+TEST(RobotsInTheTick, BoundsAccountForTheRoundingOfTheChain) {
+  const Scene scene = test::scara_cell(", base: {on: cart}");
+  ForwardKinematics kinematics(scene.robots);
+  std::vector<TrackedVariable> variables(scene.variables.size());
+  std::vector<LinkState> bases(1);
+  bases[0].known = true;
+  bases[0].pose = test::at(60.0, -50.0, 50.0);
+  for (const double angle : {0.1, 3.0, -999.0}) {
+    for (TrackedVariable& variable : variables) {
+      variable.seen = true;
+      variable.position = angle;
+    }
+    variables[2].position = 0.2;
+    kinematics.place(variables, bases);
+    for (const RobotLink& link : scene.robots[0].links) {
+      const Object& object = scene.objects[link.object];
+      const auto index = static_cast<std::size_t>(&link - scene.robots[0].links.data());
+      EXPECT_LE(kinematics.links(0)[index].error(1.5), object.pose_error) << object.name;
+      EXPECT_GE(object.parts[0].shape.position_error, object.pose_error);
+      EXPECT_GE(object.parts[0].shape.error_bound_as_a, object.pose_error);
+      EXPECT_LT(object.pose_error, 1e-10) << object.name;
+    }
+  }
+}
+
 TEST(RobotsInTheTick, ClosingSpeedsComeFromJointVelocities) {
   const Scene cell = test::scara_cell();
   Monitor monitor(cell);

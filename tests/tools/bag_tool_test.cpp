@@ -67,6 +67,21 @@ TEST_F(BagTool, OneLineIsARegressionTestOfARobotProgram) {
   EXPECT_THAT(output, testing::ContainsRegex("tick [0-9]+ .*: upper - finger"));
 }
 
+TEST_F(BagTool, RobotIsTheOneThatTheBagDescribesUnlessItIsGiven) {
+  std::vector<RosMessage> messages = folding(1.5);
+  messages.insert(messages.begin() + 3, ros_text(kStart, kScaraUrdf, "/scara/robot_description"));
+  write_mcap_bag(folder / "described.mcap", messages);
+  const auto replayed = [&](const std::string& out) {
+    EXPECT_EQ(0, run(kReplay, {"--offline", path("described.mcap"), "-o", path(out),
+                               "--expect-min-distance", "0.05"}))
+        << output;
+    return read_text(folder / out);
+  };
+  EXPECT_EQ(replayed("a.mcap"), replayed("b.mcap"));
+  EXPECT_EQ(0, run(kReplay, {"--offline", "--srdf", path("R.srdf"), path("described.mcap")}))
+      << output;
+}
+
 TEST_F(BagTool, JointTableAndGivenJointsDo) {
   std::string table = "t_ns,shoulder,elbow\n";
   for (int i = 0; i < 100; ++i) table += std::to_string(i * 10'000'000) + ",0.5,0.2\n";
@@ -91,6 +106,8 @@ TEST_F(BagTool, TellsWhatIsMissing) {
   EXPECT_EQ(1, replay("nowhere.db3", {}));
   EXPECT_THAT(output, HasSubstr("nowhere.db3: No such file"));
   EXPECT_EQ(2, run(kReplay, {path("bag"), "--tick-hz", "100"}));
+  EXPECT_EQ(1, run(kReplay, {path("bag")}));
+  EXPECT_THAT(output, HasSubstr("--offline replays it as it is"));
 }
 
 TEST_F(BagTool, ConvertedBagReplaysToTheSameBytes) {

@@ -185,9 +185,8 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
 }  // namespace
 
 int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
-  Participant participant(scene == nullptr
-                              ? arguments.dds.resolve(0, "")
-                              : arguments.dds.resolve(scene->domain, scene->partition));
+  Participant participant(scene == nullptr ? arguments.dds.resolve()
+                                           : arguments.dds.resolve(*scene));
   const Topics topics = scene == nullptr ? Topics{} : scene->topics;
   const RecordingOptions options = arguments.recording.options(arguments.force);
   RecordingWriter writer(arguments.out, topics, options);

@@ -12,6 +12,8 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/bags/input_log.hpp"
+#include "monitor/bags/robot_description.hpp"
+#include "monitor/dds/robot_description.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -26,7 +28,7 @@ namespace {
 
 void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
 
-// The robot given, as a cell.
+// The robot given, or the one that the bag describes, as a cell.
 std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
   SingleRobotOptions robot = arguments.robot;
   for (const std::string& text : arguments.packages) {
@@ -37,19 +39,25 @@ std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
     }
     robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
+  if (!robot.urdf.empty()) return read_single_robot(robot);
+  const std::optional<std::string> described = robot_description(arguments.recording());
+  if (!described) {
+    say(
+        fmt::format("{} holds no cell and no robot_description; expected --urdf R.urdf and --srdf "
+                    "R.srdf of the robot that it is of, or --cell with a cell file that names it "
+                    "under 'robots:'",
+                    arguments.recording()));
+    return std::nullopt;
+  }
+  robot.urdf = keep_robot_description(*described);
   return read_single_robot(robot);
 }
 
 // The cell given, or the one in the recording; its meshes are looked for beside that file.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   if (!arguments.cell.empty()) return read_cell(arguments.cell);
-  if (!arguments.robot.urdf.empty()) return read_robot(arguments);
-  if (is_input_log(arguments.recording())) {
-    say(
-        fmt::format("{} holds no cell; expected --urdf R.urdf and --srdf R.srdf of the robot that "
-                    "it is of, or --cell with a cell file that names it under 'robots:'",
-                    arguments.recording()));
-    return std::nullopt;
+  if (!arguments.robot.urdf.empty() || is_input_log(arguments.recording())) {
+    return read_robot(arguments);
   }
   const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
@@ -232,7 +240,9 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
   if (!cell) return kFailed;
   std::optional<Scene> scene = scene_or_errors(std::move(*cell));
   if (!scene) {
-    if (arguments.cell.empty() && arguments.robot.urdf.empty())
+    const bool is_recorded = arguments.cell.empty() && arguments.robot.urdf.empty() &&
+                             !is_input_log(arguments.recording());
+    if (is_recorded)
       say("this is the cell as the recording keeps it, without its mesh files; give the cell file "
           "with --cell");
     return kBadCell;

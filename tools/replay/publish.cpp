@@ -10,6 +10,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/bags/input_log.hpp"
 #include "monitor/dds/participant.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -285,16 +286,23 @@ int Publishing::finish(const RecordingReader& reader) {
 }  // namespace
 
 int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
+  if (is_input_log(arguments.recording())) {
+    print(stderr,
+          "clearance-replay: {} holds no topics of Clearance; --offline replays it as it is, and "
+          "clearance-record --from-bag (or --from-csv) makes a recording of it\n",
+          arguments.recording());
+    return kFailed;
+  }
   const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;
   }
-  DdsOptions dds = arguments.dds.resolve(0, "");
+  DdsOptions dds = arguments.dds.resolve();
   if (!arguments.cell.empty()) {
     const auto scene = scene_or_errors(read_cell(arguments.cell));
     if (!scene) return kBadCell;
-    dds = arguments.dds.resolve(scene->domain, scene->partition);
+    dds = arguments.dds.resolve(*scene);
   }
   use_precise_timers();
   return Publishing(arguments, dds, found.first_ns, stop).run();

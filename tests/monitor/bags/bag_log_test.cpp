@@ -96,10 +96,12 @@ TEST_F(BagLogTest, WhatIsNotUsedIsToldOnceWithItsCount) {
                                             "--joint NAME=POSITION")));
 }
 
-TEST_F(BagLogTest, AListThatIsTooShortGivesWhatItHas) {
+TEST_F(BagLogTest, OfAListThatIsTooShortTheRestIsNoPosition) {
   const ReadLog log = read({joint_state(kT, kT, {{"shoulder", "elbow"}, {0.1}, {1.0}})});
   ASSERT_EQ(1u, log.batches.size());
-  ASSERT_EQ(1u, log.batches[0].batch.joints.size());
+  ASSERT_EQ(2u, log.batches[0].batch.joints.size());
+  EXPECT_EQ(0.1, log.batches[0].batch.joints[0].position);
+  EXPECT_TRUE(std::isnan(log.batches[0].batch.joints[1].position));
   EXPECT_FALSE(log.batches[0].batch.joints[0].has_velocity);
 }
 

@@ -1,4 +1,4 @@
-#include "monitor/dds/slow_poses.hpp"
+#include "monitor/dds/slow_inputs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Scene one_mover() {
 
 // How often poses at this interval are found too slow, of 100.
 int found(std::int64_t interval_ns) {
-  SlowPoses slow(one_mover());
+  SlowInputs slow = SlowInputs::poses(one_mover());
   int times = 0;
   for (int i = 1; i <= 100; ++i) {
     const auto interval = slow.note(0, test::kStart + i * interval_ns);
@@ -27,14 +27,14 @@ int found(std::int64_t interval_ns) {
   return times;
 }
 
-TEST(SlowPoses, AreFoundOnceAndOnlyWhenTheyAreSlowerThanTheLimit) {
+TEST(SlowInputs, AreFoundOnceAndOnlyWhenTheyAreSlowerThanTheLimit) {
   EXPECT_EQ(found(33 * kMillisecond), 1);
   EXPECT_EQ(found(20 * kMillisecond), 0);
   EXPECT_EQ(found(kMillisecond), 0);
 }
 
-TEST(SlowPoses, AreNotFoundInAPauseOrLostBatches) {
-  SlowPoses slow(one_mover());
+TEST(SlowInputs, AreNotFoundInAPauseOrLostBatches) {
+  SlowInputs slow = SlowInputs::poses(one_mover());
   std::int64_t stamp = test::kStart;
   for (int i = 0; i < 1000; ++i) {
     EXPECT_FALSE(slow.note(0, stamp += (i % 5 == 0 ? 10 : 500) * kMillisecond));
@@ -42,7 +42,7 @@ TEST(SlowPoses, AreNotFoundInAPauseOrLostBatches) {
   EXPECT_FALSE(slow.note(99, stamp)) << "no such object";
 }
 
-TEST(SlowPoses, SayWhichLimitWouldFit) {
+TEST(SlowInputs, SayWhichLimitWouldFit) {
   EXPECT_EQ(fitting_age_limit_ms(33 * kMillisecond), 70);
   EXPECT_EQ(fitting_age_limit_ms(100 * kMillisecond), 200);
 }

@@ -1,0 +1,73 @@
+#include "monitor/app/cell_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include "monitor/app/options.hpp"
+
+namespace clearance {
+namespace {
+
+// NAME=DIRECTORY.
+std::string package_fault(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  return equals != std::string::npos && equals > 0 && equals + 1 < text.size()
+             ? std::string()
+             : fmt::format("found '{}'; expected NAME=DIRECTORY", text);
+}
+
+}  // namespace
+
+// What is said of the robot is a key of the robot in a cell file.
+void CellArguments::add_to(CLI::App& app, bool from_ros) {
+  auto* what = app.add_option_group("what", "One of");
+  auto* file = what->add_option("CELL", cell, "The cell file (YAML)");
+  what->add_option("--urdf", robot.urdf, "A robot's URDF, xacro expanded, instead of a cell file");
+  if (from_ros) {
+    what->add_option("--robot-description", description_topic,
+                     "The topic of ROS 2 that has the URDF, /robot_description, instead of a file")
+        ->check([](const std::string& topic) {
+          return topic.starts_with('/') && topic.size() > 1
+                     ? std::string()
+                     : fmt::format(
+                           "found '{}'; expected a topic with its namespace: "
+                           "/robot_description",
+                           topic);
+        });
+  }
+  what->require_option(1);
+  app.add_option("--srdf", robot.srdf,
+                 "The robot's SRDF, which disables pairs; without it, a link and the next above it "
+                 "that has shapes may touch")
+      ->excludes(file);
+  app.add_option_function<std::vector<std::string>>(
+         "--package",
+         [this](const std::vector<std::string>& packages) {
+           for (const std::string& text : packages) {
+             const std::size_t equals = text.find('=');
+             robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+           }
+         },
+         "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
+      ->allow_extra_args(false)
+      ->check(package_fault)
+      ->excludes(file);
+  app.add_option("--age-limit-ms", robot.age_limit_ms,
+                 "An older position makes what hangs on the joint stale")
+      ->check(finite_number())
+      ->check(CLI::Range(0.001, 86'400'000.0))
+      ->capture_default_str()
+      ->excludes(file);
+}
+
+CellResult CellArguments::read() const {
+  return cell.empty() ? read_single_robot(robot) : read_cell(cell);
+}
+
+std::vector<std::filesystem::path> CellArguments::files() const {
+  if (!cell.empty()) return {cell};
+  std::vector<std::filesystem::path> files = {robot.urdf};
+  if (!robot.srdf.empty()) files.push_back(robot.srdf);
+  return files;
+}
+
+}  // namespace clearance

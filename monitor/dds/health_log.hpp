@@ -1,0 +1,37 @@
+// What a person should know of each health sample: what has changed since the one before.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/dds/joint_log.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Tells the log which rejections, losses and late inputs are new since the health before: a few
+// lines a second at most.
+class HealthLog {
+ public:
+  explicit HealthLog(const Scene& scene);
+  // To be called with every sample, in order. `senders_of_joints`: PoseReader's, when it is needed.
+  void update(const clearance_msg_Health& health,
+              const std::function<std::string()>& senders_of_joints);
+
+ private:
+  void log_clock(const clearance_msg_Health& health);
+
+  std::map<std::string, std::uint64_t> rejected_;  // by "object: cause"
+  std::vector<bool> stale_;                        // by object
+  std::vector<std::string> other_source_;          // by object
+  JointLog joints_;
+  std::uint64_t clock_steps_ = 0;
+  std::int64_t clock_offset_ns_ = 0;
+  std::uint64_t lost_ = 0, undecodable_ = 0, foreign_ = 0, overruns_ = 0, dropped_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,85 @@
+// Cyclone tells of endpoints by samples of a topic of its own, one instance each.
+#include "monitor/dds/present_topics.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kListed = 10;
+
+std::string text_of(const dds_guid_t& guid) {
+  std::string text;
+  for (const std::uint8_t byte : guid.v) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+// ROS 2 sets none; a wildcard of several names is shown by its first.
+std::string first_partition(const dds_qos_t* qos) {
+  std::uint32_t count = 0;
+  char** names = nullptr;
+  if (!dds_qget_partition(qos, &count, &names)) return "";
+  const std::string first = count > 0 ? names[0] : "";
+  for (std::uint32_t i = 0; i < count; ++i) dds_free(names[i]);
+  dds_free(names);
+  return first;
+}
+
+PresentWriter writer_of(const dds_builtintopic_endpoint_t& endpoint) {
+  return {.topic = endpoint.topic_name,
+          .type = endpoint.type_name,
+          .partition = first_partition(endpoint.qos),
+          .participant = text_of(endpoint.participant_key)};
+}
+
+}  // namespace
+
+PresentTopics::PresentTopics(Participant& participant)
+    : participant_(participant.handle()),
+      reader_(check_dds(
+          dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+          "making a reader of discovery")) {}
+
+PresentTopics::~PresentTopics() { dds_delete(reader_); }
+
+bool PresentTopics::look() {
+  dds_guid_t own{};
+  dds_get_guid(participant_, &own);
+  bool changed = false;
+  for (;;) {
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    const dds_return_t count = dds_take(reader_, &sample, &info, 1, 1);
+    if (count <= 0) return changed;
+    const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(sample);
+    const bool is_there = info.valid_data && info.instance_state == DDS_IST_ALIVE;
+    if (is_there && std::memcmp(own.v, endpoint.participant_key.v, sizeof own.v) != 0) {
+      changed = true;
+      writers_[info.instance_handle] = writer_of(endpoint);
+    } else if (!is_there) {
+      changed = writers_.erase(info.instance_handle) > 0 || changed;
+    }
+    dds_return_loan(reader_, &sample, count);
+  }
+}
+
+std::string PresentTopics::listed() const {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [handle, writer] : writers_) ++counts[writer.topic];
+  if (counts.empty()) return "no other program";
+  std::string text;
+  std::size_t listed = 0;
+  for (const auto& [topic, count] : counts) {
+    if (listed++ == kListed) {
+      text += fmt::format(" and {} more", counts.size() - kListed);
+      break;
+    }
+    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", topic,
+                        count > 1 ? fmt::format(" ({} writers)", count) : "");
+  }
+  return text;
+}
+
+}  // namespace clearance

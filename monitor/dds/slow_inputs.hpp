@@ -1,0 +1,43 @@
+// Which inputs, poses of objects or positions of joints, come less often than their age limits
+// need: such a one is late again and again, and its zones flicker without anything being wrong.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace clearance {
+
+class SlowInputs {
+ public:
+  // In a row, all longer than the age limit: a pause or lost batches are no rate.
+  static constexpr std::size_t kIntervals = 8;
+
+  // Age limits in ns; 0: an input that never comes, as the pose of a fixed object.
+  explicit SlowInputs(const std::vector<std::int64_t>& limits_ns);
+  // Of a scene's objects, and of its joints' variables.
+  [[nodiscard]] static SlowInputs poses(const Scene& scene);
+  [[nodiscard]] static SlowInputs joints(const Scene& scene);
+
+  // To be called with every sample, its stamp in ns. The median interval, once an input: when it is
+  // found that it comes too seldom.
+  [[nodiscard]] std::optional<std::int64_t> note(std::uint32_t input, std::int64_t stamp_ns);
+
+ private:
+  struct Rate {
+    std::int64_t limit_ns = 0;  // 0: found already, or it never comes
+    std::int64_t stamp_ns = 0;
+    std::size_t count = 0;
+    std::array<std::int64_t, kIntervals> intervals_ns{};
+  };
+  std::vector<Rate> rates_;  // by input
+};
+
+// An age limit that fits inputs at this interval: two of them, to the next 10 ms.
+[[nodiscard]] std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,49 @@
+// The types of ROS 2 that we read: their descriptors, and the hashes by which its tools know them.
+#pragma once
+
+#include <cstdint>
+
+#include "monitor/wire/dds_sample.hpp"
+#include "ros2.h"
+
+namespace clearance {
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<sensor_msgs_msg_dds__JointState_>() noexcept {
+  return sensor_msgs_msg_dds__JointState__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<std_msgs_msg_dds__String_>() noexcept {
+  return std_msgs_msg_dds__String__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<tf2_msgs_msg_dds__TFMessage_>() noexcept {
+  return tf2_msgs_msg_dds__TFMessage__desc;
+}
+
+// How ROS 2 delivers a topic, and what its endpoints say of its type in their USER_DATA (since
+// Iron: type description hashes, REP-2011).
+struct RosType {
+  const dds_topic_descriptor_t* descriptor;
+  const char* user_data;
+  bool is_latched;     // reliable and transient-local; else the reader takes what comes
+  std::int32_t depth;  // samples that may wait, of all writers together: such topics have no keys
+};
+
+inline constexpr RosType kRosJointState{
+    &sensor_msgs_msg_dds__JointState__desc,
+    "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;", false,
+    128};
+inline constexpr RosType kRosString{
+    &std_msgs_msg_dds__String__desc,
+    "typehash=RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18;", true, 1};
+inline constexpr RosType kRosTf{
+    &tf2_msgs_msg_dds__TFMessage__desc,
+    "typehash=RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087;", false,
+    128};
+inline constexpr RosType kRosTfStatic{kRosTf.descriptor, kRosTf.user_data, true, 128};
+
+}  // namespace clearance

@@ -1,0 +1,313 @@
+// A robot by its joint states, as real drivers send them, over real DDS: what is published and what
+// the log says.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/ros_joints.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const std::vector<std::string> kNames = {"shoulder", "elbow", "push"};
+
+class DaemonJoints : public testing::Test {
+ protected:
+  // `keys`: more keys of the robot.
+  void start(const std::string& keys = ", age_limit_ms: 200") {
+    write_text(folder / "scara.urdf", kScaraUrdf);
+    cell = folder / "cell.yaml";
+    write_text(cell,
+               "name: joints\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+               "robots: [{name: arm, urdf: scara.urdf" +
+                   keys +
+                   "}]\n"
+                   "objects:\n"
+                   "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
+                   "pairs:\n  - {between: [arm, wall], publish: true}\n"
+                   "  - {between: [arm, arm], publish: false}\n");
+    scene = std::get<Scene>(read_cell(cell));
+    distances.emplace(client, scene);
+    daemon.emplace(kDaemon, with({cell}, dds_arguments(dds)));
+    distances->settle();
+  }
+
+  // Every `period_ms` until `is_so`, or the time is over.
+  template <class Step, class IsSo>
+  bool step_until(int period_ms, const Step& step, const IsSo& is_so, int seconds = 20) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+      step();
+      std::this_thread::sleep_for(std::chrono::milliseconds(period_ms));
+      take();
+      if (is_so()) return true;
+    }
+    return false;
+  }
+  auto logged(const std::string& text) {
+    return [this, text] { return daemon->wrote(text); };
+  }
+  void take() {
+    void* pointer = &*report;
+    dds_sample_info_t info{};
+    while (dds_take(distances->reader(), &pointer, &info, 1, 1) == 1) {
+    }
+  }
+  // As of the last report.
+  const clearance_msg_PairDistance& pair(const std::string& link) const {
+    std::uint32_t place = 0;  // in the report, which has the published ones only
+    for (const ObjectPair& of : scene.pairs) {
+      if (!of.publish) continue;
+      if (scene.objects[of.first].name == link || scene.objects[of.second].name == link)
+        return report->pairs._buffer[place];
+      ++place;
+    }
+    ADD_FAILURE() << "no pair of " << link;
+    return report->minimum;
+  }
+  bool is(const std::string& link, PairStatus status) const {
+    return report->pairs._length > 0 && pair(link).status == static_cast<std::uint8_t>(status);
+  }
+
+  ScratchFolder folder;
+  std::filesystem::path cell;
+  Scene scene;
+  DdsOptions dds = own_dds();
+  Participant client{dds};
+  std::optional<Distances> distances;
+  Sample<clearance_msg_Distances> report;
+  std::optional<ChildProcess> daemon;
+};
+
+// Wall at x = 5. Of the upper link, at the angle 0, the end is at 0.9 m.
+TEST_F(DaemonJoints, OfRos2PlaceTheLinksOfARobot) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  ASSERT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send(kNames, {0, 0, 0.1}, {0, 0, 0});
+      },
+      [&] { return is("finger", PairStatus::kConverged); }))
+      << daemon->output();
+  EXPECT_NEAR(pair("upper").distance, 5 - 0.9, 1e-12);
+  EXPECT_NEAR(pair("finger").distance, 5 - 2.1 - 0.05, 1e-12);
+  EXPECT_EQ(pair("finger").closing_speed, 0.0);
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send(kNames, {0, 0, 0.1});
+      },
+      logged("3 joints of arm are heard: shoulder, elbow, push")));
+}
+
+// The arm's driver and the gripper's, each with its joints; then the gripper's falls silent.
+TEST_F(DaemonJoints, OfSeveralPublishersAreOneRobot) {
+  start();
+  RosJoints arm(client), gripper(client);
+  ASSERT_TRUE(arm.is_heard() && gripper.is_heard());
+  const auto send_arm = [&] { arm.send({"elbow", "shoulder"}, {0.1, 0.0}); };
+  EXPECT_TRUE(step_until(5, send_arm, [&] { return is("lower", PairStatus::kConverged); }));
+  EXPECT_TRUE(is("finger", PairStatus::kUnknown)) << "what hangs on an unknown joint";
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        send_arm();
+        gripper.send({"push"}, {0.1});
+      },
+      [&] { return is("finger", PairStatus::kConverged); }));
+  EXPECT_TRUE(step_until(5, send_arm, [&] { return is("finger", PairStatus::kStale); }));
+  EXPECT_TRUE(is("lower", PairStatus::kConverged));
+  EXPECT_TRUE(step_until(5, send_arm, logged("the last positions of 1 joints of arm")))
+      << daemon->output();
+}
+
+// A joint_state_publisher that was left running: the first one keeps the joints.
+TEST_F(DaemonJoints, OfAPublisherThatSendsZerosAreRefusedAndNamed) {
+  start();
+  RosJoints driver(client), zeros(client);
+  ASSERT_TRUE(driver.is_heard() && zeros.is_heard());
+  const auto real = [&] { driver.send(kNames, {0.5, 0.5, 0.1}); };
+  ASSERT_TRUE(step_until(5, real, [&] { return is("finger", PairStatus::kConverged); }));
+  const double distance = pair("finger").distance;
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        real();
+        zeros.send(kNames, {0, 0, 0});
+      },
+      logged("joints of arm are sent by '/joint_states' and by '/joint_states#2'")))
+      << daemon->output();
+  EXPECT_EQ(pair("finger").distance, distance);
+  EXPECT_TRUE(daemon->wrote("positions of joint elbow refused in the last second: another source"))
+      << daemon->output();
+}
+
+TEST_F(DaemonJoints, ThatAreNoNumbersAreRefusedAndNamed) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send(kNames, {0.1, 0.1, kNaN}, {kNaN, kNaN, kNaN});
+      },
+      logged("positions of joint push refused in the last second: not finite")))
+      << daemon->output();
+  EXPECT_TRUE(is("lower", PairStatus::kConverged)) << "the rest of the message is used";
+  EXPECT_TRUE(is("finger", PairStatus::kUnknown));
+}
+
+TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  ASSERT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send(kNames, {0.0, 0.0, 0.1});
+      },
+      [&] { return is("finger", PairStatus::kConverged); }));
+  // The shoulder turns at 2 rad/s at most: 0.4 rad in an age limit.
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send(kNames, {2.9, 0.0, 0.1});
+      },
+      logged("joints of arm contradict each other")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("positions of joint shoulder refused")) << daemon->output();
+  EXPECT_FALSE(is("upper", PairStatus::kConverged));
+}
+
+// 10 Hz, an age limit of 20 ms.
+TEST_F(DaemonJoints, ThatComeMoreSeldomThanTheirAgeLimitAreNamedOnceWithOneThatFits) {
+  start("");
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  EXPECT_TRUE(step_until(
+      100,
+      [&] {
+        joints.send(kNames, {0, 0, 0.1});
+      },
+      logged("the age limit of shoulder and 2 more joints is 20 ms")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("joint states from '/joint_states' come at 1")) << daemon->output();
+}
+
+TEST_F(DaemonJoints, OfAThousandHertzAreAllTaken) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  double at = 0.0;
+  EXPECT_TRUE(step_until(
+      1,
+      [&] {
+        joints.send(kNames, {at += 1e-4, 0, 0.1});
+      },
+      [&] { return at > 0.1; }));
+  EXPECT_TRUE(is("finger", PairStatus::kConverged));
+  EXPECT_FALSE(daemon->wrote("batches lost")) << daemon->output();
+}
+
+// A simulation's clock: seconds since its start.
+TEST_F(DaemonJoints, StampedByAnotherClockAreNamedAndUsableByTheTimeTheyAreSent) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  std::int64_t clock = 12'000'000'000;
+  const auto send = [&] { joints.send_at(clock += 5'000'000, kNames, {0, 0, 0.1}); };
+  EXPECT_TRUE(step_until(5, send, logged("by a clock of their own"))) << daemon->output();
+  EXPECT_FALSE(is("finger", PairStatus::kConverged)) << "what is not known is never clear";
+  daemon.reset();
+  start(", age_limit_ms: 200, stamps: sent");
+  ASSERT_TRUE(joints.is_heard());
+  EXPECT_TRUE(step_until(5, send, [&] { return is("finger", PairStatus::kConverged); }))
+      << daemon->output();
+}
+
+TEST_F(DaemonJoints, ThatAreNotStampedAreUsed) {
+  start();
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        joints.send_at(0, kNames, {0, 0, 0.1});
+      },
+      [&] { return is("finger", PairStatus::kConverged); }))
+      << daemon->output();
+}
+
+TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
+  start();
+  const dds_entity_t tf = client.ros_writer(kRosTf, "rt/tf");
+  EXPECT_GT(tf, 0);
+  EXPECT_TRUE(step_until(
+      50, [] {},
+      logged("nothing that could be used has come of 3 joints of arm "
+             "(shoulder, elbow, push): there is no publisher of")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("rt/tf")) << daemon->output();
+  EXPECT_TRUE(daemon->wrote("domain " + std::to_string(dds.domain))) << daemon->output();
+  EXPECT_TRUE(daemon->wrote("interface lo")) << daemon->output();
+}
+
+TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const std::vector<std::string> robot = {"--urdf", folder / "scara.urdf"};
+  ChildProcess check(kDaemon, with(robot, {"--check"}));
+  EXPECT_EQ(check.wait(), 0) << check.output();
+  EXPECT_TRUE(check.wrote("scara")) << check.output();
+  daemon.emplace(kDaemon, with(robot, dds_arguments(dds)));
+  RosJoints joints(client);
+  ASSERT_TRUE(joints.is_heard());
+  ASSERT_TRUE(eventually([&] {
+    joints.send(kNames, {0, 0, 0.1});
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return daemon->wrote("3 joints of scara are heard");
+  })) << daemon->output();
+  EXPECT_TRUE(daemon->wrote("CYCLONEDDS_URI='<CycloneDDS>")) << daemon->output();
+}
+
+TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
+  const ChildOptions cache{.environment = {{"XDG_CACHE_HOME", (folder / "cache").string()}}};
+  daemon.emplace(kDaemon, with({"--robot-description", "/robot_description"}, dds_arguments(dds)),
+                 cache);
+  const dds_entity_t writer = client.ros_writer(kRosString, "rt/robot_description");
+  Sample<std_msgs_msg_dds__String_> description;
+  description->data = dds_string_dup(kScaraUrdf.c_str());
+  ASSERT_EQ(dds_write(writer, &*description), DDS_RETCODE_OK);
+  RosJoints joints(client);
+  ASSERT_TRUE(eventually([&] {
+    joints.send(kNames, {0, 0, 0.1});
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return daemon->wrote("3 joints of scara are heard");
+  })) << daemon->output();
+  EXPECT_TRUE(
+      daemon->wrote("is kept as " + (folder / "cache/clearance/robot_description_").string()))
+      << daemon->output();
+}
+
+TEST_F(DaemonJoints, OfACellFileAndARobotOneIsEnough) {
+  ChildProcess both(kDaemon, {"cell.yaml", "--urdf", "robot.urdf"});
+  EXPECT_EQ(both.wait(), 2) << both.output();
+  ChildProcess none(kDaemon, {});
+  EXPECT_EQ(none.wait(), 2) << none.output();
+  ChildProcess missing(kDaemon, {"--urdf", "nosuch.urdf", "--check"});
+  EXPECT_EQ(missing.wait(), 3) << missing.output();
+  EXPECT_TRUE(missing.wrote("nosuch.urdf")) << missing.output();
+}
+
+}  // namespace
+}  // namespace clearance::test

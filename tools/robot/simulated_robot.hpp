@@ -1,0 +1,63 @@
+// What moves in a cell, sent over DDS: the poses that its simulation says, and the joints of its
+// robots.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/simulation.hpp"
+#include "monitor/dds/participant.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+
+// Positions of all variables of a cell's robots, so many seconds after the start.
+using JointMotion = std::function<void(double t_s, std::vector<JointSample>& joints)>;
+
+struct SimulatedRobotOptions {
+  std::string source = "robot";
+  // Of joints: the topic of ROS 2 that they are sent on, "/joint_states"; empty: ours.
+  std::string ros_topic = {};
+};
+
+class SimulatedRobot {
+ public:
+  // The scene and the participant must outlive this. `joints` is not called in a cell without
+  // robots.
+  SimulatedRobot(const Scene& scene, Participant& participant, const SimulatedRobotOptions& options,
+                 JointMotion joints);
+  ~SimulatedRobot();
+  SimulatedRobot(const SimulatedRobot&) = delete;
+  SimulatedRobot& operator=(const SimulatedRobot&) = delete;
+
+  [[nodiscard]] std::size_t objects() const noexcept { return poses_.size(); }
+  [[nodiscard]] std::size_t joints() const noexcept { return scene_.variables.size(); }
+
+  // Where everything is `t_s` seconds after the start, stamped with the time of sending.
+  void send(double t_s);
+
+  [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
+  [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
+
+ private:
+  void make_ros_message();
+  void send_poses(double t_s, std::int64_t stamp_ns);
+  void send_joints(double t_s, std::int64_t stamp_ns);
+  void send_joints_to_ros(std::int64_t stamp_ns);
+  void write(dds_entity_t writer, const void* sample);
+
+  const Scene& scene_;
+  JointMotion motion_;
+  SystemClock clock_;
+  std::vector<PoseAt> poses_;
+  PoseBatch batch_, joint_batch_;
+  Sample<clearance_msg_PoseBatch> sample_;
+  Sample<sensor_msgs_msg_dds__JointState_> ros_message_;
+  dds_entity_t pose_writer_ = 0, joint_writer_ = 0, ros_writer_ = 0;  // 0: none
+  std::uint64_t sent_ = 0, failed_ = 0;
+};
+
+}  // namespace clearance
