@@ -33,9 +33,8 @@ int run(int argc, char** argv, StopSignal& stop) {
   CLI::App app("Records every topic of Clearance, as it is on the wire, to an MCAP file.");
   RecordArguments arguments;
   app.add_option("-o,--output", arguments.out, "The recording to write")->required();
-  CLI::Option* const cell =
-      app.add_option("--cell", arguments.cell,
-                     "The cell file, which names domain, partition, topics and objects");
+  CLI::Option* const cell = app.add_option(
+      "--cell", arguments.cell, "The cell file, which names domain, partition, topics and objects");
   CLI::Option* const csv =
       app.add_option("--from-csv", arguments.from_csv,
                      "Convert this pose log, plain or gzip, instead of recording from DDS");

@@ -103,8 +103,7 @@ void add_facets(const ConvexPolyhedron& body, double radius, MeshBuilder& builde
   for (const Facet& facet : body.facets) {
     std::vector<std::uint32_t> loop;
     for (const std::int32_t vertex : corners(body, facet)) {
-      loop.push_back(
-          builder.add(position_of(body, vertex) + radius * facet.normal, facet.normal));
+      loop.push_back(builder.add(position_of(body, vertex) + radius * facet.normal, facet.normal));
     }
     for (std::size_t i = 2; i < loop.size(); ++i) builder.triangle(loop[0], loop[i - 1], loop[i]);
   }
@@ -126,8 +125,8 @@ void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radiu
 }
 
 // One sector of the sphere's patch at a vertex: from its middle to the arc from a to b.
-void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a,
-                const Vec3& b, MeshBuilder& builder) {
+void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a, const Vec3& b,
+                MeshBuilder& builder) {
   const int steps = steps_of(angle_between(a, b));
   const int rows = steps_of(std::max(angle_between(middle, a), angle_between(middle, b)));
   std::vector<std::uint32_t> inner;

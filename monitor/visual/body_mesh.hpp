@@ -17,7 +17,7 @@ namespace clearance {
 // In the body's frame, m.
 struct BodyMesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // one a position, unit, outward
+  std::vector<Vec3> normals;                            // one a position, unit, outward
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise as seen from outside
   std::vector<std::array<Vec3, 2>> edges;               // sharp ones, as lines
 

@@ -12,9 +12,9 @@
 namespace clearance {
 namespace {
 
-constexpr ros::Colour kFixedColour{0.62F, 0.65F, 0.69F, 1.0F}, kMovingColour{0.32F, 0.55F, 0.80F, 1.0F},
-    kPlaneColour{0.5F, 0.5F, 0.5F, 0.25F}, kNearColour{0.92F, 0.34F, 0.05F, 1.0F},
-    kClosestColour{0.07F, 0.65F, 0.52F, 1.0F};
+constexpr ros::Colour kFixedColour{0.62F, 0.65F, 0.69F, 1.0F},
+    kMovingColour{0.32F, 0.55F, 0.80F, 1.0F}, kPlaneColour{0.5F, 0.5F, 0.5F, 0.25F},
+    kNearColour{0.92F, 0.34F, 0.05F, 1.0F}, kClosestColour{0.07F, 0.65F, 0.52F, 1.0F};
 constexpr double kLineWidth = 0.006, kTextHeight = 0.05;  // m
 constexpr std::size_t kMostLines = 64;
 
@@ -47,16 +47,15 @@ std::vector<double> near_below(const Scene& scene) {
   for (const Zone& zone : scene.zones) {
     for (const std::uint32_t pair : zone.pairs) {
       const ObjectPair& both = scene.pairs[pair];
-      const double margins =
-          scene.objects[both.first].margin + scene.objects[both.second].margin;
+      const double margins = scene.objects[both.first].margin + scene.objects[both.second].margin;
       limits[pair] = std::max(limits[pair], zone.enter_below + margins);
     }
   }
   return limits;
 }
 
-void add_pair(const clearance_msg_PairDistance& pair, const ros::Colour& colour,
-              ros::Marker& lines, std::vector<ros::Marker>& markers) {
+void add_pair(const clearance_msg_PairDistance& pair, const ros::Colour& colour, ros::Marker& lines,
+              std::vector<ros::Marker>& markers) {
   const Vec3 a = vector_of(pair.witness_a), b = vector_of(pair.witness_b);
   lines.points.insert(lines.points.end(), {a, b});
   lines.colours.insert(lines.colours.end(), {colour, colour});

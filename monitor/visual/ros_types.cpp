@@ -15,7 +15,7 @@ class CdrBytes {
     bytes_ = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
   }
   template <class Number>
-    requires std::is_arithmetic_v<Number>
+  requires std::is_arithmetic_v<Number>
   void add(Number value) {
     constexpr std::size_t kHeader = 4;
     while ((bytes_.size() - kHeader) % sizeof(Number) != 0) bytes_.push_back(std::byte{0});

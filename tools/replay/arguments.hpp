@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/app/stop_signal.hpp"
@@ -28,6 +29,9 @@ struct ReplayArguments {
   std::string cell;  // empty: the one in the recording
   std::string out;
   std::string csv;
+  std::string plot;                                             // SVG; empty: none
+  std::string report;                                           // HTML; empty: none
+  std::vector<std::pair<std::string, std::string>> plot_pairs;  // empty: the nearest
   bool force = false;
   bool published = false;
   bool evaluate_all = false;
