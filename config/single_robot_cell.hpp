@@ -12,7 +12,7 @@ namespace clearance {
 
 struct SingleRobotOptions {
   std::filesystem::path urdf;
-  std::filesystem::path srdf;  // empty: neighbours may touch
+  std::filesystem::path srdf = {};  // empty: neighbours may touch
   // As `packages:` of a robot's keys in a cell.
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
   double age_limit_ms = 20.0;  // of its joints

@@ -29,6 +29,8 @@ Examples:
   clearance-replay --offline --cell cell.yaml run.mcap --expect-min-distance 0.05 --expect-no-zone stop
   clearance-replay --offline --cell cell.yaml run.mcap --csv distances.csv
   clearance-replay --offline --urdf R.urdf --srdf R.srdf rosbag2_2026_11_22/ --expect-min-distance 0.05
+  clearance-replay --offline --cell cell.yaml run.mcap --plot run.svg --plot-pair hand table
+  clearance-replay --offline --cell cell.yaml run.mcap --report run.html --expect-no-zone stop
   clearance-replay --offline --cell cell.yaml run.mcap --reference distances.csv.gz --tolerance 1e-6)";
 
 // Instead of a cell.
@@ -119,6 +121,20 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
   app.add_flag("--published", arguments.published,
                "Only pairs that the cell publishes go into the table")
       ->needs(csv)
+      ->group(kOffline);
+  app.add_option("--plot", arguments.plot,
+                 "Draw distances, bounds, zones and closing speeds over time (SVG, by gnuplot)")
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option("--report", arguments.report,
+                 "Write one self-contained page of the run (HTML): summary, expectations, plot, "
+                 "worst moments with pictures, zones")
+      ->needs(offline)
+      ->group(kOffline);
+  app.add_option("--plot-pair", arguments.plot_pairs,
+                 "Draw this pair, of --plot and --report: two objects; repeatable. Otherwise those "
+                 "four that came nearest. The cell must publish it")
+      ->needs(offline)
       ->group(kOffline);
   CLI::Option* const evaluate_all =
       app.add_flag("--evaluate-all", arguments.evaluate_all,

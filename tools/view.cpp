@@ -30,7 +30,8 @@ using view::Source;
 
 constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
 
-constexpr const char* kFooter = R"(Open the address that it prints in a browser; Ctrl-C ends it. Foxglove, Lichtblick and others of
+constexpr const char* kFooter =
+    R"(Open the address that it prints in a browser; Ctrl-C ends it. Foxglove, Lichtblick and others of
 their protocol connect to the same address, as ws:// instead of http://. Everybody who reaches the
 port may look, and move a recording's time; nobody can change anything else.
 
@@ -108,7 +109,8 @@ class Scratch {
  public:
   Scratch() {
     std::string name = (std::filesystem::temp_directory_path() / "clearance-view-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder in " + name);
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("cannot make a folder in " + name);
     folder_ = name;
   }
   ~Scratch() {
@@ -233,7 +235,7 @@ int run_view(const Scene& scene, const Arguments& arguments, StopSignal& stop) {
   if (arguments.recording.empty()) {
     route_dds_log();
     source = std::make_unique<view::LiveSource>(
-        scene, arguments.dds.resolve(scene.domain, scene.partition));
+        scene, arguments.dds.resolve(scene));
   } else {
     source = recording_source(scene, arguments, scratch, stop);
     if (!source) return kFailed;

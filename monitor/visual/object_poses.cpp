@@ -37,8 +37,9 @@ void ObjectPoses::forget() {
 
 void ObjectPoses::take(const clearance_msg_PoseBatch& batch) {
   if (batch.scene_revision != 0 && batch.scene_revision != scene_.revision) return;
-  Batch taken{batch.sequence_number, {}};
+  Batch taken{batch.sequence_number, 0, {}};
   for (const auto& wire : std::span(batch.poses._buffer, batch.poses._length)) {
+    taken.stamp_ns = std::max(taken.stamp_ns, wire.stamp_ns);
     if (wire.object >= objects_.size() || scene_.objects[wire.object].fixed) continue;
     const Pose pose = pose_of(wire);
     if (is_usable(pose)) taken.poses.push_back({wire.object, wire.stamp_ns, pose});
@@ -52,16 +53,25 @@ void ObjectPoses::take(const clearance_msg_PoseBatch& batch) {
 
 bool ObjectPoses::use(const clearance_msg_Distances& report) {
   moved_ = false;
+  const std::int64_t newest_ns = report.newest_pose_ns + report.clock_offset_ns;
+  for (const auto& [source, queue] : waiting_) apply_up_to(0, newest_ns, source);
   for (const auto& used : std::span(report.sources._buffer, report.sources._length)) {
-    const auto found = waiting_.find(used.source);
-    if (found == waiting_.end()) continue;
-    auto& queue = found->second;
-    while (!queue.empty() && queue.front().sequence_number <= used.sequence_number) {
-      apply(found->first, queue.front());
-      queue.pop_front();
-    }
+    apply_up_to(used.sequence_number, newest_ns, used.source);
   }
   return moved_;
+}
+
+// Batches of a source from the front on, as long as one of the two says that they have been used.
+void ObjectPoses::apply_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns,
+                              const std::string& source) {
+  const auto found = waiting_.find(source);
+  if (found == waiting_.end()) return;
+  auto& queue = found->second;
+  while (!queue.empty() &&
+         (queue.front().sequence_number <= sequence_number || queue.front().stamp_ns <= stamp_ns)) {
+    apply(source, queue.front());
+    queue.pop_front();
+  }
 }
 
 void ObjectPoses::apply(const std::string& source, const Batch& batch) {

@@ -1,9 +1,10 @@
 // Where the objects of a cell are, as a client can know it: the poses that the latest report used,
 // taken from the batches of the poses topic.
 //
-// The report names the last batch of each source that its tick took in; poses of later batches wait
-// for the report that uses them, so that bodies, witness points and distances belong together. Not
-// judged here: a pose that the daemon refuses as implausible is shown all the same.
+// The report names the last batch of each source that its tick took in, and where it took in none,
+// the stamp of the newest pose in use. Poses of later batches wait for the report that uses them,
+// so that bodies, witness points and distances belong together. Not judged here: a pose that the
+// daemon refuses as implausible is shown all the same.
 #pragma once
 
 #include <cstdint>
@@ -43,6 +44,7 @@ class ObjectPoses {
   };
   struct Batch {
     std::uint64_t sequence_number;
+    std::int64_t stamp_ns;  // the newest of its poses
     std::vector<Moved> poses;
   };
   struct Known {
@@ -52,6 +54,7 @@ class ObjectPoses {
   };
 
   void apply(const std::string& source, const Batch& batch);
+  void apply_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns, const std::string& source);
 
   const Scene& scene_;
   std::vector<Known> objects_;

@@ -187,6 +187,7 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
     EXPECT_EQ(found[i]["parameters"]["playback.time"], 1.0);
     EXPECT_FALSE(found[i]["parameters"]["playback.playing"]);
   }
+  SCOPED_TRACE(found[0]["last"]["clearance/distances"]["minimum"].dump());
   EXPECT_EQ(found[0]["last"]["/tf"]["transforms"].size(), 3u);
   EXPECT_EQ(found[0]["last"]["/tf"]["transforms"], found[1]["last"]["/tf"]["transforms"]);
   const json &first = found[0]["last"]["clearance/distances"],
@@ -247,9 +248,9 @@ TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "scene.mcap").string();
   const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess record(test::kRecord, test::with({"-o", file, "--cell", cell.path(), "--scene",
-                                                 "--seconds", "3"},
-                                                dds));
+  ChildProcess record(
+      test::kRecord,
+      test::with({"-o", file, "--cell", cell.path(), "--scene", "--seconds", "3"}, dds));
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
   EXPECT_EQ(record.wait(), 0) << record.output();

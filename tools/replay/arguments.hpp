@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/single_robot_cell.hpp"
@@ -36,6 +37,9 @@ struct ReplayArguments {
   std::vector<std::string> joints;  // NAME=POSITION
   std::string out;
   std::string csv;
+  std::string plot;                                             // SVG; empty: none
+  std::string report;                                           // HTML; empty: none
+  std::vector<std::pair<std::string, std::string>> plot_pairs;  // empty: the nearest
   bool force = false;
   bool published = false;
   bool evaluate_all = false;

@@ -22,6 +22,7 @@
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/replay/progress_bar.hpp"
+#include "tools/replay/run_curves.hpp"
 
 namespace clearance {
 namespace {
@@ -132,12 +133,13 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, std::optiona
   }
 }
 
-// What was asked for of -o and --csv.
+// What was asked for of -o, --csv, --plot and --report.
 class Outputs {
  public:
   Outputs(const ReplayArguments& arguments, const Scene& scene) : arguments_(arguments) {
     if (!arguments.out.empty()) recording_.emplace(arguments.out, scene);
     if (!arguments.csv.empty()) csv_.emplace(arguments.csv, scene, !arguments.published);
+    if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, scene);
   }
   // False, after saying why, when a file cannot be made.
   [[nodiscard]] bool ok() const { return !csv_ || said(csv_->error()); }
@@ -146,12 +148,14 @@ class Outputs {
     begun_ = true;
     if (recording_) recording_->add(tick);
     if (csv_) csv_->add(tick);
+    if (curves_) curves_->add(tick);
   }
   // False, after saying why, when not all is written.
-  bool close() {
+  bool close(const OfflineReplay& replay) {
+    const bool drawn = !curves_ || said(curves_->write(replay));
     const bool recorded = !recording_ || recording_->close() || said(recording_->error());
     const bool tabled = !csv_ || csv_->close() || said(csv_->error());
-    return recorded && tabled;
+    return recorded && tabled && drawn;
   }
   // A recording is made with its first tick only: before that the file is somebody else's.
   void abandon() {
@@ -172,6 +176,7 @@ class Outputs {
   const ReplayArguments& arguments_;
   std::optional<ReportRecorder> recording_;
   std::optional<ReportCsv> csv_;
+  std::optional<RunCurves> curves_;
   bool begun_ = false;
 };
 
@@ -181,7 +186,7 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
   if (replay.stopped) {
     outputs.abandon();
   } else {
-    written = outputs.close();
+    written = outputs.close(replay);
   }
   if (!replay.ok() || !written) return kFailed;
   return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
@@ -223,11 +228,16 @@ bool are_one_file(const std::filesystem::path& first, const std::filesystem::pat
 }  // namespace
 
 int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
-  if (are_one_file(arguments.out, arguments.csv)) {
-    say("-o and --csv name the same file; expected one for each");
-    return kUsage;
+  const std::vector<std::string> written = {arguments.out, arguments.csv, arguments.plot,
+                                            arguments.report};
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!are_one_file(written[k], written[i])) continue;
+      say(fmt::format("two outputs name the same file, {}; expected one for each", written[i]));
+      return kUsage;
+    }
   }
-  for (const std::string& output : {arguments.out, arguments.csv}) {
+  for (const std::string& output : written) {
     for (const std::string& recording : arguments.recordings) {
       if (!output_is_not_an_input("clearance-replay", output,
                                   {recording, arguments.cell, arguments.reference})) {

@@ -91,14 +91,11 @@ Browser::Browser(int width, int height, std::function<void()> meanwhile)
   from_browser_ = from[0];
   deadline_ = std::chrono::steady_clock::now() + kPatience;
   const nlohmann::json page = call("Target.createTarget", {{"url", "about:blank"}});
-  session_ = call("Target.attachToTarget",
-                  {{"targetId", page.at("targetId")}, {"flatten", true}})
+  session_ = call("Target.attachToTarget", {{"targetId", page.at("targetId")}, {"flatten", true}})
                  .at("sessionId");
   call("Page.enable");
-  call("Emulation.setDeviceMetricsOverride", {{"width", width},
-                                              {"height", height},
-                                              {"deviceScaleFactor", 1},
-                                              {"mobile", false}});
+  call("Emulation.setDeviceMetricsOverride",
+       {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
 
 Browser::~Browser() {
@@ -125,9 +122,9 @@ void Browser::open(const std::string& url) {
 void Browser::wait_for(const std::string& expression) {
   deadline_ = std::chrono::steady_clock::now() + kPatience;
   for (;;) {
-    const nlohmann::json answer = call(
-        "Runtime.evaluate", {{"expression", fmt::format("!!({})", expression)},
-                             {"returnByValue", true}});
+    const nlohmann::json answer =
+        call("Runtime.evaluate",
+             {{"expression", fmt::format("!!({})", expression)}, {"returnByValue", true}});
     if (answer.at("result").value("value", false)) return;
     for (int i = 0; i < 5; ++i) meanwhile_();
   }

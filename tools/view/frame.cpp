@@ -50,8 +50,7 @@ void Frame::publish_scene(Server& server) {
   const std::int64_t time_ns = report_time_ns_ = report->second.time_ns;
   revision_ = report_->scene_revision;
   poses_.use(*report_);
-  server.publish(
-      {kTransforms, 0, time_ns, shared(transforms_message(scene_, poses_, time_ns))});
+  server.publish({kTransforms, 0, time_ns, shared(transforms_message(scene_, poses_, time_ns))});
   server.publish({kClosest, 0, time_ns, shared(closest_message(scene_, *report_, time_ns))});
 }
 

@@ -32,8 +32,8 @@ Request request_of(const json& message) {
     return {Request::Kind::kGetParameters, {}, {}, {}, message.value("id", "")};
   }
   if (operation == "setParameters") {
-    return {Request::Kind::kSetParameters, {}, {}, message.at("parameters"),
-            message.value("id", "")};
+    return {
+        Request::Kind::kSetParameters, {}, {}, message.at("parameters"), message.value("id", "")};
   }
   if (operation == "subscribeParameterUpdates") return {Request::Kind::kSubscribeParameters};
   return {};

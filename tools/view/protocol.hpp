@@ -1,8 +1,8 @@
 // Foxglove's WebSocket protocol, version 1, as far as this server speaks it:
 // https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md
 //
-// JSON texts: serverInfo, advertise, status, parameterValues; subscribe, unsubscribe, getParameters,
-// setParameters, subscribeParameterUpdates. Binary: message data and time.
+// JSON texts: serverInfo, advertise, status, parameterValues; subscribe, unsubscribe,
+// getParameters, setParameters, subscribeParameterUpdates. Binary: message data and time.
 #pragma once
 
 #include <array>

@@ -22,8 +22,8 @@ RecordingSource::RecordingSource(const Scene& scene, std::filesystem::path file,
       time_ns_(timeline_.begin_ns) {}
 
 std::int64_t RecordingSource::at(double seconds) const {
-  const double ns = std::clamp(1e9 * seconds, 0.0,
-                               static_cast<double>(timeline_.end_ns - timeline_.begin_ns));
+  const double ns =
+      std::clamp(1e9 * seconds, 0.0, static_cast<double>(timeline_.end_ns - timeline_.begin_ns));
   return timeline_.begin_ns + std::llround(ns);
 }
 

@@ -40,7 +40,7 @@ class RecordingSource final : public Source {
   Timeline timeline_;
   Frame frame_;
   std::unique_ptr<RecordingReader> reader_;
-  RecordedMessage next_;      // read, and still to come
+  RecordedMessage next_;  // read, and still to come
   bool has_next_ = false;
   std::int64_t read_ns_ = 0;  // everything up to then has been taken
   std::int64_t time_ns_;      // what is shown

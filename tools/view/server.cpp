@@ -54,8 +54,7 @@ struct ServerState {
 // One WebSocket. It lives as long as an operation of it is under way.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(tcp::socket socket, ServerState& server)
-      : socket_(std::move(socket)), server_(server) {}
+  Viewer(tcp::socket socket, ServerState& server) : socket_(std::move(socket)), server_(server) {}
   ~Viewer() { server_.viewers.erase(this); }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
@@ -140,8 +139,7 @@ void Viewer::read() {
       return;
     }
     const auto bytes = self->received_.data();
-    self->answer(
-        parse_request({static_cast<const char*>(bytes.data()), self->received_.size()}));
+    self->answer(parse_request({static_cast<const char*>(bytes.data()), self->received_.size()}));
     self->received_.clear();
     self->read();
   });
@@ -236,8 +234,7 @@ void Viewer::write(bool is_text, std::size_t begin) {
 // One HTTP connection, until it becomes a viewer.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
-  Visitor(tcp::socket socket, ServerState& server)
-      : stream_(std::move(socket)), server_(server) {}
+  Visitor(tcp::socket socket, ServerState& server) : stream_(std::move(socket)), server_(server) {}
 
   void read() {
     parser_.emplace();
@@ -303,8 +300,7 @@ Server::Server(const std::string& host, std::uint16_t port, Content content)
   const tcp::endpoint local = state_->acceptor.local_endpoint();
   const std::string shown = local.address().is_v6() ? fmt::format("[{}]", host) : host;
   state_->address = fmt::format("http://{}:{}/", shown, local.port());
-  state_->session =
-      std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
+  state_->session = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
   state_->accept();
 }
 

@@ -64,11 +64,11 @@ class Scan {
 
 void Scan::take_report(std::int64_t log_ns) {
   const clearance_msg_PairDistance& minimum = report_->minimum;
-  const bool known = report_->minimum_known &&
-                     minimum.status < static_cast<std::uint8_t>(PairStatus::kStale);
+  const bool known =
+      report_->minimum_known && minimum.status < static_cast<std::uint8_t>(PairStatus::kStale);
   found_.reports.push_back(log_ns);
-  least_.push_back({log_ns, known ? minimum.distance : kNaN, known ? minimum.lower : kNaN,
-                    minimum.pair});
+  least_.push_back(
+      {log_ns, known ? minimum.distance : kNaN, known ? minimum.lower : kNaN, minimum.pair});
 }
 
 void Scan::take_zone(std::int64_t log_ns) {

@@ -25,7 +25,7 @@ struct ZoneSpan {
 
 // The least over a stretch of time; NaN where no minimum was known in it.
 struct Stretch {
-  std::int64_t time_ns = 0;  // of the least, or of the stretch's begin
+  std::int64_t time_ns = 0;            // of the least, or of the stretch's begin
   double distance = 0.0, lower = 0.0;  // m
 };
 

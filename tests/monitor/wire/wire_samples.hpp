@@ -157,6 +157,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
                                                         static_cast<std::int64_t>(random()),
                                                         random() % 2 != 0,
                                                         random() % 2 != 0,
+                                                        random() % 2 != 0,
                                                         "arm",
                                                         "tracker"};
   }

@@ -1,0 +1,16 @@
+// Pictures of a run, by clearance-view, which stands beside this program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/replay/arguments.hpp"
+#include "tools/replay/report_page.hpp"
+
+namespace clearance {
+
+// Writes the pictures that the moments name. Empty, or why there are none.
+[[nodiscard]] std::string take_pictures(const ReplayArguments& arguments, const std::string& cell,
+                                        const std::vector<PicturedMoment>& moments);
+
+}  // namespace clearance

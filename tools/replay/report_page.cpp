@@ -1,0 +1,176 @@
+#include "tools/replay/report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "monitor/pair_name.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 1120px; margin: 32px auto; padding: 0 20px; color: #17202b; }
+h1 { font-size: 24px; margin-bottom: 4px; } h2 { font-size: 18px; margin-top: 36px; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+td, th { text-align: left; padding: 4px 12px 4px 0; border-bottom: 1px solid #dfe3e8; vertical-align: top; }
+th { color: #64707d; font-weight: 550; }
+.held { color: #0f8a6d; font-weight: 650; } .failed { color: #d1242f; font-weight: 650; }
+figure { margin: 18px 0; } figure img, figure svg { width: 100%; height: auto; border: 1px solid #dfe3e8; border-radius: 8px; }
+figcaption { font-weight: 600; margin-bottom: 6px; } .quiet { color: #64707d; }
+)";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string row(const std::string& term, const std::string& text) {
+  return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", term, escaped(text));
+}
+
+std::string base64(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned value = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      value =
+          (value << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      out += i + k <= bytes.size() ? kDigits[(value >> (18U - 6U * k)) & 63U] : '=';
+    }
+  }
+  return out;
+}
+
+std::string summary_table(const Scene& scene, const OfflineReplay& replay, const RunSeries& series,
+                          const ReportPage& page) {
+  std::string out = "<table>\n" + row("Recording", page.recording) +
+                    row("Cell", fmt::format("{}: {}", page.cell, summary(scene)));
+  out += row("Replayed with", page.build);
+  out += row("Run", fmt::format("{} ticks in {:.3f} s", replay.ticks, series.duration_s()));
+  if (replay.closest) {
+    const PairReport& pair = *replay.closest;
+    out += row("Least distance",
+               fmt::format("{:.3f} mm, certified to be from {:.3f} to {:.3f} mm: {}, {}",
+                           1e3 * pair.distance, 1e3 * pair.lower, 1e3 * pair.upper,
+                           pair_name(scene, pair), replay.closest_tick.text()));
+  } else {
+    out += row("Least distance", "not known: no pair was ever evaluated");
+  }
+  out += row("Zones entered", fmt::format("{} times", series.visits().size()));
+  return out + "</table>\n";
+}
+
+std::string expectations(const OfflineReplay& replay, const ReportPage& page) {
+  if (page.expectations.empty() && replay.failures.empty()) {
+    return "<p class=\"quiet\">None was asked for (--expect-min-distance, --expect-no-zone, "
+           "--compare).</p>\n";
+  }
+  std::string out =
+      fmt::format("<p class=\"{}\">{}</p>\n<ul>\n", replay.ok() ? "held" : "failed",
+                  replay.ok() ? "All of them hold in every tick." : "NOT all of them hold.");
+  for (const std::string& each : page.expectations) {
+    out += fmt::format("<li>{}</li>\n", escaped(each));
+  }
+  for (const ReplayFailure& failure : replay.failures) {
+    out += fmt::format("<li class=\"failed\">{} ({:.6f} s): {}</li>\n",
+                       escaped(failure.tick.text()), failure.time_s, escaped(failure.what));
+  }
+  return out + "</ul>\n";
+}
+
+std::string moments(const ReportPage& page) {
+  std::string out;
+  if (!page.no_pictures.empty()) {
+    out += fmt::format("<p class=\"quiet\">No pictures: {}</p>\n", escaped(page.no_pictures));
+  }
+  for (const PicturedMoment& moment : page.moments) {
+    out += fmt::format("<figure><figcaption>{:.4f} s: {}</figcaption>", moment.time_s,
+                       escaped(moment.what));
+    if (std::filesystem::exists(moment.picture)) {
+      out += fmt::format("<img alt=\"the cell at {:.4f} s\" src=\"data:image/png;base64,{}\">",
+                         moment.time_s, base64(moment.picture));
+    }
+    out += "</figure>\n";
+  }
+  return out;
+}
+
+std::string zones(const Scene& scene, const RunSeries& series) {
+  constexpr std::size_t kMost = 100;
+  const std::vector<ZoneVisit> visits = series.visits();
+  if (visits.empty()) return "<p>No zone was ever active.</p>\n";
+  std::string out =
+      "<table><tr><th>Zone</th><th>From, s</th><th>To, s</th><th>Pair</th><th>Least clearance, "
+      "mm</th></tr>\n";
+  for (std::size_t i = 0; i < std::min(visits.size(), kMost); ++i) {
+    const ZoneVisit& visit = visits[i];
+    out += fmt::format(
+        "<tr><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td><td>{:.3f}</td></tr>\n",
+        escaped(scene.zones[visit.zone].name), visit.begin_s, visit.end_s,
+        escaped(pair_name(scene, visit.pair)), 1e3 * visit.clearance);
+  }
+  out += "</table>\n";
+  if (visits.size() > kMost) out += fmt::format("<p>... and {} more.</p>\n", visits.size() - kMost);
+  return out;
+}
+
+// gnuplot's file without what stands before its element.
+std::string inline_svg(const std::string& svg) {
+  const std::size_t begin = svg.find("<svg");
+  return begin == std::string::npos ? "" : svg.substr(begin);
+}
+
+}  // namespace
+
+std::string report_page(const Scene& scene, const OfflineReplay& replay, const RunSeries& series,
+                        const ReportPage& page) {
+  std::string out = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: a run</title>"
+      "<style>{1}</style></head>\n<body><h1>{0}: a run, replayed</h1>\n",
+      escaped(scene.name), kStyle);
+  out += summary_table(scene, replay, series, page);
+  out += "<h2>Expectations</h2>\n" + expectations(replay, page);
+  out += "<h2>Distances</h2>\n";
+  out += page.svg.empty()
+             ? fmt::format("<p class=\"quiet\">No plot: {}</p>\n", escaped(page.no_plot))
+             : fmt::format(
+                   "<figure>{}</figure>\n<p class=\"quiet\">Lines are distances, bands "
+                   "below them reach to the certified lower bounds; shaded: a zone was "
+                   "active.</p>\n",
+                   inline_svg(page.svg));
+  out += "<h2>Worst moments</h2>\n" + moments(page);
+  out += "<h2>Zones</h2>\n" + zones(scene, series);
+  for (const std::string& note : replay.notes) {
+    out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(note));
+  }
+  return out + "</body></html>\n";
+}
+
+}  // namespace clearance
