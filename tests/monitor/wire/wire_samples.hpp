@@ -161,6 +161,16 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
                                                         "arm",
                                                         "tracker"};
   }
+  reserve_sequence(health->joints, random() % 6);
+  for (std::uint32_t i = 0; i < health->joints._maximum; ++i) {
+    health->joints._buffer[health->joints._length++] = {i,
+                                                        any_text(random),
+                                                        static_cast<std::int64_t>(random()),
+                                                        random() % 2 != 0,
+                                                        random() % 2 != 0,
+                                                        "arm",
+                                                        "zeros"};
+  }
 }
 
 }  // namespace clearance::test
