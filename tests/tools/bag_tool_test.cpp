@@ -59,11 +59,11 @@ class BagTool : public testing::Test {
 };
 
 TEST_F(BagTool, OneLineIsARegressionTestOfARobotProgram) {
-  EXPECT_EQ(0, replay("bag", {"--expect-min-distance", "0.05"})) << output;
+  EXPECT_EQ(0, replay("bag", {"--expect-min-distance", "0.2"})) << output;
   EXPECT_THAT(output, HasSubstr("1001 ticks, 1.000 s recorded"));
   write_mcap_bag(folder / "worse.mcap", folding(3.0));
-  EXPECT_EQ(1, replay("worse.mcap", {"--expect-min-distance", "0.05"}));
-  EXPECT_THAT(output, HasSubstr("at least 0.05 m expected"));
+  EXPECT_EQ(1, replay("worse.mcap", {"--expect-min-distance", "0.2"}));
+  EXPECT_THAT(output, HasSubstr("at least 0.2 m expected"));
   EXPECT_THAT(output, testing::ContainsRegex("tick [0-9]+ .*: upper - finger"));
 }
 

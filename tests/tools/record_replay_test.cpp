@@ -195,7 +195,7 @@ TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
   EXPECT_EQ(1, run(kReplay, {"--offline", path("none.mcap"), "--cell", path("cell.yaml")}));
   EXPECT_THAT(output, HasSubstr("cannot read " + path("none.mcap") + ": No such file"));
   EXPECT_EQ(1, run(kReplay, {"--offline", path(""), "--cell", path("cell.yaml")}));
-  EXPECT_THAT(output, HasSubstr("it is a directory; expected a file"));
+  EXPECT_THAT(output, HasSubstr("is no bag: it has neither metadata.yaml nor .mcap"));
   EXPECT_EQ(1, run(kRecord, {"--from-csv", path("none.csv"), "-o", path("never.mcap")}));
   EXPECT_THAT(output, HasSubstr("cannot read " + path("none.csv") + ": No such file"));
   EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
