@@ -260,7 +260,7 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   ChildProcess both(test::kDaemon, {"--nosuchoption"});
   EXPECT_EQ(both.wait(), 2);
   EXPECT_TRUE(both.wrote("--nosuchoption")) << both.output();
-  EXPECT_TRUE(both.wrote("CELL is required")) << both.output();
+  EXPECT_TRUE(both.wrote("[CELL,--urdf,--robot-description] is required")) << both.output();
   ChildProcess peer(test::kDaemon, {"cell.yaml", "--peer", "not an address"});
   EXPECT_EQ(peer.wait(), 2);
   EXPECT_TRUE(peer.wrote("'not an address'")) << peer.output();

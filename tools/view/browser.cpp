@@ -17,7 +17,8 @@
 namespace clearance::view {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(60);
+// A first page on a busy machine without a graphics card takes half a minute.
+constexpr auto kPatience = std::chrono::seconds(180);
 // Where the browser reads and writes (--remote-debugging-pipe).
 constexpr int kBrowserReads = 3, kBrowserWrites = 4;
 

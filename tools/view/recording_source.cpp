@@ -21,10 +21,15 @@ RecordingSource::RecordingSource(const Scene& scene, std::filesystem::path file,
       frame_(scene),
       time_ns_(timeline_.begin_ns) {}
 
+// A time that was rounded on its way, through a link for instance, still means its report.
 std::int64_t RecordingSource::at(double seconds) const {
+  constexpr std::int64_t kRoundedNs = 1'000;
   const double ns =
       std::clamp(1e9 * seconds, 0.0, static_cast<double>(timeline_.end_ns - timeline_.begin_ns));
-  return timeline_.begin_ns + std::llround(ns);
+  const std::int64_t time_ns = timeline_.begin_ns + std::llround(ns);
+  const auto next = std::ranges::lower_bound(timeline_.reports, time_ns);
+  const bool is_next = next != timeline_.reports.end() && *next - time_ns <= kRoundedNs;
+  return is_next ? *next : time_ns;
 }
 
 nlohmann::json RecordingSource::parameters() const {

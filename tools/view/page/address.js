@@ -15,7 +15,7 @@ export const asked = {
 // The address that shows the same again; objects of a pair are joined by "~".
 export function addressOf({ time, pairs, filter, sort, camera, theme, shells }) {
   const all = new URLSearchParams();
-  if (time !== undefined) all.set("t", time.toFixed(4));
+  if (time !== undefined) all.set("t", time.toFixed(6));
   if (pairs.length) all.set("pairs", pairs.join(","));
   if (filter) all.set("filter", filter);
   if (sort !== "lower") all.set("sort", sort);

@@ -33,7 +33,7 @@ class Plot {
   draw(lines, marks = []) {
     const { context, width, height } = fresh(this.canvas);
     const values = lines.flatMap(({ points }) => points.map(([, value]) => value)).filter(Number.isFinite);
-    const least = Math.min(0, ...values), most = roundUp(Math.max(1e-9, ...values) * 1.02);
+    const least = Math.min(0, ...values), most = values.length ? roundUp(Math.max(1e-9, ...values) * 1.02) : 100;
     const left = 34, bottom = 4;
     const x = (s) => left + (width - left) * (1 + s / HISTORY_S);
     const y = (value) => 4 + (height - 4 - bottom) * (1 - (value - least) / (most - least));
