@@ -248,9 +248,9 @@ TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "scene.mcap").string();
   const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess record(
-      test::kRecord,
-      test::with({"-o", file, "--cell", cell.path(), "--scene", "--seconds", "3"}, dds));
+  ChildProcess record(test::kRecord, test::with({"-o", file, "--cell", cell.path(), "--scene",
+                                                 "--uncompressed", "--seconds", "3"},
+                                                dds));
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
   EXPECT_EQ(record.wait(), 0) << record.output();
