@@ -18,6 +18,7 @@
 #include "config/quantities.hpp"
 #include "config/refresh_share.hpp"
 #include "config/revision.hpp"
+#include "config/robot_reader.hpp"
 #include "config/scalar.hpp"
 #include "config/shape_reader.hpp"
 #include "config/simulation_reader.hpp"
@@ -106,7 +107,8 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
                                    {"distances", &topics.distances},
                                    {"catalogue", &topics.catalogue},
                                    {"health", &topics.health},
-                                   {"zones", &topics.zones}}) {
+                                   {"zones", &topics.zones},
+                                   {"joint_states", &topics.joint_states}}) {
     const YamlNode* name_node = map.optional(key);
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
@@ -156,30 +158,37 @@ void CellReader::read_dds(const YamlNode& node, Scene& scene) {
   map.refuse_unknown_keys();
 }
 
-// Objects, then pairs, then zones: each list names what the one before defines, and is checked as
-// far as that could be read.
+// Objects, robots, then pairs, then zones: each list names what the one before defines, and is
+// checked as far as that could be read.
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities,
                                         Scene& scene) {
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
-  const YamlNode* objects_node = map.required("objects");
+  const YamlNode* robots_node = map.optional("robots");
+  const YamlNode* objects_node =
+      robots_node == nullptr ? map.required("objects") : map.optional("objects");
   const YamlNode* pairs_node = map.required("pairs");
   const YamlNode* allowed_node = map.optional("allowed_collisions");
   const YamlNode* zones_node = map.optional("zones");
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
-  if (objects_node == nullptr) {
+  ShapeReader shapes(quantities, file_.parent_path(), revision_);
+  if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
+  RobotList robots;
+  if (robots_node != nullptr) {
+    robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);
+  } else if (objects_node == nullptr) {
     list.names_known = false;
-  } else {
-    ShapeReader shapes(quantities, file_.parent_path(), revision_);
-    list = read_objects(*objects_node, defaults, quantities, shapes);
   }
+  refuse_same_names(list, diagnostics_);
+  refuse_too_many_sources(list, diagnostics_);
   GroupIndex group_index(list, diagnostics_);
   PairList pairs;
   pairs.complete = false;
   if (pairs_node != nullptr)
-    pairs = read_pairs(*pairs_node, allowed_node, list, group_index, diagnostics_);
+    pairs =
+        read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
   if (zones_node != nullptr)
     scene.zones = read_zones(*zones_node, list, pairs, group_index, quantities);
   if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
@@ -187,6 +196,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     scene.simulation = read_simulation(*simulation_node, list, quantities);
   scene.pairs = std::move(pairs.pairs);
   scene.objects = std::move(list.objects);
+  scene.robots = std::move(robots.robots);
+  scene.variables = std::move(robots.variables);
 }
 
 // The top level. Units come first, since every other section needs them; without them the rest is

@@ -12,18 +12,8 @@
 namespace clearance {
 namespace {
 
-constexpr std::size_t kMaxObjects = 4096;     // idl/clearance.idl
 constexpr std::size_t kMaxSourceName = 32;    // bytes; idl/clearance.idl
 constexpr std::size_t kMaxNamedSources = 15;  // of the 16 that are heard: one place for any other
-
-// A name that a batch can carry.
-std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagnostics) {
-  auto name = read_name(node, "a source's name", diagnostics);
-  if (!name || name->size() <= kMaxSourceName) return name;
-  diagnostics.add(node, fmt::format("found a source's name of {} bytes; expected at most {}",
-                                    name->size(), kMaxSourceName));
-  return std::nullopt;
-}
 
 // What is accepted of poses that arrive. A value that cannot be read is reported and stays as it
 // is.
@@ -219,6 +209,14 @@ const YamlNode& name_place(const YamlNode& object) {
 
 }  // namespace
 
+std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagnostics) {
+  auto name = read_name(node, "a source's name", diagnostics);
+  if (!name || name->size() <= kMaxSourceName) return name;
+  diagnostics.add(node, fmt::format("found a source's name of {} bytes; expected at most {}",
+                                    name->size(), kMaxSourceName));
+  return std::nullopt;
+}
+
 // Accepts the same ranges as the objects themselves.
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
@@ -231,7 +229,6 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
   return defaults;
 }
 
-// A name that two objects share is reported at the second one, with the line of the first.
 ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                         const Quantities& quantities, ShapeReader& shapes) {
   Diagnostics& diagnostics = quantities.diagnostics();
@@ -251,30 +248,39 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                     items.size(), kMaxObjects));
     return list;
   }
-  std::map<std::string, const YamlNode*> first;
-  std::set<std::string> sources;
   for (const YamlNode& item : items) {
-    Object object = reader.read(item, list.names_known);
-    const YamlNode& place = name_place(item);
-    if (!object.source.empty() && sources.insert(object.source).second &&
-        sources.size() == kMaxNamedSources + 1) {
-      diagnostics.add(place,
-                      fmt::format("found the source '{}' after {} others; expected at most {}",
-                                  object.source, kMaxNamedSources, kMaxNamedSources));
-    }
-    if (!object.name.empty()) {
-      if (const auto [same, is_new] = first.emplace(object.name, &place); !is_new) {
-        diagnostics.add(
-            place,
-            fmt::format("found the object name '{}' again; expected it once (first in line {})",
-                        object.name, same->second->line));
-      }
-    }
-    list.objects.push_back(std::move(object));
-    list.places.push_back(&place);
+    list.objects.push_back(reader.read(item, list.names_known));
+    list.places.push_back(&name_place(item));
   }
   if (node.kind != YamlNode::Kind::kSequence) list.names_known = false;
   return list;
+}
+
+// Reported at the second one, with the line of the first.
+void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics) {
+  std::map<std::string, const YamlNode*> first;
+  for (std::size_t i = 0; i < list.objects.size(); ++i) {
+    const std::string& name = list.objects[i].name;
+    if (name.empty()) continue;
+    if (const auto [same, is_new] = first.emplace(name, list.places[i]); !is_new) {
+      diagnostics.add(
+          *list.places[i],
+          fmt::format("found the object name '{}' again; expected it once (first in line {})", name,
+                      same->second->line));
+    }
+  }
+}
+
+void refuse_too_many_sources(const ObjectList& list, Diagnostics& diagnostics) {
+  std::set<std::string> sources;
+  for (std::size_t i = 0; i < list.objects.size(); ++i) {
+    const std::string& source = list.objects[i].source;
+    if (source.empty() || !sources.insert(source).second) continue;
+    if (sources.size() != kMaxNamedSources + 1) continue;
+    diagnostics.add(*list.places[i],
+                    fmt::format("found the source '{}' after {} others; expected at most {}",
+                                source, kMaxNamedSources, kMaxNamedSources));
+  }
 }
 
 }  // namespace clearance

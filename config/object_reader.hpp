@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct ObjectDefaults {
   std::string source;  // any
 };
 
+// The name of a source, at most as long as a batch can carry; nothing after a diagnostic.
+[[nodiscard]] std::optional<std::string> read_source(const YamlNode& node,
+                                                     Diagnostics& diagnostics);
+
 // Objects with what they were read from, so that later sections can report mistakes at their
 // places.
 struct ObjectList {
@@ -32,9 +37,16 @@ struct ObjectList {
 // Reads `defaults:`. A value that cannot be read is reported and keeps its default.
 [[nodiscard]] ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities);
 
-// Reads `objects:`, at most 4096 with unique names. An object with a mistake stays in the list,
-// since the ids of all that follow are places in it.
+inline constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
+
+// Reads `objects:`, at most kMaxObjects. An object with a mistake stays in the list, since the ids
+// of all that follow are places in it.
 [[nodiscard]] ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                                       const Quantities& quantities, ShapeReader& shapes);
+
+// Of all objects, those that are links of robots included: no two may have one name, nor may they
+// name more sources than are heard.
+void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics);
+void refuse_too_many_sources(const ObjectList& list, Diagnostics& diagnostics);
 
 }  // namespace clearance

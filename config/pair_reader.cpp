@@ -20,6 +20,7 @@ class PairReader {
       : objects_(objects), group_index_(group_index), diagnostics_(diagnostics) {}
 
   void read_rules(const YamlNode& node);
+  void allow(const PairExceptions& exceptions);
   void read_exceptions(const YamlNode& node);
   PairList finish(const YamlNode& rules);
 
@@ -107,6 +108,14 @@ PairReader::Candidate* PairReader::find(PairKey key) {
   return found != candidates_.end() && found->key == key ? &*found : nullptr;
 }
 
+// Of these many are not watched anyway: they are said of a whole robot.
+void PairReader::allow(const PairExceptions& exceptions) {
+  for (const auto& [key, line] : exceptions) {
+    Candidate* candidate = find(key);
+    if (candidate != nullptr && candidate->allowed_line == 0) candidate->allowed_line = line;
+  }
+}
+
 // The reason why an exception removes nothing, as the end of a sentence.
 std::string PairReader::why_nothing(const Between& between, const std::vector<PairKey>& keys) {
   if (keys.empty()) {
@@ -191,9 +200,11 @@ PairList PairReader::finish(const YamlNode& rules) {
 
 // Exceptions are read after all rules: they refer to what the rules as a whole watch.
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
-                    GroupIndex& group_index, Diagnostics& diagnostics) {
+                    const PairExceptions& exceptions, GroupIndex& group_index,
+                    Diagnostics& diagnostics) {
   PairReader reader(objects, group_index, diagnostics);
   reader.read_rules(pairs);
+  reader.allow(exceptions);
   if (allowed != nullptr) reader.read_exceptions(*allowed);
   return reader.finish(pairs);
 }

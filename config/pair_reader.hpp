@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "config/group_index.hpp"
@@ -16,10 +17,13 @@ struct PairList {
   bool complete = true;           // false: a rule could not be read, and its pairs are missing
 };
 
+// Pairs that may touch since a robot's description says so, and the line of the robot.
+using PairExceptions = std::vector<std::pair<PairKey, int>>;
+
 // `allowed` may be nullptr. Reports rules and exceptions that change nothing, about objects
 // that nothing watches, and about more published pairs than a report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
-                                  const ObjectList& objects, GroupIndex& group_index,
-                                  Diagnostics& diagnostics);
+                                  const ObjectList& objects, const PairExceptions& exceptions,
+                                  GroupIndex& group_index, Diagnostics& diagnostics);
 
 }  // namespace clearance

@@ -5,36 +5,22 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <system_error>
 
 #include "config/robot_exceptions.hpp"
+#include "config/robot_files.hpp"
 #include "config/yaml_emitter.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 namespace {
 
-// 24 sides stand out by 1 / cos(pi / 24) - 1 = 0.86 % of the radius; more sides are slower to query
-// and little nearer to the cylinder.
-constexpr int kCylinderSides = 24;
-
 // An identity pose is not written: the default of a cell file is the same.
 bool is_identity(const UrdfOrigin& origin) {
   return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero();
-}
-
-// Rpy of URDF: rotations about the fixed axes x, y, z in this order, so the matrix product has z on
-// the left.
-Pose pose(const UrdfOrigin& origin) {
-  return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
-                          Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *
-                          Eigen::AngleAxisd(origin.rpy.x(), Vec3::UnitX())};
 }
 
 // Emits one cell, section by section, into one YAML emitter.
@@ -58,7 +44,6 @@ class RobotCellWriter {
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
   void fail(int line, const std::string& text);
-  std::optional<std::filesystem::path> package_directory(const std::string& name) const;
 
   const RobotCellOptions& options_;
   UrdfRobot robot_;
@@ -90,68 +75,34 @@ void RobotCellWriter::find_fixed_links() {
     for (const UrdfJoint& joint : robot_.joints) {
       if (joint.type != "fixed" || !fixed_.contains(joint.parent) || fixed_.contains(joint.child))
         continue;
-      fixed_[joint.child] = compose(fixed_[joint.parent], pose(joint.parent_from_child));
+      fixed_[joint.child] = compose(fixed_[joint.parent], pose_of(joint.parent_from_child));
       grown = true;
     }
   }
 }
 
-// A --package option wins. Otherwise the search goes upwards from the URDF, as packages usually
-// contain the description that refers to them.
-std::optional<std::filesystem::path> RobotCellWriter::package_directory(
-    const std::string& name) const {
-  for (const auto& [package, directory] : options_.packages) {
-    if (package == name) return directory;
-  }
-  std::filesystem::path at =
-      std::filesystem::absolute(options_.urdf).lexically_normal().parent_path();
-  for (; at.has_relative_path(); at = at.parent_path()) {
-    if (at.filename() == name) return at;
-    if (std::error_code fault; std::filesystem::is_directory(at / name, fault)) return at / name;
-  }
-  return std::nullopt;
-}
-
 // Where the mesh is, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
-  // The two schemes that URDF files use; other texts are paths relative to the URDF.
-  static const std::string kPackage = "package://", kFile = "file://";
-  const std::string& file = mesh.file;
-  std::filesystem::path path;
-  if (file.starts_with(kPackage)) {
-    const std::size_t slash = file.find('/', kPackage.size());
-    const std::string name = file.substr(kPackage.size(), slash - kPackage.size());
-    const auto directory = package_directory(name);
-    if (!directory || slash == std::string::npos) {
-      fail(mesh.line, fmt::format("found the mesh '{}', and no directory for the package '{}'; "
-                                  "expected --package {}=DIRECTORY",
-                                  file, name, name));
-      return file;
-    }
-    path = *directory / file.substr(slash + 1);
-  } else if (file.starts_with(kFile)) {
-    path = file.substr(kFile.size());
-  } else {
-    path = options_.urdf.parent_path() / file;  // an absolute path stays as it is
+  const auto path = RobotFiles{options_.urdf, options_.packages}.find(mesh.file);
+  if (!path) {
+    const std::string package = package_of(mesh.file);
+    fail(mesh.line, fmt::format("found the mesh '{}', and no directory for the package '{}'; "
+                                "expected --package {}=DIRECTORY",
+                                mesh.file, package, package));
+    return mesh.file;
   }
-  path = std::filesystem::absolute(path).lexically_normal();
-  if (std::error_code fault; !std::filesystem::is_regular_file(path, fault)) {
-    fail(mesh.line, fmt::format("found the mesh '{}', and no file '{}'", file, path.string()));
+  if (std::error_code fault; !std::filesystem::is_regular_file(*path, fault)) {
+    fail(mesh.line,
+         fmt::format("found the mesh '{}', and no file '{}'", mesh.file, path->string()));
   }
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
-  return path.lexically_relative(directory).string();
+  return path->lexically_relative(directory).string();
 }
 
-// A prism whose sides touch the cylinder: its vertices are farther out by 1 / cos(pi / sides).
 void RobotCellWriter::emit_prism_around(const UrdfCylinder& cylinder) {
-  // A little more than the exact factor, so that rounding cannot cut into the cylinder.
-  const double vertex_radius =
-      cylinder.radius / std::cos(std::numbers::pi / kCylinderSides) * (1.0 + 1e-12);
   out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "base" << YAML::Value << YAML::BeginSeq;
-  for (int i = 0; i < kCylinderSides; ++i) {
-    const double angle = 2.0 * std::numbers::pi * (i + 0.5) / kCylinderSides;
-    emit_list(out_, shortest(vertex_radius * std::cos(angle)),
-              shortest(vertex_radius * std::sin(angle)));
+  for (const Vec2& vertex : prism_around(cylinder)) {
+    emit_list(out_, shortest(vertex.x()), shortest(vertex.y()));
   }
   out_ << YAML::EndSeq << YAML::Key << "z" << YAML::Value;
   emit_list(out_, shortest(-0.5 * cylinder.length), shortest(0.5 * cylinder.length));

@@ -16,8 +16,7 @@ struct RobotCellOptions {
   std::filesystem::path urdf;
   std::filesystem::path srdf;       // empty: neighbours are left out
   std::filesystem::path directory;  // of the cell: mesh paths are written relative to it
-  // package:// names and where they are. Others are looked for in the URDF's directory and those
-  // above it: a directory of that name, or one within.
+  // As in RobotFiles; the others are looked for from the URDF upwards.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   std::string group;       // of all links; empty: the robot's name
   double max_speed = 0.0;  // m/s; 0: not stated

@@ -32,9 +32,11 @@ std::string summary(const Scene& scene) {
   }
   const auto published = static_cast<std::size_t>(std::count_if(
       scene.pairs.begin(), scene.pairs.end(), [](const ObjectPair& pair) { return pair.publish; }));
-  return fmt::format("{}: {} ({} moving, {} fixed), {}, {}, {} ({} published), {}", scene.name,
+  const std::string robots =
+      scene.robots.empty() ? "" : counted(scene.robots.size(), "robot") + ", ";
+  return fmt::format("{}: {} ({} moving, {} fixed), {}{}, {}, {} ({} published), {}", scene.name,
                      counted(scene.objects.size(), "object"), scene.objects.size() - fixed, fixed,
-                     counted(parts, "part"), counted(facets, "facet"),
+                     robots, counted(parts, "part"), counted(facets, "facet"),
                      counted(scene.pairs.size(), "pair"), published,
                      counted(scene.zones.size(), "zone"));
 }

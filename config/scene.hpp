@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/robot.hpp"
 #include "config/simulation.hpp"
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
@@ -63,6 +64,7 @@ struct Topics {
   std::string catalogue = "clearance/catalogue";
   std::string health = "clearance/health";
   std::string zones = "clearance/zones";
+  std::string joint_states = "clearance/joint_states";
 };
 
 // All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and
@@ -83,6 +85,8 @@ struct Scene {
   std::string partition;                     // DDS; empty: the default partition
   Topics topics;
   std::vector<Object> objects;
+  std::vector<Robot> robots;  // each stands on the world, an object, or a robot before it
+  std::vector<JointVariable> variables;  // of all robots: what joint states can give
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;
   Simulation simulation;  // may be empty; the monitor never looks at it
@@ -92,7 +96,7 @@ struct Scene {
 // default partition, and without wildcards, which would join cells that were to be kept apart.
 [[nodiscard]] bool is_partition(const std::string& name) noexcept;
 
-// One line: how many objects, parts, facets, pairs and zones.
+// One line: how many objects, robots, parts, facets, pairs and zones.
 [[nodiscard]] std::string summary(const Scene& scene);
 
 }  // namespace clearance

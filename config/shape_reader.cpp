@@ -19,10 +19,6 @@ namespace {
 const std::array<std::string, 7> kShapeKinds = {"box",        "sphere",     "capsule", "prism",
                                                 "polyhedron", "half_space", "mesh"};
 
-// What no mesh of a cell reaches beyond, unless the cell says so: one wrong number in a file, or a
-// file in another unit, makes a body of kilometres, of which every distance would be 0.
-constexpr double kMeshReach = 100.0;  // m
-
 // Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
@@ -270,14 +266,6 @@ const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std:
   return vertices ? &*vertices : nullptr;
 }
 
-// How far from its own origin a mesh may reach along each axis, m.
-double ShapeReader::read_reach(const YamlNode* node) const {
-  if (node == nullptr) return kMeshReach;
-  return quantities_.length(*node, "the largest coordinate of the mesh", kPositive)
-      .value_or(kMeshReach);
-}
-
-// The hull of all vertices of a mesh, which contains the mesh.
 std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   Diagnostics& diagnostics = quantities_.diagnostics();
   MapReader map(node, "a mesh", diagnostics);
@@ -287,25 +275,33 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   const YamlNode* reach_node = map.optional("reach");
   map.refuse_unknown_keys();
   const std::size_t before = diagnostics.count();
-  const Vec3 scale = read_scale(scale_node);
-  const double reach = read_reach(reach_node);
-  LengthUnit unit = quantities_.units().length;
-  if (unit_node != nullptr) unit = read_length_unit(*unit_node, diagnostics).value_or(unit);
+  MeshUse use{.file = "", .scale = read_scale(scale_node), .unit = quantities_.units().length};
+  if (reach_node != nullptr) {
+    use.reach = quantities_.length(*reach_node, "the largest coordinate of the mesh", kPositive)
+                    .value_or(use.reach);
+  }
+  if (unit_node != nullptr) use.unit = read_length_unit(*unit_node, diagnostics).value_or(use.unit);
   if (file_node == nullptr) return std::nullopt;
   const auto file = read_text(*file_node, "the path of a mesh file", diagnostics);
-  const std::vector<Vec3>* vertices = file ? load(*file_node, *file) : nullptr;
-  if (vertices == nullptr || diagnostics.count() != before) return std::nullopt;
+  if (!file || diagnostics.count() != before) return std::nullopt;
+  use.file = *file;
+  return mesh_hull(use, *file_node, node);
+}
 
+std::optional<ShapeResult> ShapeReader::mesh_hull(const MeshUse& use, const YamlNode& file_node,
+                                                  const YamlNode& node) {
+  const std::vector<Vec3>* vertices = load(file_node, use.file);
+  if (vertices == nullptr) return std::nullopt;
   // Checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
-  const std::vector<Vec3> placed = scaled(*vertices, scale, unit);
+  const std::vector<Vec3> placed = scaled(*vertices, use.scale, use.unit);
   for (const Vec3& vertex : placed) {
     const double farthest = vertex.cwiseAbs().maxCoeff();
-    if (farthest <= reach) continue;
-    diagnostics.add(
+    if (farthest <= use.reach) continue;
+    quantities_.diagnostics().add(
         node, fmt::format("found a mesh with a vertex {:.4g} m from its origin along an axis; "
                           "expected another unit or scale, or, where the body reaches farther than "
                           "{:g} m, 'reach' beside 'file'",
-                          farthest, reach));
+                          farthest, use.reach));
     return std::nullopt;
   }
   return polyhedron_from_vertices(placed);

@@ -21,6 +21,16 @@ struct NamedShape {
   ConvexPolyhedron shape;
 };
 
+// A mesh file and how its coordinates become metres.
+struct MeshUse {
+  std::string file;  // relative to the reader's directory
+  Vec3 scale = Vec3::Ones();
+  LengthUnit unit = LengthUnit::kMetre;
+  // No vertex may be farther from the mesh's origin along an axis, m: one wrong number in a file,
+  // or a file in another unit, makes a body of kilometres, of which every distance would be 0.
+  double reach = 100.0;
+};
+
 // Lengths are converted to metres here; what the core gets is SI. Mesh files are read once and kept
 // by path as long as the reader lives.
 class ShapeReader {
@@ -36,6 +46,11 @@ class ShapeReader {
   // one. `at` is the map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 
+  // The hull of all vertices of a mesh, which contains it; nothing after a diagnostic. `file_node`
+  // is where the file is named, `node` where its size is.
+  [[nodiscard]] std::optional<ShapeResult> mesh_hull(const MeshUse& use, const YamlNode& file_node,
+                                                     const YamlNode& node);
+
  private:
   std::optional<ShapeResult> read_kind(const std::string& kind, const YamlNode& node);
   std::optional<ShapeResult> read_box(const YamlNode& node) const;
@@ -48,7 +63,6 @@ class ShapeReader {
   // One inequality normal . x <= offset, in metres.
   std::optional<HalfSpace> read_row(const YamlNode& node) const;
   Vec3 read_scale(const YamlNode* node) const;
-  double read_reach(const YamlNode* node) const;
   // The vertices of a mesh file in its own unit; null after a diagnostic.
   const std::vector<Vec3>* load(const YamlNode& file_node, const std::string& file);
 

@@ -92,6 +92,13 @@ class XmlReader {
     return {values[0], values[1], values[2]};
   }
 
+  // A finite number.
+  double number(const XMLElement& element, const char* name) {
+    double value = 0.0;
+    numbers(element, name, std::span(&value, 1), Sign::kAny);
+    return value;
+  }
+
   // Three finite numbers.
   Vec3 vector(const XMLElement& element, const char* name) {
     std::array<double, 3> values{};
@@ -195,6 +202,37 @@ void read_links(XmlReader& xml, UrdfRobot& robot) {
   }
 }
 
+// Attributes that may be absent keep their defaults.
+void read_number(XmlReader& xml, const XMLElement& element, const char* name, double& value) {
+  if (element.Attribute(name) != nullptr) value = xml.number(element, name);
+}
+
+// All that the element says, whatever its type needs.
+UrdfJoint read_joint(XmlReader& xml, const XMLElement& element) {
+  UrdfJoint joint{.type = xml.attribute(element, "type"),
+                  .parent = xml.attribute_of_child(element, "parent", "link"),
+                  .child = xml.attribute_of_child(element, "child", "link"),
+                  .parent_from_child = xml.origin(element),
+                  .line = element.GetLineNum()};
+  if (const char* name = element.Attribute("name")) joint.name = name;
+  if (const XMLElement* axis = element.FirstChildElement("axis")) {
+    joint.axis = xml.vector(*axis, "xyz");
+  }
+  if (const XMLElement* limit = element.FirstChildElement("limit")) {
+    UrdfLimit& limits = joint.limit.emplace();
+    read_number(xml, *limit, "lower", limits.lower);
+    read_number(xml, *limit, "upper", limits.upper);
+    if (limit->Attribute("velocity") != nullptr) limits.velocity = xml.number(*limit, "velocity");
+  }
+  if (const XMLElement* mimic = element.FirstChildElement("mimic")) {
+    UrdfMimic& follows = joint.mimic.emplace();
+    follows.joint = xml.attribute(*mimic, "joint");
+    read_number(xml, *mimic, "multiplier", follows.multiplier);
+    read_number(xml, *mimic, "offset", follows.offset);
+  }
+  return joint;
+}
+
 // The joints so far are trees; whether this one would make its child an ancestor of itself.
 bool closes_loop(const UrdfJoint& joint, const std::map<std::string, std::string>& parents) {
   std::string at = joint.parent;
@@ -211,8 +249,7 @@ void read_joints(XmlReader& xml, UrdfRobot& robot) {
   for (const UrdfLink& link : robot.links) names.insert(link.name);
   std::map<std::string, std::string> parents;  // by child
   for (const XMLElement* at : children(*xml.root(), "joint")) {
-    const UrdfJoint joint{xml.attribute(*at, "type"), xml.attribute_of_child(*at, "parent", "link"),
-                          xml.attribute_of_child(*at, "child", "link"), xml.origin(*at)};
+    const UrdfJoint joint = read_joint(xml, *at);
     bool known = true;
     for (const std::string& link : {joint.parent, joint.child}) {
       known = known && !link.empty();

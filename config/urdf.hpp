@@ -1,8 +1,9 @@
-// What a cell needs of a robot's description: the collision shapes of URDF, and the pairs that SRDF
-// disables.
+// What a cell needs of a robot's description: the collision shapes and joints of URDF, and the
+// pairs that SRDF disables.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -45,10 +46,27 @@ struct UrdfLink {
   std::vector<UrdfCollision> collisions;
 };
 
-// <joint>: type as written (fixed, revolute, ...); limits and mimic are not needed.
+// <limit>: rad or m, and rad/s or m/s. What is not written is 0, as URDF has it.
+struct UrdfLimit {
+  double lower = 0.0, upper = 0.0;
+  std::optional<double> velocity;
+};
+
+// <mimic>: position = multiplier * (position of `joint`) + offset.
+struct UrdfMimic {
+  std::string joint;
+  double multiplier = 1.0, offset = 0.0;
+};
+
+// <joint>: as written; what its type needs is checked by whoever moves it (config/robot_model.hpp).
 struct UrdfJoint {
   std::string type, parent, child;
   UrdfOrigin parent_from_child;  // at position zero
+  std::string name = {};
+  int line = 0;
+  std::optional<Vec3> axis = {};  // in the joint's frame; of any length
+  std::optional<UrdfLimit> limit = {};
+  std::optional<UrdfMimic> mimic = {};
 };
 
 // <robot>, in the order of the file. No link is the child of two joints.

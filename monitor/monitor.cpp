@@ -1,6 +1,6 @@
 // A tick as its stages, each of which reads what those before it have written:
 //
-//   ingest      samples                        -> Inputs: the pose in use of each object
+//   ingest      samples of poses and joints    -> Inputs: what is in use of each object and joint
 //   displace    Inputs                         -> Displacements, parts posed in the world
 //   cull        Displacements                  -> Culling: pairs seen, with bounds of this tick
 //   schedule    pairs seen, budget             -> Schedule: what is evaluated at once, what is kept
@@ -80,9 +80,10 @@ Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
     : state_(std::make_unique<State>(scene, options)) {}
 Monitor::~Monitor() = default;
 
-const Report& Monitor::tick(std::span<const PoseSample> samples, const TickTime& time) noexcept {
+const Report& Monitor::tick(std::span<const PoseSample> samples,
+                            std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
-  ingest(samples, time, s.scene, s.inputs);
+  ingest(samples, joints, time, s.scene, s.inputs);
   s.displace();
   Evaluation tick = s.evaluation(Budget(s.scene.budget));
   s.culling.cull(s.displaced.changed, s.scheduler.minimum_upper(), tick);
@@ -118,8 +119,8 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   return {.age_ns = state.age_ns,
           .stale = state.late,
           .contradicted = state.contradicted,
-          .source = state.source,
-          .other_source = state.other_source};
+          .source = state.owner.source(),
+          .other_source = state.owner.other_source()};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {

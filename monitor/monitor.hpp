@@ -8,6 +8,7 @@
 #include <span>
 
 #include "config/scene.hpp"
+#include "monitor/joint_batch.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/swept/swept_search.hpp"
@@ -36,11 +37,16 @@ class Monitor {
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
 
-  // One cycle: takes in the samples in the given order (refused ones are counted, never used),
-  // moves the objects, carries every bound forward, evaluates what is due within the budget,
-  // updates zones. The report stays valid until the next tick. Allocates, throws and locks nothing;
-  // same inputs, same bits, with one worker or several.
-  const Report& tick(std::span<const PoseSample> samples, const TickTime& time) noexcept;
+  // One cycle: takes in the samples in the given order, those of joints first (refused ones are
+  // counted, never used), moves the objects, carries every bound forward, evaluates what is due
+  // within the budget, updates zones. The report stays valid until the next tick. Allocates, throws
+  // and locks nothing; same inputs, same bits, with one worker or several.
+  const Report& tick(std::span<const PoseSample> samples, std::span<const JointSample> joints,
+                     const TickTime& time) noexcept;
+  // Of a cell without robots.
+  const Report& tick(std::span<const PoseSample> samples, const TickTime& time) noexcept {
+    return tick(samples, {}, time);
+  }
 
   // Counts a sample that was refused before it came here (a batch made for another scene). In the
   // report from the next tick on; an object that the scene does not have counts in the totals only.

@@ -22,6 +22,8 @@ const char* name(Reject cause) noexcept {
       return "faster than it moves";
     case Reject::kFrozen:
       return "frozen, but with a twist";
+    case Reject::kOtherWay:
+      return "elsewhere than its twist leads";
   }
   return "";
 }

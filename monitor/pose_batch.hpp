@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
+#include "monitor/joint_batch.hpp"
 
 namespace clearance {
 
@@ -41,8 +42,9 @@ enum class Reject : std::uint8_t {
   kOtherSource,    // another source sends this object's poses
   kTooFast,        // farther from the pose in use, or with a faster twist, than the object moves
   kFrozen,         // the same pose again and again, with a twist that says that it moves
+  kOtherWay,       // elsewhere than the twists lead
 };
-inline constexpr std::size_t kRejects = 9;
+inline constexpr std::size_t kRejects = 10;
 [[nodiscard]] const char* name(Reject cause) noexcept;
 
 // Who sent a batch. Fixed size: copied in the tick thread.
@@ -61,12 +63,16 @@ class SourceName {
   std::array<char, kMaxSourceLength + 1> text_{};  // the rest is zeros
 };
 
-// One sample of the topic `poses`.
+// One sample of the topic `poses`, or of `joint_states`: then it has joints instead of poses.
 struct PoseBatch {
   SourceName source;
   std::uint64_t sequence_number = 0;
   std::uint64_t scene_revision = 0;  // of the catalogue its ids are from; 0: not said
   std::vector<PoseSample> samples;
+  std::vector<JointSample> joints = {};
+
+  [[nodiscard]] bool empty() const noexcept { return samples.empty() && joints.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return samples.size() + joints.size(); }
 };
 
 // Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.

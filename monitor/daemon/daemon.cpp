@@ -63,7 +63,8 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       reports_(scene, participant_, publish_queue_, poses_, recording_health_),
       recording_(open_recording(scene, options, poses_, recording_health_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
-                             .max_samples = kBatchesATick * PoseReader::samples_a_batch(scene),
+                             .max_samples = kBatchesATick * (PoseReader::samples_a_batch(scene) +
+                                                             PoseReader::joints_a_batch(scene)),
                              .monitor = monitor_options(options)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());

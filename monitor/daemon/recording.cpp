@@ -31,9 +31,11 @@ std::size_t slots(std::size_t bytes_a_slot) {
 // A slot of a report holds at most all pairs, a slot of a batch as many poses as the reader takes.
 ReportQueueOptions queue_options(const Scene& scene) {
   const std::size_t samples = PoseReader::samples_a_batch(scene);
+  const std::size_t joints = PoseReader::joints_a_batch(scene);
   return {.reports = slots(sizeof(PairReport) * scene.pairs.size()),
-          .inputs = slots(sizeof(PoseSample) * samples),
-          .samples_a_batch = samples};
+          .inputs = slots(sizeof(PoseSample) * samples + sizeof(JointSample) * joints),
+          .samples_a_batch = samples,
+          .joints_a_batch = joints};
 }
 
 }  // namespace

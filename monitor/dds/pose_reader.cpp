@@ -38,6 +38,13 @@ bool admits(const dds_sample_info_t* info, void* names) {
                                                 SystemClock().monotonic_ns());
 }
 
+void log_matched_joints(dds_entity_t, const dds_subscription_matched_status_t status,
+                        void* changed) {
+  static_cast<std::atomic<bool>*>(changed)->store(true);
+  spdlog::info("a writer of joint states {}: {} now",
+               status.current_count_change > 0 ? "appeared" : "left", status.current_count);
+}
+
 // What a person should know of a batch's source. Writers are named by their GUIDs.
 void log_news(const Admission& admission, const SourceName& source, dds_entity_t reader,
               std::uint64_t writer) {
@@ -91,31 +98,44 @@ std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
   return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
 }
 
+std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
+  if (scene.robots.empty()) return 0;
+  return std::min<std::size_t>(2 * scene.variables.size() + 64, clearance_msg_kMaxJoints);
+}
+
 // All memory is reserved before the thread starts; only a source that sends for the first time
 // allocates later.
 PoseReader::PoseReader(const Scene& scene, Participant& participant)
     : scene_(scene),
       samples_a_batch_(samples_a_batch(scene)),
       undecodable_before_(undecodable_samples()),
-      reader_(make_reader(participant)),
-      wait_(participant, {reader_}),
+      reader_(make_reader(participant, TopicKind::kPoses)),
+      joint_reader_(scene.robots.empty() ? 0 : make_reader(participant, TopicKind::kJointStates)),
+      wait_(participant,
+            joint_reader_ == 0 ? std::vector{reader_} : std::vector{reader_, joint_reader_}),
+      joint_names_(scene),
       ring_(kBatches),
       sources_(named_sources(scene)),
       slow_poses_(scene) {
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
-  ring_.prepare([this](PoseBatch& slot) { slot.samples.resize(samples_a_batch_); });
+  ring_.prepare([&](PoseBatch& slot) {
+    slot.samples.resize(samples_a_batch_);
+    slot.joints.resize(joints_a_batch(scene));
+  });
   thread_ = std::thread([this] { run(); });
 }
 
 // The listener and the filter are copied by Cyclone; what they point to is here.
-dds_entity_t PoseReader::make_reader(Participant& participant) {
+dds_entity_t PoseReader::make_reader(Participant& participant, TopicKind kind) {
+  const bool of_joints = kind == TopicKind::kJointStates;
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
-  dds_lset_subscription_matched_arg(listener, log_matched, &writers_changed_, true);
+  dds_lset_subscription_matched_arg(listener, of_joints ? log_matched_joints : log_matched,
+                                    &writers_changed_, true);
   const dds_topic_filter filter{
       .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
   const dds_entity_t reader =
-      participant.reader(TopicKind::kPoses, scene_.topics.poses, kDepth, listener, &filter);
+      participant.reader(kind, scene_.topics.*topic(kind).name, kDepth, listener, &filter);
   dds_delete_listener(listener);
   return reader;
 }
@@ -127,6 +147,7 @@ PoseReader::~PoseReader() {
   wait_.wake();
   thread_.join();
   dds_delete(reader_);
+  if (joint_reader_ != 0) dds_delete(joint_reader_);
 }
 
 // The slot lent by the last call is given back by this one. No lock: the ring has one filler and
@@ -158,45 +179,57 @@ std::uint64_t PoseReader::undecodable() const {
   return undecodable_samples() - undecodable_before_;
 }
 
-// Waits for data or for the destructor.
-void PoseReader::run() {
-  name_thread("poses");
-  while (!stop_) {
-    if (wait_.wait(DDS_INFINITY)) take_all();
-  }
-}
-
-// Takes until nothing is left, into samples that are reused: no allocation for batches that fit.
-void PoseReader::take_all() {
+// Takes until nothing is left, into samples that are reused: no allocation for batches that fit,
+// but for the names of joints.
+template <class Taken>
+void PoseReader::take_all(dds_entity_t reader, Taken& taken) {
   std::array<void*, kDepth> pointers;
   std::array<dds_sample_info_t, kDepth> infos;
-  for (std::size_t i = 0; i < kDepth; ++i) pointers[i] = &*taken_[i];
+  for (std::size_t i = 0; i < kDepth; ++i) pointers[i] = &*taken[i];
   for (;;) {
-    const dds_return_t count = dds_take(reader_, pointers.data(), infos.data(), kDepth, kDepth);
+    const dds_return_t count = dds_take(reader, pointers.data(), infos.data(), kDepth, kDepth);
     if (count < 0) spdlog::error("taking poses failed: {}", dds_strretcode(count));
     if (count <= 0) return;
     if (writers_changed_.exchange(false)) note_writers();
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) hand_over(*taken_[i], infos[i].publication_handle);
+      if (infos[i].valid_data) hand_over(*taken[i], infos[i].publication_handle);
       if (infos[i].instance_state != DDS_IST_ALIVE) names_.forget_name(infos[i].instance_handle);
     }
   }
 }
 
+// Waits for data or for the destructor.
+void PoseReader::run() {
+  name_thread("poses");
+  while (!stop_) {
+    if (!wait_.wait(DDS_INFINITY)) continue;
+    take_all(reader_, taken_);
+    if (joint_reader_ != 0) take_all(joint_reader_, taken_joints_);
+  }
+}
+
 // Names and places of writers that have left are free.
 void PoseReader::note_writers() {
-  const std::vector<std::uint64_t> writers = writers_of(reader_);
+  std::vector<std::uint64_t> writers = writers_of(reader_);
+  if (joint_reader_ != 0) {
+    const std::vector<std::uint64_t> of_joints = writers_of(joint_reader_);
+    writers.insert(writers.end(), of_joints.begin(), of_joints.end());
+  }
   names_.keep(writers);
   const std::lock_guard lock(tallies_mutex_);
   sources_.keep(writers);
 }
 
-// Null: the batch is refused. The log gets what is new.
-SourceTally* PoseReader::tally_of(const clearance_msg_PoseBatch& batch, std::uint64_t writer,
-                                  std::int64_t now_ns) {
-  const SourceName source(batch.source);
-  const Admission admission = sources_.admit(source, writer, batch.poses._length, now_ns);
-  log_news(admission, source, reader_, writer);
+// The log gets what is new.
+SourceTally* PoseReader::admit(dds_entity_t reader, const SourceName& source,
+                               std::uint64_t sequence_number, std::size_t count,
+                               std::uint64_t writer) {
+  const std::int64_t now_ns = SystemClock().monotonic_ns();
+  const Admission admission = sources_.admit(source, writer, count, now_ns);
+  log_news(admission, source, reader, writer);
+  if (admission.tally == nullptr) return nullptr;
+  admission.tally->note_sequence(sequence_number);
+  admission.tally->last_ns = now_ns;
   return admission.tally;
 }
 
@@ -216,12 +249,9 @@ void PoseReader::log_slow_poses(const PoseBatch& batch) {
 // Counts what is missing, converts into a free slot, and hands it to the tick thread.
 void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer) {
   const std::lock_guard lock(tallies_mutex_);
-  const std::int64_t now = SystemClock().monotonic_ns();
-  SourceTally* tally = tally_of(batch, writer, now);
+  SourceTally* tally =
+      admit(reader_, SourceName(batch.source), batch.sequence_number, batch.poses._length, writer);
   if (tally == nullptr) return;
-  tally->note_sequence(batch.sequence_number);
-  tally->last_ns = now;
-
   PoseBatch* slot = ring_.back();
   if (slot == nullptr) {
     ++tally->lost;
@@ -238,6 +268,26 @@ void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer)
         tally->source.view(), batch.scene_revision, scene_.revision);
   }
   if (made_for(*slot, scene_.revision)) log_slow_poses(*slot);
+  ++tally->batches;
+  ring_.push();
+}
+
+// The same of joint states; more names than a cell has any use for are cut.
+void PoseReader::hand_over(clearance_msg_JointStates& states, std::uint64_t writer) {
+  const std::lock_guard lock(tallies_mutex_);
+  SourceTally* tally = admit(joint_reader_, SourceName(states.source), states.sequence_number,
+                             states.names._length, writer);
+  if (tally == nullptr) return;
+  PoseBatch* slot = ring_.back();
+  if (slot == nullptr) {
+    ++tally->lost;
+    return;
+  }
+  from_wire(states, joint_names_, *slot);
+  if (const std::size_t most = joints_a_batch(scene_); slot->joints.size() > most) {
+    tally->cut_poses += slot->joints.size() - most;
+    slot->joints.resize(most);
+  }
   ++tally->batches;
   ring_.push();
 }

@@ -1,5 +1,5 @@
-// The poses topic as a PoseSource: a thread of its own takes samples and hands them to the tick
-// thread.
+// The topics of poses and joint states as a PoseSource: a thread of its own takes samples and hands
+// them to the tick thread.
 #pragma once
 
 #include <array>
@@ -18,6 +18,7 @@
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -26,6 +27,7 @@ class PoseReader final : public PoseSource {
  public:
   // Poses that one batch may hold; what a source sends beyond it is counted and not used.
   [[nodiscard]] static std::size_t samples_a_batch(const Scene& scene) noexcept;
+  [[nodiscard]] static std::size_t joints_a_batch(const Scene& scene) noexcept;
   // Batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
   // Samples of a source that may arrive while the taking thread is held up.
@@ -49,13 +51,16 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] std::uint64_t undecodable() const;
 
  private:
-  dds_entity_t make_reader(Participant& participant);
+  dds_entity_t make_reader(Participant& participant, TopicKind kind);
   void run();
-  void take_all();
+  template <class Taken>
+  void take_all(dds_entity_t reader, Taken& taken);
   void note_writers();
   void hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer);
-  SourceTally* tally_of(const clearance_msg_PoseBatch& batch, std::uint64_t writer,
-                        std::int64_t now_ns);
+  void hand_over(clearance_msg_JointStates& states, std::uint64_t writer);
+  // Null: the batch, of `count` poses or joints, is refused. Counts what is missing before it.
+  SourceTally* admit(dds_entity_t reader, const SourceName& source, std::uint64_t sequence_number,
+                     std::size_t count, std::uint64_t writer);
   void log_slow_poses(const PoseBatch& batch);
 
   const Scene& scene_;
@@ -64,8 +69,11 @@ class PoseReader final : public PoseSource {
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};
   dds_entity_t reader_;
+  dds_entity_t joint_reader_;  // 0: the cell has no robots
   DataWait wait_;
   std::array<Sample<clearance_msg_PoseBatch>, kDepth> taken_;
+  std::array<Sample<clearance_msg_JointStates>, kDepth> taken_joints_;
+  JointNames joint_names_;
   SpscRing<PoseBatch> ring_;
   bool lent_ = false;  // the front slot is with the tick
 

@@ -33,7 +33,10 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.ages.resize(scene.objects.size());
   });
   if (keeps_inputs_) {
-    inputs_.prepare([&](PoseBatch& slot) { slot.samples.resize(options.samples_a_batch); });
+    inputs_.prepare([&](PoseBatch& slot) {
+      slot.samples.resize(options.samples_a_batch);
+      slot.joints.resize(options.joints_a_batch);
+    });
   }
 }
 
@@ -41,7 +44,8 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
 void ReportQueue::input(const PoseBatch& batch) noexcept {
   if (!keeps_inputs_) return;
   PoseBatch* slot = inputs_.back();
-  if (slot == nullptr || batch.samples.size() > slot->samples.capacity()) {
+  if (slot == nullptr || batch.samples.size() > slot->samples.capacity() ||
+      batch.joints.size() > slot->joints.capacity()) {
     count(dropped_inputs_);
     return;
   }

@@ -31,6 +31,7 @@ struct ReportQueueOptions {
   std::size_t reports = 64;
   std::size_t inputs = 0;  // batches kept beside the reports; 0: none, for who does not need them
   std::size_t samples_a_batch = 0;  // a batch larger than that is dropped and counted
+  std::size_t joints_a_batch = 0;   // of a batch of joint states; as well
 };
 
 // One producer, the tick thread, and one consumer. Each of the three rings is lock-free.

@@ -20,6 +20,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       period_ns_(std::llround(1e9 / scene.rate_hz)),
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))) {
   samples_.reserve(options_.max_samples);
+  joints_.reserve(options_.max_samples);
   statistics_.rejected.resize(scene.objects.size());
   statistics_.ages.resize(scene.objects.size());
 }
@@ -62,7 +63,7 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 // One tick, and its report to every sink.
 void TickLoop::tick_once() noexcept {
   take_in();
-  const Report& report = monitor_.tick(samples_, time_.read(clock_));
+  const Report& report = monitor_.tick(samples_, joints_, time_.read(clock_));
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
@@ -74,11 +75,12 @@ void TickLoop::tick_once() noexcept {
 // Batches are used whole: one that no longer fits waits for the next tick.
 void TickLoop::take_in() noexcept {
   samples_.clear();
+  joints_.clear();
   used_count_ = 0;
   for (;;) {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
-    if (samples_.size() + waiting_->samples.size() > options_.max_samples) return;
+    if (samples_.size() + joints_.size() + waiting_->size() > options_.max_samples) return;
     use(*waiting_);
     for (ReportSink* sink : sinks_) sink->input(*waiting_);
     waiting_ = nullptr;
@@ -94,11 +96,15 @@ void TickLoop::use(const PoseBatch& batch) noexcept {
     }
     return;
   }
-  if (batch.samples.empty()) return;
+  if (batch.empty()) return;
   const std::uint32_t source = sources_.of(batch.source);
   for (const PoseSample& sample : batch.samples) {
     samples_.push_back(sample);
     samples_.back().source = source;
+  }
+  for (const JointSample& sample : batch.joints) {
+    joints_.push_back(sample);
+    joints_.back().source = source;
   }
 }
 

@@ -60,6 +60,7 @@ class TickLoop {
 
   const PoseBatch* waiting_ = nullptr;  // taken from the source, did not fit into the last tick
   std::vector<PoseSample> samples_;
+  std::vector<JointSample> joints_;
   std::array<SourceUse, kMaxSources> used_;
   std::size_t used_count_ = 0;
   LoopStatistics statistics_;

@@ -64,7 +64,13 @@ void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs&
     for (std::uint32_t i = 0; i < objects.size(); ++i) displaced.changed.push_back(i);
   }
   // One loop for each step: no object has to wait for the roots and quotients of the one before.
+  bool placed = false;
   for (const std::uint32_t i : moving) {
+    // Links come last: what robots stand on has been advanced.
+    if (!placed && i >= inputs.robots.first_link()) {
+      inputs.robots.place(inputs.time.now_ns, objects);
+      placed = true;
+    }
     TrackedObject& object = objects[i];
     const bool was_late = object.late;
     const double might_have_moved = object.may_have_moved;

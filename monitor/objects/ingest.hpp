@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "monitor/objects/robot_inputs.hpp"
 #include "monitor/objects/source_clock.hpp"
 #include "monitor/objects/tracked_object.hpp"
 
@@ -16,7 +17,8 @@ namespace clearance {
 struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
-  std::vector<TrackedObject> objects;              // as in Scene::objects
+  std::vector<TrackedObject> objects;  // as in Scene::objects
+  RobotInputs robots;
   std::array<SourceClock, kMaxSources> sources;    // by PoseSample::source
   std::array<std::uint64_t, kRejects> rejected{};  // samples, by cause
 };
@@ -24,10 +26,10 @@ struct Inputs {
 // Before the first tick.
 [[nodiscard]] Inputs initial_inputs(const Scene& scene);
 
-// Begins a tick and takes the samples in the given order: one that must not be used is counted and
-// leaves its object's pose as it is.
-void ingest(std::span<const PoseSample> samples, const TickTime& time, const Scene& scene,
-            Inputs& inputs) noexcept;
+// Begins a tick and takes the samples in the given order, those of joints first: one that must not
+// be used is counted and leaves its object's pose, or its joint's position, as it is.
+void ingest(std::span<const PoseSample> samples, std::span<const JointSample> joints,
+            const TickTime& time, const Scene& scene, Inputs& inputs) noexcept;
 
 // Counts a sample that was refused; of an object that the scene does not have, in the totals only.
 void refuse(std::uint32_t object, Reject cause, Inputs& inputs) noexcept;

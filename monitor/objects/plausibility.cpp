@@ -4,14 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
 
-// Twists that claim no more than this share of the largest speed are noise of an object at rest.
-constexpr double kAtRest = 0.01;
-// By which the repetitions of an object that states no max_speed are judged, m/s.
+// By which the twists of an object that states no max_speed are held against its poses, m/s.
 constexpr double kUsualSpeed = 1.0;
 
 // How long an anchor holds, in age limits: an object that is never slower than its speed and a
@@ -19,9 +17,11 @@ constexpr double kUsualSpeed = 1.0;
 constexpr std::int64_t kAnchorAgeLimits = 6;
 
 // Over how long twists are summed up, in age limits: over more, noise comes to something.
-constexpr std::int64_t kWayAgeLimits = 50;
-
-double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
+constexpr std::int64_t kReckoningAgeLimits = 50;
+// The mean of two twists says nothing of what lies between them if that is longer, in age limits.
+constexpr std::int64_t kGapAgeLimits = 2;
+// By which share of itself a twist may be off.
+constexpr double kTwistError = 1.0 / 6.0;
 
 double fastest_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kFastestUnstated;
@@ -29,6 +29,16 @@ double fastest_of(const Object& object) noexcept {
 
 double usual_speed_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kUsualSpeed;
+}
+
+// To first order, where that leaves nothing to see.
+void normalize_almost_unit(Eigen::Quaterniond& q) noexcept {
+  const double off = q.squaredNorm() - 1.0;
+  if (std::abs(off) < 1e-3) {
+    q.coeffs() *= 1.0 - 0.5 * off;
+  } else {
+    q.normalize();
+  }
 }
 
 std::vector<Vec3> corners_of(const Object& object) {
@@ -62,11 +72,7 @@ Landmarks::Landmarks(const Object& object) {
   for (std::size_t i = 0; i < count_; ++i) reach_ = std::max(reach_, points_[i].norm());
 }
 
-// The origin's way and the turn, |R2 - R1| <= 2 |q2 - q1|, mostly tell at once.
-bool Landmarks::stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
-  const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
-  const double turn = 2.0 * std::sqrt(std::min((q - p).squaredNorm(), (q + p).squaredNorm()));
-  if ((to.position - from.position).norm() + turn * reach_ <= limit) return true;
+bool Landmarks::each_stays_within(double limit, const Pose& from, const Pose& to) const noexcept {
   return std::all_of(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_),
                      [&](const Vec3& point) {
                        return (transform(to, point) - transform(from, point)).norm() <= limit;
@@ -74,17 +80,13 @@ bool Landmarks::stay_within(double limit, const Pose& from, const Pose& to) cons
 }
 
 bool Landmarks::are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept {
-  if (twist.linear.norm() + twist.angular.norm() * reach_ <= limit) return true;
-  return fastest(pose, twist) <= limit;
-}
-
-double Landmarks::fastest(const Pose& pose, const Twist& twist) const noexcept {
-  double fastest = 0.0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Vec3 arm = transform(pose, points_[i]) - pose.position;
-    fastest = std::max(fastest, (twist.linear + twist.angular.cross(arm)).norm());
-  }
-  return fastest;
+  const double turn = twist.angular.squaredNorm() * (reach_ * reach_);
+  if (2.0 * (twist.linear.squaredNorm() + turn) <= limit * limit) return true;
+  return std::all_of(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_),
+                     [&](const Vec3& point) {
+                       const Vec3 arm = transform(pose, point) - pose.position;
+                       return (twist.linear + twist.angular.cross(arm)).norm() <= limit;
+                     });
 }
 
 bool can_reach(const Object& object, const Landmarks& landmarks, const Pose& from, const Pose& to,
@@ -99,31 +101,54 @@ bool can_have_twist(const Object& object, const Landmarks& landmarks,
                                                    sample.world_from_object, sample.twist);
 }
 
-void Repetition::add(bool same, std::int64_t stamp_ns, const PoseSample& sample,
-                     const Object& object, const Landmarks& landmarks) noexcept {
-  const double passed = seconds(elapsed(last_ns_, stamp_ns));
+void Repetition::add(bool same, std::int64_t stamp_ns) noexcept {
   last_ns_ = stamp_ns;
   if (!same) since_ns_ = stamp_ns;
-  if (!same || elapsed(way_since_ns_, stamp_ns) > kWayAgeLimits * object.age_limit_ns) {
-    way_ = {};
-    way_since_ns_ = stamp_ns;
-  }
-  const bool moves = same && sample.has_twist &&
-                     !landmarks.are_slower(kAtRest * usual_speed_of(object),
-                                           sample.world_from_object, sample.twist);
-  if (moves) {
-    way_.linear += passed * sample.twist.linear;
-    way_.angular += passed * sample.twist.angular;
-  } else {
-    way_ = {};
-  }
 }
 
-bool Repetition::frozen(const Pose& pose, const Object& object,
-                        const Landmarks& landmarks) const noexcept {
-  const double farthest = usual_speed_of(object) * seconds(object.age_limit_ns);
-  if (!landmarks.are_slower(farthest, pose, way_)) return true;
+bool Repetition::frozen(const Object& object) const noexcept {
   return object.frozen_limit_ns > 0 && elapsed(since_ns_, last_ns_) > object.frozen_limit_ns;
+}
+
+bool Reckoning::follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+                        bool same, const Object& object, const Landmarks& landmarks) noexcept {
+  const bool goes_on = any_ && sample.has_twist &&
+                       elapsed(since_ns_, stamp_ns) <= kReckoningAgeLimits * object.age_limit_ns &&
+                       elapsed(last_ns_, stamp_ns) <= kGapAgeLimits * object.age_limit_ns;
+  if (!goes_on) {
+    start(sample, pose, stamp_ns);
+    return true;
+  }
+  add(sample.twist, stamp_ns, landmarks);
+  const double limit = usual_speed_of(object) * seconds(object.age_limit_ns) + kTwistError * path_;
+  if (landmarks.stay_within(limit, pose_, pose)) return true;
+  if (!same) start(sample, pose, stamp_ns);
+  return false;
+}
+
+void Reckoning::start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns) noexcept {
+  any_ = sample.has_twist;
+  if (!any_) return;
+  pose_ = pose;
+  path_ = 0.0;
+  last_ = sample.twist;
+  since_ns_ = last_ns_ = stamp_ns;
+}
+
+// By the mean of the last twist and this one.
+void Reckoning::add(const Twist& twist, std::int64_t stamp_ns,
+                    const Landmarks& landmarks) noexcept {
+  const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));
+  const Twist step{.linear = half * (last_.linear + twist.linear),
+                   .angular = half * (last_.angular + twist.angular)};
+  last_ = twist;
+  last_ns_ = stamp_ns;
+  path_ += landmarks.length(step);
+  pose_.position += step.linear;
+  const Eigen::Quaterniond half_turn(0.0, 0.5 * step.angular.x(), 0.5 * step.angular.y(),
+                                     0.5 * step.angular.z());
+  pose_.orientation.coeffs() += (half_turn * pose_.orientation).coeffs();
+  normalize_almost_unit(pose_.orientation);
 }
 
 void Anchor::set(const Pose& pose, std::int64_t stamp_ns) noexcept {

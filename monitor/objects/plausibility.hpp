@@ -10,7 +10,9 @@
 // got there, or after ten seconds.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -31,14 +33,26 @@ class Landmarks {
   Landmarks() = default;
   explicit Landmarks(const Object& object);
 
-  // Whether none of them goes farther than `limit`, m, from one pose to the other.
-  [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept;
+  // Whether none of them goes farther than `limit`, m, from one pose to the other. The origin's
+  // way and the turn, |R2 - R1| <= 2 |q2 - q1|, mostly tell at once: (a + b)^2 <= 2 a^2 + 2 b^2.
+  [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
+    const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
+    const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
+    const double shift = (to.position - from.position).squaredNorm();
+    return 2.0 * (shift + turn * (reach_ * reach_)) <= limit * limit ||
+           each_stays_within(limit, from, to);
+  }
   // Whether none of them is faster than `limit`, m/s.
   [[nodiscard]] bool are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept;
-  // The speed of the fastest, m/s.
-  [[nodiscard]] double fastest(const Pose& pose, const Twist& twist) const noexcept;
+  // How far they go, about, m, on a way of so many m and rad.
+  [[nodiscard]] double length(const Twist& way) const noexcept {
+    return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (reach_ * reach_));
+  }
 
  private:
+  [[nodiscard]] bool each_stays_within(double limit, const Pose& from,
+                                       const Pose& to) const noexcept;
+
   std::array<Vec3, 4> points_;  // in the object's frame, m
   std::size_t count_ = 0;
   double reach_ = 0.0;  // none is farther from the frame's origin, m
@@ -55,19 +69,36 @@ class Landmarks {
 class Repetition {
  public:
   // `same`: the sample has the pose that is in use. `stamp_ns`: in the tick's time.
-  void add(bool same, std::int64_t stamp_ns, const PoseSample& sample, const Object& object,
-           const Landmarks& landmarks) noexcept;
-  // The twists lead farther than the object goes in an age limit, or the pose has come for longer
-  // than the cell says that one of this object may.
-  [[nodiscard]] bool frozen(const Pose& pose, const Object& object,
-                            const Landmarks& landmarks) const noexcept;
+  void add(bool same, std::int64_t stamp_ns) noexcept;
+  // It has come for longer than the cell says that one of this object may.
+  [[nodiscard]] bool frozen(const Object& object) const noexcept;
 
  private:
   std::int64_t since_ns_ = 0, last_ns_ = 0;
-  // Where the twists lead, m and rad, in sum, so that noise is none; zero from when one says that
-  // the object is as good as at rest.
-  Twist way_;
-  std::int64_t way_since_ns_ = 0;
+};
+
+// Where the twists lead from an older pose: poses that are elsewhere contradict them. A twist may
+// be off in time by the age limit, and by a sixth of itself; over the whole time that is summed up,
+// noise comes to nothing and an offset to no more than a fiftieth of the object's speed.
+class Reckoning {
+ public:
+  // Adds the sample's twist, if it has one. False: it leads elsewhere. `stamp_ns` is in the tick's
+  // time, `same` as of a repetition.
+  [[nodiscard]] bool follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+                             bool same, const Object& object, const Landmarks& landmarks) noexcept;
+
+  // How long what follows must agree, in age limits.
+  static constexpr std::int64_t kAgreesAfterAgeLimits = 6;
+
+ private:
+  void start(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns) noexcept;
+  void add(const Twist& twist, std::int64_t stamp_ns, const Landmarks& landmarks) noexcept;
+
+  bool any_ = false;
+  Pose pose_;          // where they lead
+  double path_ = 0.0;  // how far it is to there, m
+  Twist last_;
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 
 // An older pose of the stream in use, from which the object cannot have gone too far either.

@@ -1,6 +1,6 @@
 #include "monitor/objects/source_clock.hpp"
 
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/objects/elapsed.hpp"
+#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -16,11 +15,6 @@ constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTo
 // A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
 // after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
 constexpr double kJump = 1e4;  // m
-
-// A source that has sent no pose of an object for this long no longer owns it.
-constexpr std::int64_t kSilentNs = 1'000'000'000;
-// As good as any time: a hundred years.
-constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 
 bool usable(const Vec3& v) noexcept {
   return std::abs(v.x()) <= kLargestInSample && std::abs(v.y()) <= kLargestInSample &&
@@ -66,15 +60,6 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
 }
 
-// An object belongs to the source that the cell names, else to the first one that sends its poses,
-// until that one has been silent for long enough.
-bool belongs_to_another(const Object& object, const PoseSample& sample, std::int64_t now_ns,
-                        const TrackedObject& state) noexcept {
-  if (sample.source == state.source || state.source == kNoSource) return false;
-  return state.source_is_stated ||
-         elapsed(state.taken_ns, now_ns) <= std::max(object.age_limit_ns, kSilentNs);
-}
-
 // Whether the object can have come to this pose; if not, whether it has to be taken all the same.
 bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
                TrackedObject& state) noexcept {
@@ -88,20 +73,47 @@ bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
   return true;
 }
 
-// What is against a well-formed sample of the object's source, given those before it.
+// What is against a well-formed sample of the object's source, given those before it. `pose` is the
+// sample's, as queries take it.
 std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
-                                    std::int64_t stamp_ns, const SampleLimits& limits,
-                                    TrackedObject& state) noexcept {
+                                    const Pose& pose, std::int64_t stamp_ns,
+                                    const SampleLimits& limits, TrackedObject& state) noexcept {
   if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
   if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
-  const Pose pose = as_queries_take_it(sample.world_from_object);
   const bool same = state.seen && same_pose(pose, state.pose);
-  state.repetition.add(same, stamp_ns, sample, object, state.landmarks);
-  if (same && state.repetition.frozen(pose, object, state.landmarks)) return Reject::kFrozen;
+  state.repetition.add(same, stamp_ns);
+  if (same && state.repetition.frozen(object)) return Reject::kFrozen;
   if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
+  if (!state.reckoning.follows(sample, pose, stamp_ns, same, object, state.landmarks)) {
+    return same ? Reject::kFrozen : Reject::kOtherWay;
+  }
   return std::nullopt;
+}
+
+void use(const Object& object, const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
+         std::int64_t now_ns, TrackedObject& state) noexcept {
+  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
+  if (sample.has_twist) {
+    state.twist = sample.twist;
+    state.twist_known = true;
+  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
+    // of that age does.
+    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
+    const double seconds = static_cast<double>(apart_ns) * 1e-9;
+    state.twist =
+        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
+  }
+  state.pose = pose;
+  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
+  state.anchor.follow(state.pose, stamp_ns, object);
+  state.other_place.clear();
+  state.contradiction.agree();
+  state.stamp_ns = stamp_ns;
+  state.owner.take(sample.source, now_ns);
+  state.seen = true;
 }
 
 }  // namespace
@@ -118,54 +130,43 @@ TrackedObject initial_state(const Object& object) {
   return state;
 }
 
-std::optional<Reject> refusal(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-                              const SampleLimits& limits, TrackedObject& state) noexcept {
+std::optional<Reject> take(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+                           const SampleLimits& limits, TrackedObject& state) noexcept {
   if (const auto cause = malformed(sample)) return cause;
-  if (belongs_to_another(object, sample, limits.now_ns, state)) {
-    state.other_source = sample.source;
+  if (state.owner.refuses(sample.source, limits.now_ns, object.age_limit_ns)) {
     return Reject::kOtherSource;
   }
-  const auto cause = contradiction(object, sample, stamp_ns, limits, state);
+  const Pose pose = as_queries_take_it(sample.world_from_object);
+  const auto cause = contradiction(object, sample, pose, stamp_ns, limits, state);
+  if (!cause) use(object, sample, pose, stamp_ns, limits.now_ns, state);
   // Of poses that come in another order than they were made one is as good as the other.
   const bool reordered =
       cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= object.age_limit_ns;
   if (cause && !reordered) {
-    state.contradicted_until_ns = limits.now_ns + object.age_limit_ns;
-    state.agrees_again = false;
+    const std::int64_t age_limits =
+        cause == Reject::kOtherWay ? Reckoning::kAgreesAfterAgeLimits : 1;
+    state.contradiction.meet(limits.now_ns, age_limits * object.age_limit_ns);
   }
   return cause;
 }
 
-void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-            std::int64_t now_ns, TrackedObject& state) noexcept {
-  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
-  if (sample.has_twist) {
-    state.twist = sample.twist;
-    state.twist_known = true;
-  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
-    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
-    // of that age does.
-    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
-    const double seconds = static_cast<double>(apart_ns) * 1e-9;
-    state.twist =
-        state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
-  }
-  state.pose = as_queries_take_it(sample.world_from_object);
-  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
-  state.anchor.follow(state.pose, stamp_ns, object);
-  state.other_place.clear();
-  state.agrees_again = true;
-  state.stamp_ns = stamp_ns;
-  if (state.source != sample.source) state.other_source = kNoSource;
-  state.source = sample.source;
-  state.taken_ns = now_ns;
+void follow(const LinkState& link, TrackedObject& state) noexcept {
+  state.follows_joints = true;
+  state.joints_late = !link.known || link.late;
+  state.unseen_by_joints = link.known ? link.may_have_moved(state.reach) : kInfinity;
+  if (!link.known) return;
+  state.joints_contradicted = link.contradicted;
+  state.pose = as_queries_take_it(link.pose);
+  state.stamp_ns = link.stamp_ns;
+  state.twist = link.twist;
+  state.twist_known = link.velocity_known;
   state.seen = true;
 }
 
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.stamp_ns = less(now_ns, kForgottenNs);
-  state.taken_ns = now_ns;
-  state.contradicted_until_ns = std::numeric_limits<std::int64_t>::min();
+  state.owner.forget_age(now_ns);
+  state.contradiction.forget_age();
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
@@ -183,12 +184,17 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.seen_last_tick = true;
 
   state.age_ns = elapsed(state.stamp_ns, now_ns);
-  state.contradicted = !state.agrees_again || now_ns <= state.contradicted_until_ns;
-  state.late = state.contradicted || state.age_ns > object.age_limit_ns;
-  const double age_s = static_cast<double>(state.age_ns) * 1e-9;
-  state.may_have_moved = state.contradicted ? kInfinity
-                         : state.late       ? rounded_up(object.max_speed * age_s)
-                                            : 0.0;
+  if (state.follows_joints) {
+    state.contradicted = state.joints_contradicted;
+    state.late = state.joints_late;
+    state.may_have_moved = state.unseen_by_joints;
+  } else {
+    state.contradicted = state.contradiction.holds(now_ns);
+    state.late = state.contradicted || state.age_ns > object.age_limit_ns;
+    state.may_have_moved = state.contradicted ? kInfinity
+                           : state.late       ? rounded_up(object.max_speed * seconds(state.age_ns))
+                                              : 0.0;
+  }
   state.unseen_since =
       state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
 }

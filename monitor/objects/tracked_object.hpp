@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "config/scene.hpp"
+#include "monitor/kinematics/contradiction.hpp"
+#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/kinematics/input_owner.hpp"
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
 #include "monitor/motion/relative_displacement.hpp"
@@ -51,19 +53,19 @@ struct TrackedObject {
   Motion motion;  // since the last tick; none when first seen
   std::array<std::uint64_t, kRejects> rejected{};
 
-  // Who sends its poses, and when the last of them was taken, in the tick's time.
-  std::uint32_t source = kNoSource;
-  bool source_is_stated = false;  // by the cell: no other takes over
-  std::int64_t taken_ns = 0;
-  std::uint32_t other_source = kNoSource;  // the last that was refused since it is not that one
+  InputOwner owner;  // who sends its poses
   // Poses have come that contradict the pose in use or the cell, not longer ago than the age limit
   // or none since that does not: nothing is known of it.
   bool contradicted = false;
-  bool agrees_again = true;  // a pose was taken after the last contradiction
-  std::int64_t contradicted_until_ns = std::numeric_limits<std::int64_t>::min();  // tick's time
+  Contradiction contradiction;
+  // Of a link whose pose follows from joints: they say how late it is, and how far it may have
+  // moved since, m.
+  bool follows_joints = false, joints_late = false, joints_contradicted = false;
+  double unseen_by_joints = 0.0;
   Landmarks landmarks;
   Anchor anchor;
   Repetition repetition;
+  Reckoning reckoning;
   OtherPlace other_place;
 
   Pose pose_last_tick;
@@ -93,21 +95,15 @@ struct TrackedObject {
 // Before any input: a fixed object stands where the scene says.
 [[nodiscard]] TrackedObject initial_state(const Object& object);
 
-// The time of a tick and what it allows.
-struct SampleLimits {
-  std::int64_t now_ns = 0;
-  std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
-};
+// Takes a sample into use; else says why it must not be used, and notes what that says of the
+// object. `object` is a moving one and the one that the sample names; `stamp_ns` is the sample's,
+// in the tick's time.
+[[nodiscard]] std::optional<Reject> take(const Object& object, const PoseSample& sample,
+                                         std::int64_t stamp_ns, const SampleLimits& limits,
+                                         TrackedObject& state) noexcept;
 
-// Why this sample must not be used, if so; notes what that says of the object. `object` is a moving
-// one and the one that the sample names; `stamp_ns` is the sample's, in the tick's time.
-[[nodiscard]] std::optional<Reject> refusal(const Object& object, const PoseSample& sample,
-                                            std::int64_t stamp_ns, const SampleLimits& limits,
-                                            TrackedObject& state) noexcept;
-
-// Takes an unrefused sample into use.
-void accept(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
-            std::int64_t now_ns, TrackedObject& state) noexcept;
+// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere.
+void follow(const LinkState& link, TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;

@@ -1,4 +1,4 @@
-// The messages of our five topics in a recording, in file order.
+// The messages of our six topics in a recording, in file order.
 #pragma once
 
 #include <cstdint>

@@ -13,8 +13,9 @@ namespace {
 // Batches that no report names (made for another scene) are written all the same when so many wait.
 constexpr std::size_t kMostWaiting = 4096;
 
-// The source's stamp of a batch: its newest pose.
+// The source's stamp of a batch: its newest pose; joints have one in common.
 std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
+  if (!batch.joints.empty()) return batch.joints.front().stamp_ns;
   const auto newest = std::ranges::max_element(batch.samples, {}, &PoseSample::stamp_ns);
   return newest == batch.samples.end() ? otherwise : newest->stamp_ns;
 }
@@ -35,9 +36,12 @@ Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::i
 
 // Encoded now, written with the report that names it: only then is it known that a tick used it.
 void Recorder::poses(const PoseBatch& batch) {
-  to_wire(batch, *batch_);
-  const std::span<const std::byte> cdr = encoder_.encode(*batch_);
-  waiting_.push_back({batch.source, batch.sequence_number, stamp_of(batch, last_ns_),
+  const bool of_joints = !batch.joints.empty();
+  if (!of_joints) to_wire(batch, *batch_);
+  const std::span<const std::byte> cdr =
+      of_joints ? encoder_.encode(*make_joint_states(batch, scene_)) : encoder_.encode(*batch_);
+  waiting_.push_back({of_joints ? TopicKind::kJointStates : TopicKind::kPoses, batch.source,
+                      batch.sequence_number, stamp_of(batch, last_ns_),
                       std::vector<std::byte>(cdr.begin(), cdr.end())});
 }
 
@@ -66,7 +70,7 @@ void Recorder::write_used(std::span<const SourceUse> sources, std::int64_t log_n
 // The first `count` batches, stamped with the log time of the report that used them.
 void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
   for (std::size_t i = 0; i < count; ++i) {
-    writer_.write(TopicKind::kPoses, log_ns, waiting_[i].stamp_ns,
+    writer_.write(waiting_[i].kind, log_ns, waiting_[i].stamp_ns,
                   std::span<const std::byte>(waiting_[i].cdr));
   }
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));

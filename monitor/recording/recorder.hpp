@@ -24,7 +24,8 @@ class Recorder {
   Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
            bool overwrite = false);
 
-  // A batch that a tick used, in the order of use; written in front of that tick's report.
+  // A batch that a tick used, of poses or of joints, in the order of use; written in front of that
+  // tick's report.
   void poses(const PoseBatch& batch);
 
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
@@ -46,6 +47,7 @@ class Recorder {
 
  private:
   struct Waiting {  // a batch whose report has not come yet
+    TopicKind kind;
     SourceName source;
     std::uint64_t sequence_number;
     std::int64_t stamp_ns;

@@ -1,4 +1,4 @@
-// The five topics as a recording holds them: schema name and text, message encoding.
+// The six topics as a recording holds them: schema name and text, message encoding.
 #pragma once
 
 #include <optional>

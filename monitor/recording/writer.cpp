@@ -1,4 +1,4 @@
-// Gives each of the five topics a channel at the start, so that channel ids do not depend on what
+// Gives each of the six topics a channel at the start, so that channel ids do not depend on what
 // is written first.
 #include "monitor/recording/writer.hpp"
 

@@ -1,4 +1,4 @@
-// A recording: an MCAP file of our five topics, with the cell that it was made with.
+// A recording: an MCAP file of our six topics, with the cell that it was made with.
 #pragma once
 
 #include <array>

@@ -146,7 +146,7 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
     result_.stopped = options_.stop && options_.stop();
     if (result_.stopped) return;
     begin_tick(input);
-    const Report& report = monitor_->tick(input.samples, input.time);
+    const Report& report = monitor_->tick(input.samples, input.joints, input.time);
     end_tick(input, report, on_tick);
     show_progress();
   }

@@ -19,6 +19,7 @@ TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
                    const RecordingOutline& outline)
     : reader_(file),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
+      joint_names_(scene),
       sources_(scene),
       by_report_(outline.has_reports) {}
 
@@ -26,6 +27,7 @@ TickFeed::TickFeed(const std::filesystem::path& file, const Scene& scene,
 // poses have a new time.
 bool TickFeed::next(TickInput& tick) {
   tick.samples.clear();
+  tick.joints.clear();
   tick.sources.clear();
   tick.recorded = nullptr;
   tick.restart = false;
@@ -39,6 +41,7 @@ bool TickFeed::read_one() {
   if (!reader_.next(message)) return false;
   read_to_ns_ = message.log_ns;
   if (message.kind == TopicKind::kPoses) read_batch(message);
+  if (message.kind == TopicKind::kJointStates) read_joints(message);
   if (message.kind == TopicKind::kDistances) {
     WaitingReport waiting{.report = {}, .log_ns = message.log_ns};
     if (decoder_.decode(message.cdr, waiting.report)) {
@@ -70,6 +73,17 @@ void TickFeed::read_batch(const RecordedMessage& message) {
   batches_waiting_.push_back(std::move(waiting));
 }
 
+// Joints are found again by name, in whatever cell.
+void TickFeed::read_joints(const RecordedMessage& message) {
+  if (!decoder_.decode(message.cdr, wire_joints_)) {
+    ++undecodable_;
+    return;
+  }
+  Waiting waiting{.batch = {}, .log_ns = message.log_ns};
+  from_wire(*wire_joints_, joint_names_, waiting.batch);
+  batches_waiting_.push_back(std::move(waiting));
+}
+
 // A report names the last batch of each source that its tick used. Recorded over DDS, that batch
 // may stand behind the report, so reading goes on for a while.
 bool TickFeed::next_by_report(TickInput& tick) {
@@ -95,7 +109,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   while (!all_there(tick.sources) && read_to_ns_ < current_.log_ns + kReadAheadNs) {
     if (!read_one()) break;
   }
-  take_used(tick.sources, tick.samples);
+  take_used(tick);
   tick.complete = missing_.empty();
   forget_unused(current_.log_ns);
   return true;
@@ -124,7 +138,8 @@ bool TickFeed::all_there(std::span<const SourceUse> sources) const {
 }
 
 // Of each source everything up to the batch that is named, all sources in file order.
-void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSample>& samples) {
+void TickFeed::take_used(TickInput& tick) {
+  const std::vector<SourceUse>& sources = tick.sources;
   std::vector<std::size_t> until;  // by source: one past the place of its last batch
   for (const SourceUse& use : sources) {
     const std::size_t place = place_of(use);
@@ -144,20 +159,24 @@ void TickFeed::take_used(std::span<const SourceUse> sources, std::vector<PoseSam
     const std::size_t here = place++;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       if (here >= until[i] || !(waiting.batch.source == sources[i].source)) continue;
-      add(waiting.batch, samples);
+      add(waiting.batch, tick);
       return true;
     }
     return false;
   });
 }
 
-void TickFeed::add(const PoseBatch& batch, std::vector<PoseSample>& samples) {
+void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   ++batches_;
-  if (batch.samples.empty()) return;
+  if (batch.empty()) return;
   const std::uint32_t source = sources_.of(batch.source);
   for (const PoseSample& sample : batch.samples) {
-    samples.push_back(sample);
-    samples.back().source = source;
+    tick.samples.push_back(sample);
+    tick.samples.back().source = source;
+  }
+  for (const JointSample& sample : batch.joints) {
+    tick.joints.push_back(sample);
+    tick.joints.back().source = source;
   }
 }
 
@@ -178,7 +197,7 @@ bool TickFeed::next_by_time(TickInput& tick) {
   }
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns == tick.time.now_ns) {
     const PoseBatch& batch = batches_waiting_.front().batch;
-    add(batch, tick.samples);
+    add(batch, tick);
     const auto use = std::ranges::find(tick.sources, batch.source, &SourceUse::source);
     if (use != tick.sources.end()) {
       use->sequence_number = batch.sequence_number;

@@ -22,6 +22,7 @@
 #include "monitor/source_numbers.hpp"
 #include "monitor/tick_time.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -29,6 +30,7 @@ namespace clearance {
 struct TickInput {
   TickTime time;
   std::vector<PoseSample> samples;
+  std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   bool restart = false;  // the daemon had been started anew: its monitor knew nothing
@@ -69,21 +71,24 @@ class TickFeed {
 
   [[nodiscard]] bool read_one();
   void read_batch(const RecordedMessage& message);
+  void read_joints(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] bool next_by_time(TickInput& tick);
   [[nodiscard]] bool all_there(std::span<const SourceUse> sources) const;
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
-  void take_used(std::span<const SourceUse> sources, std::vector<PoseSample>& samples);
-  void add(const PoseBatch& batch, std::vector<PoseSample>& samples);
+  void take_used(TickInput& tick);
+  void add(const PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
 
   RecordingReader reader_;
   ObjectMap objects_;
+  JointNames joint_names_;
   SourceNumbers sources_;
   bool by_report_;
   CdrDecoder decoder_;
   Sample<clearance_msg_PoseBatch> wire_batch_;
+  Sample<clearance_msg_JointStates> wire_joints_;
 
   std::deque<Waiting> batches_waiting_;        // in file order
   std::deque<WaitingReport> reports_waiting_;  // in file order

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace clearance {
 namespace {
@@ -157,6 +158,7 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
   out.source = SourceName(batch.source);
   out.sequence_number = batch.sequence_number;
   out.scene_revision = batch.scene_revision;
+  out.joints.clear();
   out.samples.resize(batch.poses._length);
   for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
     const clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
@@ -170,6 +172,48 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
     sample.twist.linear = from_wire(pose.linear);
     sample.twist.angular = from_wire(pose.angular);
   }
+}
+
+void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out) {
+  out.source = SourceName(states.source);
+  out.sequence_number = states.sequence_number;
+  out.scene_revision = 0;
+  out.samples.clear();
+  out.joints.clear();
+  const bool has_velocities =
+      states.velocities._length > 0 && states.velocities._length == states.names._length;
+  for (std::uint32_t i = 0; i < states.names._length; ++i) {
+    const std::uint32_t variable = names.find(states.names._buffer[i]);
+    if (variable == JointNames::kUnused) continue;
+    JointSample& sample = out.joints.emplace_back();
+    sample.variable = variable;
+    sample.stamp_ns = states.stamp_ns;
+    sample.position = i < states.positions._length ? states.positions._buffer[i]
+                                                   : std::numeric_limits<double>::quiet_NaN();
+    sample.has_velocity = has_velocities;
+    if (has_velocities) sample.velocity = states.velocities._buffer[i];
+  }
+}
+
+// All samples of a batch have one stamp, and all or none have a velocity.
+Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch, const Scene& scene) {
+  Sample<clearance_msg_JointStates> states;
+  copy_text(batch.source.view(), states->source);
+  states->sequence_number = batch.sequence_number;
+  if (batch.joints.empty()) return states;
+  states->stamp_ns = batch.joints.front().stamp_ns;
+  const bool has_velocities = batch.joints.front().has_velocity;
+  reserve_sequence(states->names, batch.joints.size());
+  reserve_sequence(states->positions, batch.joints.size());
+  if (has_velocities) reserve_sequence(states->velocities, batch.joints.size());
+  for (const JointSample& sample : batch.joints) {
+    const bool known = sample.variable < scene.variables.size();
+    states->names._buffer[states->names._length++] =
+        duplicate(known ? scene.variables[sample.variable].name : "");
+    states->positions._buffer[states->positions._length++] = sample.position;
+    if (has_velocities) states->velocities._buffer[states->velocities._length++] = sample.velocity;
+  }
+  return states;
 }
 
 // The sequence keeps its buffer from batch to batch.

@@ -9,6 +9,7 @@
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -37,6 +38,15 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 // ids, non-finite numbers and the rest. Allocates only while `out` has less room than the batch has
 // poses.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
+
+// The same of joint states. Names that the cell has no use for are left out, those that it does not
+// know become samples of no variable, which the tick counts and refuses, as it does positions that
+// are missing.
+void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out);
+
+// Of a batch of joints; allocates.
+[[nodiscard]] Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
+                                                                  const Scene& scene);
 
 // A batch with room for `poses` poses, for writing.
 [[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses);

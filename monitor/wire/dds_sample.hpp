@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// The Cyclone descriptor of a topic type; exists for the five topics' types only.
+// The Cyclone descriptor of a topic type; exists for the six topics' types only.
 template <class T>
 [[nodiscard]] const dds_topic_descriptor_t& topic_descriptor() noexcept = delete;
 template <>
@@ -38,6 +38,12 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_Health>() noexcept {
   return clearance_msg_Health_desc;
+}
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_JointStates>() noexcept {
+  return clearance_msg_JointStates_desc;
 }
 
 // One sample of a topic type, all zero at first. Everything it points to is from dds_alloc and is

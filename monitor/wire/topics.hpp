@@ -1,4 +1,4 @@
-// The five topics of Clearance in one table: cell key, name, type, quality of service, history
+// The six topics of Clearance in one table: cell key, name, type, quality of service, history
 // depths.
 //
 // DDS endpoints, recordings and tools take everything about a topic from here; a test holds the
@@ -15,7 +15,14 @@
 
 namespace clearance {
 
-enum class TopicKind : std::uint8_t { kCatalogue, kPoses, kDistances, kZones, kHealth };
+enum class TopicKind : std::uint8_t {
+  kCatalogue,
+  kPoses,
+  kJointStates,
+  kDistances,
+  kZones,
+  kHealth,
+};
 
 // How a topic is delivered. Both are reliable with keep-last history.
 enum class Delivery : std::uint8_t {
@@ -33,13 +40,16 @@ struct Topic {
   std::int32_t reader_depth;  // samples of a key that may wait, unless a reader asks for more
 };
 
-// In the order of TopicKind, which is that of recordings: poses stand before the reports that used
-// them. A distances writer keeps 64 reports for a client that is held up for a moment; the daemon
-// may be 16 batches of a source (16 ms at 1 kHz) late in taking poses without losing any.
-inline constexpr std::array<Topic, 5> kTopics = {{
+// In the order of TopicKind, which is that of recordings: what comes in stands before the reports
+// that used them. A distances writer keeps 64 reports for a client that is held up for a moment;
+// the daemon may be 16 batches of a source (16 ms at 1 kHz) late in taking poses without losing
+// any.
+inline constexpr std::array<Topic, 6> kTopics = {{
     {TopicKind::kCatalogue, &Topics::catalogue, &clearance_msg_Catalogue_desc, Delivery::kLatched,
      1, 1},
     {TopicKind::kPoses, &Topics::poses, &clearance_msg_PoseBatch_desc, Delivery::kStream, 64, 16},
+    {TopicKind::kJointStates, &Topics::joint_states, &clearance_msg_JointStates_desc,
+     Delivery::kStream, 64, 16},
     {TopicKind::kDistances, &Topics::distances, &clearance_msg_Distances_desc, Delivery::kStream,
      64, 64},
     {TopicKind::kZones, &Topics::zones, &clearance_msg_ZoneState_desc, Delivery::kLatched, 1, 1},

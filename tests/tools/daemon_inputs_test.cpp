@@ -151,5 +151,15 @@ TEST_F(DaemonInputs, PoseThatTheObjectCannotHaveReachedMakesItsPairsUnknownAndIs
   })) << daemon->output();
 }
 
+TEST_F(DaemonInputs, TwistThatThePosesContradictMakesThePairsUnknownAndIsNamed) {
+  start();
+  ASSERT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
+  robot.scale_twists(-1.0);
+  EXPECT_TRUE(send_until(PairStatus::kUnknown, 5 * kSecond));
+  EXPECT_TRUE(eventually([&] {
+    return daemon->output().find("elsewhere than its twist leads") != std::string::npos;
+  })) << daemon->output();
+}
+
 }  // namespace
 }  // namespace clearance::test

@@ -21,8 +21,8 @@ std::uint64_t last_used(const clearance_msg_Distances& report) {
   return report.sources._length == 0 ? 0 : report.sources._buffer[0].sequence_number;
 }
 
-// Sends `count` batches, one for every report that comes, until a report was made with the last
-// one.
+// Sends `count` batches, each when a report was made with the one before, until one was made with
+// the last.
 Reports run_in_step(test::Poses& poses, test::Distances& distances, std::size_t count) {
   Reports reports;
   std::uint64_t used = 0;
@@ -33,7 +33,8 @@ Reports run_in_step(test::Poses& poses, test::Distances& distances, std::size_t 
       return {};
     }
     used = std::max(used, last_used(**reports.back()));
-    if (poses.sent().size() < count) poses.send(0.01 * static_cast<double>(poses.sent().size()));
+    const std::size_t sent = poses.sent().size();
+    if (sent < count && used == sent) poses.send(0.01 * static_cast<double>(sent));
   }
   return reports;
 }

@@ -91,6 +91,8 @@ class Poses {
 
   // Everything is farther on by this than the cell says, m.
   void move_by(const Vec3& way) { moved_ = way; }
+  // Twists are this many times those of the motion.
+  void scale_twists(double factor) { twist_factor_ = factor; }
   // Stamps are of a clock that is ahead by this.
   void set_clock_ahead(std::int64_t ns) { clock_ahead_ns_ = ns; }
 
@@ -109,7 +111,8 @@ class Poses {
                                .stamp_ns = now,
                                .world_from_object = {moved_ + pose.world_from_object.position,
                                                      pose.world_from_object.orientation},
-                               .twist = pose.twist,
+                               .twist = {.linear = twist_factor_ * pose.twist.linear,
+                                         .angular = twist_factor_ * pose.twist.angular},
                                .has_twist = with_twist});
     }
     to_wire(batch, *sample_);
@@ -124,6 +127,7 @@ class Poses {
   std::vector<PoseBatch> sent_;
   std::int64_t clock_ahead_ns_ = 0;
   Vec3 moved_ = Vec3::Zero();
+  double twist_factor_ = 1.0;
   Sample<clearance_msg_PoseBatch> sample_;
 };
 

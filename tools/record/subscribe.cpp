@@ -28,7 +28,7 @@ constexpr std::int32_t kDepth = 2048;
 constexpr std::size_t kAtOnce = 64;         // samples for each call
 constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other topics are checked
 
-// Readers of all five topics; what they take goes into the recording byte for byte.
+// Readers of all six topics; what they take goes into the recording byte for byte.
 class Subscription {
  public:
   // `scene`: channels for 3D viewers, or null.
@@ -115,6 +115,9 @@ class Subscription {
       writer_.describe(*catalogue_);
     } else if (kind == TopicKind::kPoses && decoder_.decode(bytes_, batch_)) {
       gaps_.note("batches", fmt::format("of source '{}'", batch_->source), batch_->sequence_number);
+    } else if (kind == TopicKind::kJointStates && decoder_.decode(bytes_, joints_)) {
+      gaps_.note("batches", fmt::format("of source '{}'", joints_->source),
+                 joints_->sequence_number);
     } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
     }
@@ -129,6 +132,7 @@ class Subscription {
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;
   Sample<clearance_msg_PoseBatch> batch_;
+  Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   StreamGaps gaps_;
 };

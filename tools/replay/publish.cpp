@@ -77,6 +77,8 @@ class Sender {
         return send(message, writer, catalogue_);
       case TopicKind::kPoses:
         return send(message, writer, poses_);
+      case TopicKind::kJointStates:
+        return send(message, writer, joints_);
       case TopicKind::kDistances:
         return send(message, writer, distances_);
       case TopicKind::kZones:
@@ -92,7 +94,8 @@ class Sender {
   bool send(const RecordedMessage& message, dds_entity_t writer, Sample<T>& sample) {
     if (!decoder_.decode(message.cdr, sample)) return false;
     std::int64_t stamp_ns = message.publish_ns;
-    if constexpr (std::is_same_v<T, clearance_msg_PoseBatch>) {
+    if constexpr (std::is_same_v<T, clearance_msg_PoseBatch> ||
+                  std::is_same_v<T, clearance_msg_JointStates>) {
       if (restamp_) stamp_ns = moved_to_now(message, *sample);
     }
     check_dds(dds_write_ts(writer, &*sample, std::max<std::int64_t>(stamp_ns, 0)),
@@ -112,11 +115,19 @@ class Sender {
     return schedule_.of(message.publish_ns);
   }
 
+  static std::int64_t moved_to_now(const RecordedMessage& message,
+                                   clearance_msg_JointStates& states) {
+    const std::int64_t shift = dds_time() - message.log_ns;
+    states.stamp_ns += shift;
+    return message.publish_ns + shift;
+  }
+
   bool restamp_;
   Schedule schedule_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;
   Sample<clearance_msg_PoseBatch> poses_;
+  Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> distances_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Health> health_;

@@ -10,7 +10,8 @@ namespace {
 PosedPart placed(const Scene& scene, const Pose& world_from_object) {
   PosedPart part = parts_of(scene).front();
   TrackedObject object;
-  accept(scene.objects.front(), test::sample(0, world_from_object, 1), 1, 1, object);
+  EXPECT_FALSE(
+      take(scene.objects.front(), test::sample(0, world_from_object, 1), 1, {1, 0}, object));
   advance(scene.objects.front(), 1, object);
   place(object, part);
   return part;

@@ -16,11 +16,11 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-constexpr std::int64_t kSecond = 1000 * kTick;
+constexpr std::int64_t kOneSecond = 1000 * kTick;
 constexpr std::int64_t kTicksASeed = 25'000;  // of 40 seeds
 constexpr double kRadius = 0.05;
 // Without steps, losses and delays, so that every source is heard by a clock that is right.
-constexpr std::int64_t kCalm = kSecond / 5;
+constexpr std::int64_t kCalm = kOneSecond / 5;
 
 // Up to 1.9 m/s, and metres from where it was a second ago.
 Vec3 true_position(std::uint32_t object, std::int64_t at_ns) {
@@ -105,8 +105,8 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     for (TrueSource& source : sources_) {
       if (source.elsewhere && below(40'000) == 0) source.clock_ahead += step();
       if (source.elsewhere && below(20'000) == 0) source.clock_ahead = 0;
-      if (below(30'000) == 0) source.lost_until = now_ + below(2 * kSecond);
-      if (below(30'000) == 0) source.held_up_until = now_ + below(2 * kSecond);
+      if (below(30'000) == 0) source.lost_until = now_ + below(2 * kOneSecond);
+      if (below(30'000) == 0) source.held_up_until = now_ + below(2 * kOneSecond);
       if (below(20'000) == 0) source.sequence = 0;  // started again
       if (below(40'000) == 0) {
         source.lies_until = now_ + (below(2) == 0 ? 2 * kTick : below(kSecond));

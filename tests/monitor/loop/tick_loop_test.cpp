@@ -6,6 +6,7 @@
 
 #include <deque>
 
+#include "tests/monitor/scara_cell.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
@@ -45,6 +46,13 @@ class ListedPoses final : public PoseSource {
     for (std::size_t i = 0; i < samples; ++i) {
       batch.samples.push_back(test::sample(0, test::at(1, 0, 0), kStart));
     }
+  }
+  void add(std::string_view source, std::uint64_t sequence_number,
+           std::span<const JointSample> joints) {
+    PoseBatch& batch = batches_.emplace_back();
+    batch.source = SourceName(source);
+    batch.sequence_number = sequence_number;
+    batch.joints.assign(joints.begin(), joints.end());
   }
   const PoseBatch* next() noexcept override {
     return given_ == batches_.size() ? nullptr : &batches_[given_++];
@@ -105,6 +113,19 @@ struct Loop {
   }
   LoopStatistics statistics;
 };
+
+TEST(TickLoop, TakesJointsInBesidePoses) {
+  Loop loop;
+  loop.scene = test::scara_cell();
+  loop.poses.add("arm", 1, test::joints(0.1, 0.2, 0.1, kStart));
+  loop.poses.add("arm", 2, test::joints(0.1, 0.2, 0.1, kStart));
+  loop.poses.add("cart", 1, 1);
+  loop.run({.max_ticks = 2, .max_samples = 5});
+  // The second batch no longer fits into the first tick, and so what follows it waits as well.
+  EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{1, 3}));
+  for (const std::uint32_t link : {3, 4, 5}) EXPECT_GE(loop.statistics.ages[link].age_ns, 0);
+  EXPECT_TRUE(loop.statistics.minimum.known);
+}
 
 TEST(TickLoop, TicksOnItsDeadlines) {
   Loop loop;

@@ -19,7 +19,8 @@ TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   const Object object = test::moving("gone", {test::ball(0.1)});
   TrackedObject state;
   for (const std::int64_t now : {kStart, kStart + kTick}) {
-    accept(object, test::sample(0, now == kStart ? from : to, now), now, now, state);
+    EXPECT_FALSE(
+        take(object, test::sample(0, now == kStart ? from : to, now), now, {now, 0}, state));
     advance(object, now, state);
     displace(reach, state);
   }

@@ -30,14 +30,14 @@ const Object kInTime = late_after(20 * kTick, kInfinity);
 // With stamps in the tick's time.
 std::optional<Reject> judged(const PoseSample& sample, const Object& object, TrackedObject& state,
                              std::int64_t now_ns = kStart) {
-  return refusal(object, sample, sample.stamp_ns, {now_ns, kFutureLimit}, state);
+  return take(object, sample, sample.stamp_ns, {now_ns, kFutureLimit}, state);
 }
 std::optional<Reject> judged(const PoseSample& sample, std::int64_t now_ns = kStart) {
   TrackedObject state;
   return judged(sample, kInTime, state, now_ns);
 }
 void take(const PoseSample& sample, TrackedObject& state) {
-  accept(kInTime, sample, sample.stamp_ns, sample.stamp_ns, state);
+  ASSERT_EQ(judged(sample, kInTime, state, sample.stamp_ns), std::nullopt);
 }
 
 TEST(TrackedObject, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }

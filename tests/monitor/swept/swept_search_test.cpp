@@ -33,7 +33,7 @@ class TwoOnTheirWay {
       TrackedObject& state = objects_.emplace_back();
       for (const Pose& pose : {motion.from[i], motion.to[i]}) {
         const std::int64_t now = kStart + (&pose == &motion.from[i] ? 0 : kTick);
-        accept(scene_.objects[i], test::sample(i, pose, now), now, now, state);
+        EXPECT_FALSE(take(scene_.objects[i], test::sample(i, pose, now), now, {now, 0}, state));
         advance(scene_.objects[i], now, state);
         displace(parts_[i].reach, state);
       }

@@ -6,6 +6,10 @@
 
 namespace clearance {
 
+[[nodiscard]] inline double seconds(std::int64_t ns) noexcept {
+  return static_cast<double>(ns) * 1e-9;
+}
+
 // later - earlier, not negative.
 [[nodiscard]] inline std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());

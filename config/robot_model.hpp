@@ -1,0 +1,27 @@
+// Makes the tree of joints of a robot from its URDF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/robot.hpp"
+#include "config/urdf.hpp"
+
+namespace clearance {
+
+// The links and joints of one robot, with its joints' variables counted from 0.
+struct RobotModel {
+  Robot robot;  // of the URDF's name; without a base and without objects
+  std::vector<JointVariable> variables;
+};
+
+// Every name gets the prefix. Refused, by line of `urdf`: more than one root, joints of unknown
+// types or without what their type needs, axes of no length, limits the wrong way round, and mimic
+// joints that follow nothing or themselves.
+[[nodiscard]] std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,
+                                                               const std::filesystem::path& urdf,
+                                                               const std::string& prefix);
+
+}  // namespace clearance

@@ -1,0 +1,264 @@
+// From the root outwards: each joint says where its link is in the frame of the link before, and
+// how it moves there.
+#include "monitor/kinematics/forward_kinematics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/convex_polyhedron.hpp"
+#include "monitor/kinematics/sine_cosine.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::max();
+
+// How far a joint's rotation can be from the exact one, rad, and its step for each metre: the
+// origin's quaternion, made of three angles by some forty operations, is within 2^-48 of its half,
+// the half angle's sine and cosine within 2^-50, and two products of quaternions round eight times
+// more.
+constexpr double kJointError = 0x1p-46;
+// Of a position that is scaled and shifted (mimic), for each radian or metre.
+constexpr double kPositionError = 0x1p-51;
+
+// No rotation moves a point farther than across the circle that it is on.
+constexpr double kAcross = 2.0;
+
+// Written out: Eigen's sums have another order on other processors.
+Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) noexcept {
+  return {((a.w() * b.w() - a.x() * b.x()) - a.y() * b.y()) - a.z() * b.z(),
+          ((a.w() * b.x() + a.x() * b.w()) + a.y() * b.z()) - a.z() * b.y(),
+          ((a.w() * b.y() + a.y() * b.w()) + a.z() * b.x()) - a.x() * b.z(),
+          ((a.w() * b.z() + a.z() * b.w()) + a.x() * b.y()) - a.y() * b.x()};
+}
+
+Eigen::Quaterniond sum(double a, const Eigen::Quaterniond& p, double b,
+                       const Eigen::Quaterniond& q) noexcept {
+  return {a * p.w() + b * q.w(), a * p.x() + b * q.x(), a * p.y() + b * q.y(),
+          a * p.z() + b * q.z()};
+}
+
+Vec3 times(const Mat3& m, const Vec3& v) noexcept {
+  return {(m(0, 0) * v.x() + m(0, 1) * v.y()) + m(0, 2) * v.z(),
+          (m(1, 0) * v.x() + m(1, 1) * v.y()) + m(1, 2) * v.z(),
+          (m(2, 0) * v.x() + m(2, 1) * v.y()) + m(2, 2) * v.z()};
+}
+
+Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+          a.x() * b.y() - a.y() * b.x()};
+}
+
+double length(const Vec3& v) noexcept {
+  return std::sqrt((v.x() * v.x() + v.y() * v.y()) + v.z() * v.z());
+}
+
+}  // namespace
+
+double LinkState::may_have_moved(double reach) const noexcept {
+  return rounded_up(unseen_shift + swept(unseen_turn, reach));
+}
+
+double LinkState::error(double reach) const noexcept {
+  return rounded_up(shift_error + turn_error * reach);
+}
+
+// Where its link is in the frame of the link before, and how it moves there.
+struct ForwardKinematics::Placement {
+  bool known = true, velocity_known = true, late = false, contradicted = false;
+  std::int64_t stamp_ns = kNoStamp;
+  Eigen::Quaterniond turn;
+  Vec3 step = Vec3::Zero();                            // m
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // m/s, rad/s
+  double unseen_shift = 0.0, unseen_turn = 0.0;        // as of LinkState
+  double largest_angle = 0.0, largest_slide = 0.0;     // that rounding has met, rad, m
+};
+
+// The position of a joint with its mimicry, and what is known of it.
+struct ForwardKinematics::Position {
+  double value = 0.0, speed = 0.0, unseen = 0.0, largest = 0.0;
+};
+
+ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std::uint32_t which,
+                                                    std::span<const TrackedVariable> variables,
+                                                    Placement& placed) noexcept {
+  const TrackedVariable& state = variables[joint.variable + which];
+  placed.known = placed.known && state.seen;
+  placed.velocity_known = placed.velocity_known && state.velocity_known && !state.late;
+  placed.late = placed.late || state.late;
+  placed.contradicted = placed.contradicted || state.contradicted;
+  placed.stamp_ns = std::min(placed.stamp_ns, state.stamp_ns);
+  const double scaled = joint.multiplier * state.position;
+  const double factor = std::abs(joint.multiplier);
+  return {.value = scaled + joint.offset,
+          .speed = joint.multiplier * state.velocity,
+          .unseen = factor == 0.0 ? 0.0 : rounded_up(factor * state.may_have_moved),
+          .largest = std::abs(scaled) + std::abs(joint.offset)};
+}
+
+void ForwardKinematics::turn(const Position& angle, const JointFrame& frame,
+                             Placement& placed) noexcept {
+  const SineCosine half = sine_cosine(0.5 * angle.value);
+  placed.turn = sum(half.cosine, frame.turn, half.sine, frame.turn_axis);
+  placed.known = placed.known && angle.largest <= kLargestJoint;  // mimicry can multiply it
+  placed.angular = angle.speed * frame.axis;
+  placed.unseen_turn = std::min(angle.unseen, kAcross);
+  placed.largest_angle = angle.largest;
+}
+
+void ForwardKinematics::slide(const Position& way, const Vec3& along, Placement& placed) noexcept {
+  placed.step += way.value * along;
+  placed.linear += way.speed * along;
+  placed.unseen_shift = rounded_up(placed.unseen_shift + way.unseen);
+  placed.largest_slide += way.largest;
+}
+
+// A quaternion that is none leaves the joint unknown, as an entry that was never seen does.
+void ForwardKinematics::turn_freely(const RobotJoint& joint, const JointFrame& frame,
+                                    std::span<const TrackedVariable> variables,
+                                    Placement& placed) noexcept {
+  const Position x = read(joint, 3, variables, placed), y = read(joint, 4, variables, placed),
+                 z = read(joint, 5, variables, placed), w = read(joint, 6, variables, placed);
+  const Eigen::Quaterniond sent(w.value, x.value, y.value, z.value);
+  const double squared =
+      (sent.w() * sent.w() + sent.x() * sent.x()) + (sent.y() * sent.y() + sent.z() * sent.z());
+  if (!(std::abs(squared - 1.0) <= 2.0 * kSampleUnitTolerance)) {
+    placed.known = false;
+    return;
+  }
+  const double norm = std::sqrt(squared);
+  placed.turn =
+      product(frame.turn, {sent.w() / norm, sent.x() / norm, sent.y() / norm, sent.z() / norm});
+  // omega = 2 dq/dt q*, of which a change of length is the real part.
+  const Eigen::Quaterniond rate =
+      product({w.speed, x.speed, y.speed, z.speed}, {sent.w(), -sent.x(), -sent.y(), -sent.z()});
+  const double twice = 2.0 / squared;
+  placed.angular = (twice * rate.x()) * frame.plane_x + (twice * rate.y()) * frame.plane_y +
+                   (twice * rate.z()) * frame.axis;
+  // Of unit length to a thousandth: a change of the entries turns by twice as much on either side.
+  const double unseen = 4.01 * (x.unseen + y.unseen + z.unseen + w.unseen);
+  placed.unseen_turn = std::min(unseen, kAcross);
+}
+
+ForwardKinematics::Placement ForwardKinematics::placement(
+    const RobotJoint& joint, const JointFrame& frame,
+    std::span<const TrackedVariable> variables) noexcept {
+  Placement placed;
+  placed.turn = frame.turn;
+  placed.step = frame.step;
+  switch (joint.type) {
+    case JointType::kFixed:
+      break;
+    case JointType::kRevolute:
+    case JointType::kContinuous:
+      turn(read(joint, 0, variables, placed), frame, placed);
+      break;
+    case JointType::kPrismatic:
+      slide(read(joint, 0, variables, placed), frame.axis, placed);
+      break;
+    case JointType::kPlanar:
+      slide(read(joint, 0, variables, placed), frame.plane_x, placed);
+      slide(read(joint, 1, variables, placed), frame.plane_y, placed);
+      turn(read(joint, 2, variables, placed), frame, placed);
+      break;
+    case JointType::kFloating:
+      slide(read(joint, 0, variables, placed), frame.plane_x, placed);
+      slide(read(joint, 1, variables, placed), frame.plane_y, placed);
+      slide(read(joint, 2, variables, placed), frame.axis, placed);
+      turn_freely(joint, frame, variables, placed);
+      break;
+  }
+  return placed;
+}
+
+ForwardKinematics::ForwardKinematics(std::span<const Robot> robots) : robots_(robots) {
+  for (const Robot& robot : robots) {
+    first_link_.push_back(static_cast<std::uint32_t>(links_.size()));
+    links_.resize(links_.size() + robot.links.size());
+    frames_.resize(links_.size());
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+      const RobotJoint& joint = robot.joints[i];
+      const Eigen::Quaterniond turn = joint.parent_from_joint.orientation.normalized();
+      const Mat3 rotation = rotation_matrix(turn);
+      frames_[first_link_.back() + i + 1] = {
+          .turn = turn,
+          .turn_axis = product(turn, {0.0, joint.axis.x(), joint.axis.y(), joint.axis.z()}),
+          .step = joint.parent_from_joint.position,
+          .axis = times(rotation, joint.axis),
+          .plane_x = times(rotation, joint.plane_x),
+          .plane_y = times(rotation, joint.plane_y)};
+    }
+  }
+}
+
+// A link that hangs on nothing unknown is known; what moves its parent moves it too.
+void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
+                              LinkState& link) noexcept {
+  const Mat3 rotation = rotation_matrix(parent.pose.orientation);
+  const Vec3 step = times(rotation, placed.step);
+  const double far = length(step);
+  link.known = parent.known && placed.known;
+  link.velocity_known = parent.velocity_known && placed.velocity_known;
+  link.late = parent.late || placed.late;
+  link.contradicted = parent.contradicted || placed.contradicted;
+  link.stamp_ns = std::min(parent.stamp_ns, placed.stamp_ns);
+  link.pose.orientation = product(parent.pose.orientation, placed.turn);
+  link.pose.position = parent.pose.position + step;
+
+  link.twist = {};
+  if (link.velocity_known) {
+    link.twist.angular = parent.twist.angular + times(rotation, placed.angular);
+    link.twist.linear =
+        (parent.twist.linear + cross(parent.twist.angular, step)) + times(rotation, placed.linear);
+  }
+
+  // Seen from the end: what is behind the joint has its new length when the joints before it turn.
+  link.unseen_turn = rounded_up(parent.unseen_turn + placed.unseen_turn);
+  link.unseen_shift = rounded_up(parent.unseen_shift + placed.unseen_shift +
+                                 swept(parent.unseen_turn, far + placed.unseen_shift));
+
+  link.turn_error =
+      rounded_up(parent.turn_error + kJointError + kPositionError * placed.largest_angle);
+  link.shift_error = rounded_up(parent.shift_error + (parent.turn_error + kJointError) * far +
+                                kPositionError * placed.largest_slide +
+                                kPlacingError * (length(parent.pose.position) + far));
+}
+
+void ForwardKinematics::place_root(std::uint32_t robot, std::span<const LinkState> bases) noexcept {
+  const RobotBase& base = robots_[robot].base;
+  LinkState parent;
+  parent.known = parent.velocity_known = true;
+  parent.stamp_ns = kNoStamp;
+  if (base.kind == RobotBase::Kind::kLink) parent = links_[first_link_[base.robot] + base.link];
+  if (base.kind == RobotBase::Kind::kObject) {
+    parent = bases[robot];
+    if (parent.late) parent.unseen_shift = kInfinity;
+  }
+  Placement placed;
+  placed.turn = base.base_from_root.orientation;
+  placed.step = base.base_from_root.position;
+  carry(parent, placed, links_[first_link_[robot]]);
+}
+
+void ForwardKinematics::place(std::span<const TrackedVariable> variables,
+                              std::span<const LinkState> bases) noexcept {
+  for (std::uint32_t r = 0; r < robots_.size(); ++r) {
+    place_root(r, bases);
+    LinkState* links = &links_[first_link_[r]];
+    const JointFrame* frames = &frames_[first_link_[r]];
+    const std::vector<RobotJoint>& joints = robots_[r].joints;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const LinkState& parent = links[joints[i].parent];
+      LinkState& link = links[i + 1];
+      if (parent.known) {
+        carry(parent, placement(joints[i], frames[i + 1], variables), link);
+      } else {
+        link = parent;
+      }
+    }
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,73 @@
+#include "monitor/objects/robot_inputs.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+// Links come after all other objects.
+std::uint32_t first_link_of(const Scene& scene) {
+  auto first = static_cast<std::uint32_t>(scene.objects.size());
+  for (const Robot& robot : scene.robots) {
+    for (const RobotLink& link : robot.links) first = std::min(first, link.object);
+  }
+  return first;
+}
+
+LinkState base_at(const TrackedObject& object) noexcept {
+  LinkState base;
+  base.known = object.seen;
+  base.velocity_known = object.velocity_known();
+  base.late = object.late;
+  base.contradicted = object.contradicted;
+  base.stamp_ns = object.stamp_ns;
+  base.pose = object.pose;
+  base.twist = object.twist;
+  return base;
+}
+
+}  // namespace
+
+RobotInputs::RobotInputs(const Scene& scene)
+    : scene_(scene),
+      first_link_(first_link_of(scene)),
+      robot_of_(scene.objects.size() - first_link_),
+      heard_(scene.robots.size()),
+      variables_(scene.variables.size()),
+      bases_(scene.robots.size()),
+      kinematics_(scene.robots) {
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    for (const RobotLink& link : scene.robots[robot].links) {
+      if (link.object != RobotLink::kNoObject) robot_of_[link.object - first_link_] = robot;
+    }
+  }
+}
+
+void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
+  for (TrackedVariable& variable : variables_) {
+    if (variable.seen) forget_age(now_ns, variable);
+  }
+}
+
+void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
+  if (std::ranges::find(heard_, true) == heard_.end()) return;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    advance(scene_.variables[i], now_ns, variables_[i]);
+  }
+  for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind == RobotBase::Kind::kObject) bases_[robot] = base_at(objects[base.object]);
+  }
+  kinematics_.place(variables_, bases_);
+  for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot) {
+    if (!heard_[robot]) continue;
+    const std::vector<RobotLink>& links = scene_.robots[robot].links;
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (links[link].object == RobotLink::kNoObject) continue;
+      if (scene_.objects[links[link].object].fixed) continue;
+      follow(kinematics_.links(robot)[link], objects[links[link].object]);
+    }
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,245 @@
+#include "config/robot_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "tests/config/cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Every type of joint, written leaf first: the order of a file means nothing.
+const std::string kWalkerUrdf = R"(<robot name="walker">
+  <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
+  <link name="mast"><collision><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><box size="1 0.1 0.1"/></geometry></collision></link>
+  <link name="hand"><collision><geometry><sphere radius="0.1"/></geometry></collision>
+                    <collision><geometry><mesh filename="package://walker_description/tip.obj" scale="0.001 0.001 0.001"/></geometry></collision></link>
+  <link name="left"/> <link name="right"/> <link name="puck"/> <link name="ball"/>
+  <joint name="slide" type="prismatic"><origin xyz="1 0 0"/><parent link="arm"/><child link="hand"/><axis xyz="3 0 0"/><limit lower="0" upper="0.3" velocity="0.5"/></joint>
+  <joint name="bolt" type="fixed"><origin xyz="0 0 0.05" rpy="0 0 1.5707963267948966"/><parent link="foot"/><child link="mast"/></joint>
+  <joint name="hip" type="revolute"><origin xyz="0 0 1"/><parent link="mast"/><child link="arm"/><axis xyz="0 0 -2"/><limit lower="-1" upper="2" velocity="1.5"/></joint>
+  <joint name="grip" type="continuous"><parent link="hand"/><child link="left"/><limit velocity="3"/></joint>
+  <joint name="grip2" type="revolute"><parent link="hand"/><child link="right"/><limit lower="-1" upper="1" velocity="1"/><mimic joint="grip" multiplier="-2" offset="0.25"/></joint>
+  <joint name="table" type="planar"><parent link="hand"/><child link="puck"/><axis xyz="1 0 0"/></joint>
+  <joint name="free" type="floating"><parent link="hand"/><child link="ball"/></joint>
+</robot>
+)";
+
+const std::string kWalkerSrdf = R"(<robot name="walker">
+  <disable_collisions link1="arm" link2="mast" reason="Adjacent"/>
+  <disable_collisions link1="foot" link2="mast" reason="Adjacent"/>
+</robot>
+)";
+
+class Robots : public testing::Test {
+ protected:
+  Robots() {
+    std::filesystem::create_directories(folder_ / "walker_description");
+    test::write_text(folder_ / "walker_description/walker.urdf", kWalkerUrdf);
+    test::write_text(folder_ / "walker_description/walker.srdf", kWalkerSrdf);
+    test::write_text(
+        folder_ / "walker_description/tip.obj",
+        "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  }
+
+  // A cell with these robots and objects, in which everything is watched.
+  static std::string cell(const std::string& robots, const std::string& rest) {
+    return "name: test\nunits: {length: m, angle: deg}\nrobots:\n" + robots + rest;
+  }
+  Scene scene(const std::string& robots, const std::string& rest) {
+    return scene_of(cell(robots, rest), folder_ / "cell.yaml");
+  }
+  std::string errors(const std::string& robots, const std::string& rest) {
+    return errors_of(cell(robots, rest), folder_ / "cell.yaml");
+  }
+
+  test::ScratchFolder folder_;
+};
+
+const std::string kWalker =
+    "  - {name: walker, urdf: walker_description/walker.urdf, srdf: "
+    "walker_description/walker.srdf}\n";
+const std::string kSelf = "pairs: [{between: [walker, walker]}]\n";
+
+std::vector<std::string> names_of(const Scene& scene, bool fixed) {
+  std::vector<std::string> names;
+  for (const Object& object : scene.objects) {
+    if (object.fixed == fixed) names.push_back(object.name);
+  }
+  return names;
+}
+
+bool watched(const Scene& scene, const std::string& a, const std::string& b) {
+  return std::ranges::any_of(scene.pairs, [&](const ObjectPair& pair) {
+    const std::string &first = scene.objects[pair.first].name,
+                      &second = scene.objects[pair.second].name;
+    return (first == a && second == b) || (first == b && second == a);
+  });
+}
+
+TEST_F(Robots, LinksWithShapesAreObjectsAndWhatNothingMovesIsFixed) {
+  const Scene cell = scene(kWalker, kSelf);
+  EXPECT_THAT(names_of(cell, true), ElementsAre("foot", "mast"));
+  EXPECT_THAT(names_of(cell, false), ElementsAre("arm", "hand"));
+  ASSERT_EQ(cell.objects.size(), 4u);
+  const Object& mast = cell.objects[1];
+  EXPECT_LT((mast.world_from_object.position - Vec3(0, 0, 0.05)).norm(), 1e-15);
+  EXPECT_LT((transform(mast.world_from_object, Vec3(1, 0, 0)) - Vec3(0, 1, 0.05)).norm(), 1e-15);
+  EXPECT_EQ(mast.parts.front().object_from_part.position, Vec3(0, 0, 0.5));
+  const Object& hand = cell.objects[3];
+  EXPECT_THAT(hand.groups, ElementsAre("walker"));
+  ASSERT_EQ(hand.parts.size(), 2u);
+  EXPECT_EQ(hand.parts[0].name, "sphere0");
+  EXPECT_EQ(hand.parts[1].name, "mesh1");
+  EXPECT_EQ(hand.parts[1].shape.vertices.size(), 4u);
+}
+
+TEST_F(Robots, ParentsComeBeforeWhatTheyCarry) {
+  const Scene cell = scene(kWalker, kSelf);
+  ASSERT_EQ(cell.robots.size(), 1u);
+  const Robot& robot = cell.robots.front();
+  ASSERT_EQ(robot.links.size(), 8u);
+  ASSERT_EQ(robot.joints.size(), 7u);
+  EXPECT_EQ(robot.links[0].name, "foot");
+  for (std::uint32_t i = 0; i < robot.joints.size(); ++i) EXPECT_LE(robot.joints[i].parent, i);
+  EXPECT_EQ(cell.objects[robot.links[3].object].name, robot.links[3].name);
+  EXPECT_EQ(robot.links[7].object, RobotLink::kNoObject);
+}
+
+TEST_F(Robots, EveryTypeOfJointHasItsVariablesAndLimits) {
+  const Scene cell = scene(kWalker, kSelf);
+  std::vector<std::string> names;
+  for (const JointVariable& variable : cell.variables) names.push_back(variable.name);
+  EXPECT_THAT(names, ElementsAre("hip", "slide", "grip", "table/x", "table/y", "table/theta",
+                                 "free/trans_x", "free/trans_y", "free/trans_z", "free/rot_x",
+                                 "free/rot_y", "free/rot_z", "free/rot_w"));
+  EXPECT_EQ(cell.variables[0].lower, -1.0);
+  EXPECT_EQ(cell.variables[0].upper, 2.0);
+  EXPECT_EQ(cell.variables[0].max_speed, 1.5);
+  EXPECT_EQ(cell.variables[0].age_limit_ns, 20'000'000);
+  EXPECT_EQ(cell.variables[1].max_speed, 0.5);
+  EXPECT_EQ(cell.variables[2].upper, kInfinity);
+  EXPECT_EQ(cell.variables[2].max_speed, 3.0);
+  EXPECT_EQ(cell.variables[3].max_speed, kInfinity);
+  for (const RobotJoint& joint : cell.robots.front().joints) {
+    if (joint.name == "hip") {
+      EXPECT_EQ(joint.axis, Vec3(0, 0, -1));
+    }
+    if (joint.name == "slide") {
+      EXPECT_EQ(joint.axis, Vec3(1, 0, 0));
+    }
+    if (joint.name != "grip2") continue;
+    EXPECT_EQ(joint.variable, 2u);
+    EXPECT_EQ(joint.multiplier, -2.0);
+    EXPECT_EQ(joint.offset, 0.25);
+  }
+}
+
+TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
+  const Scene cell = scene(kWalker, kSelf);
+  EXPECT_FALSE(watched(cell, "arm", "mast"));
+  EXPECT_TRUE(watched(cell, "arm", "hand"));
+  EXPECT_TRUE(watched(cell, "arm", "foot"));
+  EXPECT_THAT(cell.robots.front().notes,
+              testing::Contains(HasSubstr("1 disabled pairs left out: 1 of two fixed links")));
+}
+
+TEST_F(Robots, WithoutAnSrdfNeighboursMayTouchAndAreNamed) {
+  const Scene cell = scene("  - {name: walker, urdf: walker_description/walker.urdf}\n", kSelf);
+  EXPECT_FALSE(watched(cell, "arm", "mast"));
+  EXPECT_FALSE(watched(cell, "arm", "hand"));
+  EXPECT_TRUE(watched(cell, "mast", "hand"));
+  EXPECT_THAT(cell.robots.front().notes, testing::Contains(HasSubstr("mast - arm, arm - hand")));
+}
+
+TEST_F(Robots, SeveralStandOnEachOtherOnObjectsAndInTheWorld) {
+  const std::string robots =
+      "  - {name: one, prefix: a_, urdf: walker_description/walker.urdf, base: {on: rock, pose: "
+      "{xyz: [0, 0, 1]}}}\n"
+      "  - {name: two, prefix: b_, urdf: walker_description/walker.urdf, base: {on: a_left}}\n"
+      "  - {name: three, prefix: c_, urdf: walker_description/walker.urdf, base: {on: cart}}\n"
+      "  - {name: four, prefix: d_, urdf: walker_description/walker.urdf, base: {on: a_mast}}\n";
+  const std::string rest =
+      "objects:\n"
+      "  - {name: rock, fixed: true, pose: {xyz: [5, 0, 0]}, box: {size: [1, 1, 1]}}\n"
+      "  - {name: cart, box: {size: [1, 1, 1]}}\n"
+      "pairs:\n"
+      "  - between: [one, two]\n"
+      "  - between: [three, four]\n"
+      "  - between: [cart, rock]\n";
+  const Scene cell = scene(robots, rest);
+  ASSERT_EQ(cell.robots.size(), 4u);
+  EXPECT_EQ(cell.robots[0].base.kind, RobotBase::Kind::kWorld);
+  EXPECT_EQ(cell.robots[0].base.base_from_root.position, Vec3(5, 0, 1));
+  EXPECT_EQ(cell.robots[1].base.kind, RobotBase::Kind::kLink);
+  EXPECT_EQ(cell.robots[cell.robots[1].base.robot].links[cell.robots[1].base.link].name, "a_left");
+  EXPECT_EQ(cell.robots[2].base.kind, RobotBase::Kind::kObject);
+  EXPECT_EQ(cell.objects[cell.robots[2].base.object].name, "cart");
+  EXPECT_LT((cell.robots[3].base.base_from_root.position - Vec3(5, 0, 1.05)).norm(), 1e-12);
+  EXPECT_THAT(names_of(cell, true), ElementsAre("rock", "a_foot", "a_mast", "d_foot", "d_mast"));
+  EXPECT_EQ(cell.variables[13].name, "b_hip");
+  EXPECT_EQ(cell.variables[13].robot, 1u);
+}
+
+TEST_F(Robots, MistakesOfTheCellAreNamedAtTheirPlaces) {
+  EXPECT_THAT(errors(kWalker + kWalker, kSelf), HasSubstr("cell.yaml:5:12: found the robot name "
+                                                          "'walker' again"));
+  const std::string twice = kWalker + "  - {name: other, urdf: walker_description/walker.urdf}\n";
+  EXPECT_THAT(errors(twice, kSelf), HasSubstr("found the link 'foot' of 'other', which another "
+                                              "robot has as well; expected another prefix"));
+  EXPECT_THAT(errors("  - {name: walker, urdf: nowhere.urdf}\n", kSelf),
+              HasSubstr("cell.yaml:4:26: found a file that cannot be used"));
+  EXPECT_THAT(errors("  - {name: walker, urdf: package://gone/r.urdf}\n", kSelf),
+              HasSubstr("no directory for the package 'gone'; expected packages: {gone: "
+                        "DIRECTORY}"));
+  EXPECT_THAT(
+      errors("  - {name: walker, urdf: walker_description/walker.urdf, base: {on: cat}}\n", kSelf),
+      HasSubstr("found the unknown name 'cat'; expected an object, or a link of a robot"));
+  EXPECT_THAT(errors("  - {name: walker, urdf: walker_description/walker.urdf, srfd: x}\n", kSelf),
+              HasSubstr("did you mean 'srdf'?"));
+}
+
+TEST_F(Robots, MistakesOfTheUrdfAreNamedByItsLines) {
+  const auto faults = [&](const std::string& from, const std::string& to) {
+    std::string text = kWalkerUrdf;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(folder_ / "walker_description/walker.urdf", text);
+    return errors(kWalker, kSelf);
+  };
+  EXPECT_THAT(faults("type=\"planar\"", "type=\"planer\""),
+              HasSubstr("walker.urdf:13: found a joint of type 'planer'"));
+  EXPECT_THAT(faults("<axis xyz=\"1 0 0\"/>", ""), HasSubstr("the planar joint 'table' without"));
+  EXPECT_THAT(faults("0 0 -2", "0 0 0"), HasSubstr("found the axis 0 0 0 of the joint 'hip'"));
+  EXPECT_THAT(faults("lower=\"0\" upper=\"0.3\"", "lower=\"0.4\" upper=\"0.3\""),
+              HasSubstr("expected the lower one first"));
+  EXPECT_THAT(faults("<limit lower=\"-1\" upper=\"2\" velocity=\"1.5\"/>", ""),
+              HasSubstr("found the revolute joint 'hip' without <limit>"));
+  EXPECT_THAT(faults("mimic joint=\"grip\"", "mimic joint=\"grip2\""),
+              HasSubstr("found the joint 'grip2' that mimics 'grip2'"));
+  EXPECT_THAT(faults("mimic joint=\"grip\"", "mimic joint=\"bolt\""), HasSubstr("mimics 'bolt'"));
+  EXPECT_THAT(faults("<link name=\"left\"/>", "<link name=\"left\"/><link name=\"lone\"/>"),
+              HasSubstr("expected one root"));
+  EXPECT_THAT(faults("tip.obj", "top.obj"), HasSubstr("walker.urdf:6: found the mesh"));
+}
+
+TEST_F(Robots, AnotherDescriptionIsAnotherRevision) {
+  const std::uint64_t before = scene(kWalker, kSelf).revision;
+  EXPECT_EQ(scene(kWalker, kSelf).revision, before);
+  std::string text = kWalkerUrdf;
+  text.replace(text.find("xyz=\"1 0 0\""), 11, "xyz=\"2 0 0\"");
+  test::write_text(folder_ / "walker_description/walker.urdf", text);
+  EXPECT_NE(scene(kWalker, kSelf).revision, before);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,82 @@
+// The topic of joint states as the tick thread sees it, through real DDS on loopback.
+#include <gtest/gtest.h>
+
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance {
+namespace {
+
+void write(dds_entity_t writer, const PoseBatch& batch, const Scene& scene) {
+  const Sample<clearance_msg_JointStates> sample = make_joint_states(batch, scene);
+  ASSERT_EQ(dds_write(writer, &*sample), DDS_RETCODE_OK);
+}
+
+TEST(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
+  const Scene scene = test::scara_cell();
+  const DdsOptions dds = test::own_dds();
+  Participant daemon(dds), robot(dds);
+  PoseReader inputs(scene, daemon);
+  const dds_entity_t joints = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
+  const dds_entity_t poses = robot.writer(TopicKind::kPoses, scene.topics.poses);
+  ASSERT_TRUE(test::eventually(
+      [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
+  const auto states = test::joints(0.1, 0.2, 0.15, test::kStart);
+  PoseBatch batch{SourceName("arm"), 1, 0, {}};
+  batch.joints.assign(states.begin(), states.end());
+  write(joints, batch, scene);
+  PoseBatch cart{SourceName("cart"), 1, scene.revision, {}};
+  cart.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
+  Sample<clearance_msg_PoseBatch> sample = make_batch(1);
+  to_wire(cart, *sample);
+  ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
+
+  int batches = 0;
+  EXPECT_TRUE(test::eventually([&] {
+    while (const PoseBatch* came = inputs.next()) {
+      ++batches;
+      if (came->source.view() == "cart") {
+        EXPECT_EQ(came->samples.size(), 1u);
+        EXPECT_TRUE(came->joints.empty());
+        continue;
+      }
+      EXPECT_EQ(came->source.view(), "arm");
+      EXPECT_TRUE(came->samples.empty());
+      EXPECT_EQ(came->joints.size(), 3u);
+      if (came->joints.size() == 3) {
+        EXPECT_EQ(came->joints[2].position, 0.15);
+      }
+    }
+    return batches >= 2;
+  }));
+  EXPECT_EQ(inputs.tallies().size(), 2u);
+}
+
+// One name is one writer's, of either topic: batches are found again by name and number.
+TEST(JointStatesReader, ANameThatSendsPosesCannotSendJointsAsWell) {
+  const Scene scene = test::scara_cell();
+  const DdsOptions dds = test::own_dds();
+  Participant daemon(dds), robot(dds);
+  PoseReader inputs(scene, daemon);
+  const dds_entity_t joints = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
+  const dds_entity_t poses = robot.writer(TopicKind::kPoses, scene.topics.poses);
+  ASSERT_TRUE(test::eventually(
+      [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
+  PoseBatch batch{SourceName("arm"), 1, 0, {}};
+  batch.joints.push_back(test::joint(0, 0.1, test::kStart));
+  write(joints, batch, scene);
+  ASSERT_TRUE(test::eventually([&] { return inputs.next() != nullptr; }));
+  PoseBatch pose{SourceName("arm"), 1, scene.revision, {}};
+  pose.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
+  Sample<clearance_msg_PoseBatch> sample = make_batch(1);
+  to_wire(pose, *sample);
+  ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
+  EXPECT_TRUE(test::eventually([&] { return inputs.refused_sources().size() == 1; }));
+  EXPECT_EQ(inputs.next(), nullptr);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,176 @@
+#include "monitor/kinematics/tracked_variable.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace clearance {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// A joint of 2 rad/s between -1 and 1 rad, late after 20 ms.
+class Variable : public testing::Test {
+ protected:
+  Variable() {
+    joint_.lower = -1.0;
+    joint_.upper = 1.0;
+    joint_.max_speed = 2.0;
+    joint_.age_limit_ns = 20 * kMs;
+  }
+
+  static JointSample at(std::int64_t stamp_ns, double position) {
+    JointSample sample;
+    sample.stamp_ns = stamp_ns;
+    sample.position = position;
+    return sample;
+  }
+
+  // A tick at the sample's stamp, or later.
+  std::optional<Reject> take(const JointSample& sample, std::int64_t after_ns = 0) {
+    const std::int64_t now = sample.stamp_ns + after_ns;
+    const auto cause =
+        refusal(joint_, sample, sample.stamp_ns, {.now_ns = now, .future_ns = 5 * kMs}, state_);
+    if (!cause) accept(joint_, sample, sample.stamp_ns, now, state_);
+    advance(joint_, now, state_);
+    return cause;
+  }
+
+  JointVariable joint_;
+  TrackedVariable state_;
+};
+
+TEST_F(Variable, IsUnknownUntilItsFirstPosition) {
+  advance(joint_, 5 * kMs, state_);
+  EXPECT_FALSE(state_.seen);
+  EXPECT_EQ(state_.age_ns, -1);
+  EXPECT_EQ(take(at(5 * kMs, 0.3)), std::nullopt);
+  EXPECT_TRUE(state_.seen);
+  EXPECT_EQ(state_.position, 0.3);
+  EXPECT_FALSE(state_.velocity_known);
+}
+
+TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
+  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(2 * kMs, 0.001)), std::nullopt);
+  EXPECT_TRUE(state_.velocity_known);
+  EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
+  JointSample sample = at(3 * kMs, 0.002);
+  sample.has_velocity = true;
+  sample.velocity = -0.5;
+  EXPECT_EQ(take(sample), std::nullopt);
+  EXPECT_EQ(state_.velocity, -0.5);
+  // A driver that measures none fills in NaN.
+  sample = at(4 * kMs, 0.003);
+  sample.has_velocity = true;
+  sample.velocity = kNotANumber;
+  EXPECT_EQ(take(sample), std::nullopt);
+  EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
+  // Over a long gap a difference says nothing about now.
+  EXPECT_EQ(take(at(100 * kMs, 0.1)), std::nullopt);
+  EXPECT_FALSE(state_.velocity_known);
+}
+
+TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
+  EXPECT_EQ(take(at(0, 0.5)), std::nullopt);
+  advance(joint_, 20 * kMs, state_);
+  EXPECT_FALSE(state_.late);
+  EXPECT_EQ(state_.may_have_moved, 0.0);
+  advance(joint_, 30 * kMs, state_);
+  EXPECT_TRUE(state_.late);
+  EXPECT_NEAR(state_.may_have_moved, 0.06, 1e-12);
+  advance(joint_, 10'000 * kMs, state_);
+  EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
+  joint_.max_speed = kNone;
+  advance(joint_, 10'000 * kMs, state_);
+  EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
+  joint_.lower = -kNone;
+  advance(joint_, 10'000 * kMs, state_);
+  EXPECT_EQ(state_.may_have_moved, kNone);
+}
+
+TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
+  EXPECT_EQ(take(at(0, 1.01)), std::nullopt);
+  advance(joint_, 10'000 * kMs, state_);
+  EXPECT_NEAR(state_.may_have_moved, 20.0, 1e-9);
+  state_ = {};
+  JointSample fast = at(0, 0.0);
+  fast.has_velocity = true;
+  fast.velocity = -5.0;
+  EXPECT_EQ(take(fast), std::nullopt);
+  advance(joint_, 100 * kMs, state_);
+  EXPECT_NEAR(state_.may_have_moved, 0.5, 1e-12);
+}
+
+// Which of two positions that exclude each other is wrong, nobody can tell: only the limits hold.
+TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnown) {
+  EXPECT_EQ(take(at(0, 0.8)), std::nullopt);
+  EXPECT_EQ(take(at(10 * kMs, 0.0)), Reject::kTooFast);
+  EXPECT_TRUE(state_.late);
+  EXPECT_TRUE(state_.contradicted);
+  EXPECT_EQ(state_.position, 0.8);
+  EXPECT_NEAR(state_.may_have_moved, 1.8, 1e-12);
+  // Until one agrees again and an age limit has passed.
+  EXPECT_EQ(take(at(11 * kMs, 0.79)), std::nullopt);
+  EXPECT_TRUE(state_.contradicted);
+  EXPECT_EQ(take(at(31 * kMs, 0.79)), std::nullopt);
+  EXPECT_FALSE(state_.late);
+  // Where they stay there, they are taken when the joint can have got there.
+  EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
+  EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
+  joint_.upper = kNone;
+  EXPECT_EQ(take(at(421 * kMs, 0.9)), Reject::kTooFast);
+  EXPECT_EQ(state_.may_have_moved, kNone);
+}
+
+// Velocity limits of many descriptions are wrong.
+TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
+  JointSample fast = at(0, 0.0);
+  fast.has_velocity = true;
+  fast.velocity = 6.0;
+  EXPECT_EQ(take(fast), std::nullopt);
+  fast.stamp_ns = 100 * kMs;
+  fast.position = 0.6;
+  EXPECT_EQ(take(fast), std::nullopt);
+  EXPECT_EQ(take(at(101 * kMs, 0.9)), Reject::kTooFast);
+}
+
+TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
+  EXPECT_EQ(take(at(10 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);
+  EXPECT_EQ(take(at(11 * kMs, 2e6)), Reject::kNonFinite);
+  EXPECT_EQ(take(at(9 * kMs, 0.0), 2 * kMs), Reject::kBackwards);
+  EXPECT_FALSE(state_.contradicted);
+  EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
+  EXPECT_TRUE(state_.contradicted);
+  EXPECT_EQ(state_.stamp_ns, 10 * kMs);
+}
+
+TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
+  JointSample other = at(2 * kMs, 0.0);
+  other.source = 3;
+  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(other), Reject::kOtherSource);
+  EXPECT_EQ(state_.owner.other_source(), 3u);
+  other.stamp_ns = 1002 * kMs;
+  EXPECT_EQ(take(other), std::nullopt);
+  EXPECT_EQ(state_.owner.source(), 3u);
+  state_.owner = InputOwner(3);
+  EXPECT_EQ(take(at(9000 * kMs, 0.0)), Reject::kOtherSource);
+}
+
+TEST_F(Variable, AfterTimeThatNobodyCanTellItIsLate) {
+  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
+  forget_age(-5 * kMs, state_);
+  advance(joint_, -5 * kMs, state_);
+  EXPECT_TRUE(state_.late);
+  EXPECT_EQ(take(at(-4 * kMs, 0.9)), std::nullopt);
+  EXPECT_FALSE(state_.late);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,62 @@
+// A cell with a robot of three joints, and joint states of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "monitor/joint_batch.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance::test {
+
+// Two links of a metre that swing about z, and a finger that slides out of the second.
+inline const std::string kScaraUrdf = R"(<robot name="scara">
+  <link name="foot"><collision><origin xyz="0 0 -1"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="upper"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+  <link name="lower"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
+  <link name="finger"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="foot"/><child link="upper"/><axis xyz="0 0 1"/><limit lower="-3" upper="3" velocity="2"/></joint>
+  <joint name="elbow" type="continuous"><origin xyz="1 0 0"/><parent link="upper"/><child link="lower"/><axis xyz="0 0 1"/></joint>
+  <joint name="push" type="prismatic"><origin xyz="1 0 0"/><parent link="lower"/><child link="finger"/><axis xyz="1 0 0"/><limit lower="0" upper="0.2" velocity="0.5"/></joint>
+</robot>
+)";
+
+// Objects: wall, cart, foot, upper, lower, finger.
+inline const std::string kScaraRest =
+    "objects:\n"
+    "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
+    "  - {name: cart, may_jump: true, sphere: {radius: 0.1}}\n"
+    "pairs:\n"
+    "  - between: [arm, wall]\n"
+    "  - between: [cart, wall]\n"
+    "  - between: [arm, arm]\n"
+    "zones:\n"
+    "  - {name: near, between: [upper, wall], enter_below: 3.5, leave_above: 3.6}\n";
+
+// `base`: more keys of the robot.
+inline Scene scara_cell(const std::string& base = "") {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  return scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: "
+      "scara.urdf" +
+          base + "}]\n" + kScaraRest,
+      folder / "cell.yaml");
+}
+
+inline JointSample joint(std::uint32_t variable, double position, std::int64_t stamp_ns) {
+  JointSample sample;
+  sample.variable = variable;
+  sample.position = position;
+  sample.stamp_ns = stamp_ns;
+  return sample;
+}
+
+inline std::array<JointSample, 3> joints(double shoulder, double elbow, double push,
+                                         std::int64_t now) {
+  return {joint(0, shoulder, now), joint(1, elbow, now), joint(2, push, now)};
+}
+
+}  // namespace clearance::test
