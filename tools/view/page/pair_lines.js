@@ -68,27 +68,29 @@ export class PairLines extends THREE.Group {
     });
   }
 
-  // Labels lie beside the middles of their lines, and below each other where they would overlap.
+  // Labels lie beside the middles of their lines, from the top down, and below each other where they would overlap.
   label(state, chosen, camera, { width, height }) {
-    const placed = [];
-    this.shown.slice(0, MOST_LABELS).forEach(({ pair, a, b, level }, i) => {
+    const placed = this.shown.slice(0, MOST_LABELS).map(({ pair, a, b, level }, i) => {
       const element = (this.pool[i] ??= this.makeLabel());
       const at = a.clone().lerp(b, 0.5).project(camera);
       element.hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05;
-      if (element.hidden) return;
-      element.dataset.pair = pair.pair;
-      element.style.setProperty("--label", `var(${COLOUR[level]})`);
-      element.classList.toggle("chosen", chosen.has(pair.pair));
-      element.classList.toggle("slight", i > 0 && !chosen.has(pair.pair));
-      put(element.firstChild, `${mm(pair.distance)} mm`);
-      put(element.lastChild, `[${mm(pair.lower, 2)}, ${mm(pair.upper, 2)}] ${state.pairs[pair.pair].name}`);
-      let x = (at.x * 0.5 + 0.5) * width + 14, y = (0.5 - at.y * 0.5) * height - 18;
-      x = Math.min(x, width - 240);
-      for (const other of placed) if (Math.abs(other.y - y) < 42 && Math.abs(other.x - x) < 250) y = other.y + 44;
-      placed.push({ x, y });
-      element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+      this.fill(element, pair, level, state, chosen, i > 0);
+      return { element, x: Math.min((at.x * 0.5 + 0.5) * width + 14, width - 250), y: (0.5 - at.y * 0.5) * height - 18 };
+    }).filter(({ element }) => !element.hidden).sort((one, other) => one.y - other.y);
+    placed.forEach((label, i) => {
+      for (const above of placed.slice(0, i)) if (Math.abs(above.x - label.x) < 250) label.y = Math.max(label.y, above.y + 46);
+      label.element.style.transform = `translate(${Math.round(label.x)}px, ${Math.round(label.y)}px)`;
     });
     for (const element of this.pool.slice(Math.min(this.shown.length, MOST_LABELS))) element.hidden = true;
+  }
+
+  fill(element, pair, level, state, chosen, isFurther) {
+    element.dataset.pair = pair.pair;
+    element.style.setProperty("--label", `var(${COLOUR[level]})`);
+    element.classList.toggle("chosen", chosen.has(pair.pair));
+    element.classList.toggle("slight", isFurther && !chosen.has(pair.pair));
+    put(element.firstChild, `${mm(pair.distance)} mm`);
+    put(element.lastChild, `[${mm(pair.lower, 2)}, ${mm(pair.upper, 2)}] ${state.pairs[pair.pair].name}`);
   }
 
   makeLabel() {

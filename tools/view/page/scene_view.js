@@ -118,6 +118,13 @@ export class SceneView {
     this.adapt(nowMs);
   }
 
+  // Draws once more, and waits until that is done.
+  finish() {
+    this.drawnKey = undefined;
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
   // Fewer pixels on a machine that is too slow for all of them: by the time between frames, since what draws is not
   // waited for.
   adapt(nowMs) {
