@@ -13,6 +13,7 @@
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
+#include "tools/bench/ellipsoids.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
@@ -29,6 +30,11 @@ constexpr const char* kHelp =
     "  tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order;\n"
     "                     also boxes, parallel-boxes and links\n"
     "  cold/f2 ... links  the same without what the last query left\n"
+    "  curved/tracked/A-B one query of two bodies of these kinds: ellipsoid, cylinder or cone "
+    "with\n"
+    "                     one of these, box, link, capsule or sphere; curved/cold/A-B\n"
+    "  ellipsoids/HOW/D   the thesis's crossed ellipsoids D m apart: ours, cold; alternating, "
+    "§5.2\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
@@ -91,6 +97,7 @@ void register_all() {
   register_batches();
   register_variants();
   register_adjacency();
+  register_ellipsoids();
   register_peers();
   register_cells(CLEARANCE_CELLS);
   register_ticks();

@@ -155,4 +155,13 @@ void register_rows(const std::string& prefix) {
   }
 }
 
+// PREFIXcurved/tracked/NAME and PREFIXcurved/cold/NAME for every workload of curved bodies.
+template <class Solver>
+void register_curved_rows(const std::string& prefix) {
+  for (const std::string& name : curved_workload_names()) {
+    register_row<Solver>(fmt::format("{}curved/tracked/{}", prefix, name), name, kTracked);
+    register_row<Solver>(fmt::format("{}curved/cold/{}", prefix, name), name, kCold);
+  }
+}
+
 }  // namespace clearance::bench

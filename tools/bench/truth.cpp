@@ -3,20 +3,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace clearance::bench {
 namespace {
 
 using Real = long double;
 using Matrix = Eigen::Matrix<Real, 3, 3>;
-
-Eigen::Matrix<Real, 3, Eigen::Dynamic> vertices(const ConvexPolyhedron& body) {
-  Eigen::Matrix<Real, 3, Eigen::Dynamic> points(3, body.vertices.size());
-  for (std::size_t i = 0; i < body.vertices.size(); ++i) {
-    points.col(static_cast<Eigen::Index>(i)) = body.vertices[i].position.cast<Real>();
-  }
-  return points;
-}
 
 // Of q / |q|, by N(q) / |q|^2.
 Matrix rotation(const Eigen::Quaterniond& unnormalised) {
@@ -29,14 +22,44 @@ Matrix rotation(const Eigen::Quaterniond& unnormalised) {
 
 }  // namespace
 
-TrueDistance::TrueDistance(const ConvexPolyhedron& a, const ConvexPolyhedron& b)
-    : own_a_(vertices(a)), own_b_(vertices(b)) {}
+TrueDistance::TrueDistance(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : a_(a), b_(b) {}
+
+TrueDistance::Point TrueDistance::support(const ConvexPolyhedron& body, const Point& along) {
+  const CurvedShape& shape = body.curved;
+  if (shape.kind == CurvedShape::Kind::kEllipsoid) {
+    const Point axes = shape.semi_axes.cast<Real>(), scaled = axes.cwiseProduct(along);
+    return axes.cwiseProduct(scaled) / scaled.norm();
+  }
+  Point best = Point::Zero();
+  Real highest = -std::numeric_limits<Real>::infinity();
+  const auto offer = [&](const Point& point) {
+    const Real value = along.dot(point);
+    if (value > highest) {
+      highest = value;
+      best = point;
+    }
+  };
+  if (shape.kind == CurvedShape::Kind::kTruncatedCone) {
+    const Point across = Point(along.x(), along.y(), 0.0L).stableNormalized();
+    for (const Disc& disc : shape.discs) {
+      offer(Point(0.0L, 0.0L, disc.height) + static_cast<Real>(disc.radius) * across);
+    }
+  }
+  for (const Vertex& vertex : body.vertices) offer(vertex.position.cast<Real>());
+  return best;
+}
+
+void TrueDistance::place(Corner& corner) const {
+  corner.point = apart_ + world_from_b_ * corner.own_b - world_from_a_ * corner.own_a;
+}
 
 TrueDistance::Corner TrueDistance::farthest(const Point& against) const {
-  Eigen::Index of_a = 0, of_b = 0;
-  (against.transpose() * a_).maxCoeff(&of_a);
-  (against.transpose() * b_).minCoeff(&of_b);
-  return {static_cast<int>(of_a), static_cast<int>(of_b), b_.col(of_b) - a_.col(of_a), 0.0L};
+  Corner found;
+  found.own_a = support(a_, world_from_a_.transpose() * against);
+  found.own_b = support(b_, -(world_from_b_.transpose() * against));
+  found.weight = 0.0L;
+  place(found);
+  return found;
 }
 
 TrueDistance::Point TrueDistance::nearest() const {
@@ -79,15 +102,15 @@ void TrueDistance::minimise() {
 }
 
 Truth TrueDistance::at(const Pose& world_from_a, const Pose& world_from_b) {
-  const Point apart = world_from_b.position.cast<Real>() - world_from_a.position.cast<Real>();
-  a_ = rotation(world_from_a.orientation) * own_a_;
-  b_ = (rotation(world_from_b.orientation) * own_b_).colwise() + apart;
+  apart_ = world_from_b.position.cast<Real>() - world_from_a.position.cast<Real>();
+  world_from_a_ = rotation(world_from_a.orientation);
+  world_from_b_ = rotation(world_from_b.orientation);
   for (Corner& c : corners_) {
-    c.point = b_.col(c.b) - a_.col(c.a);
+    place(c);
     c.weight = 1.0L / static_cast<Real>(corners_.size());
   }
   if (corners_.empty()) {
-    corners_.push_back(farthest(apart));
+    corners_.push_back(farthest(apart_));
     corners_[0].weight = 1.0L;
   }
   constexpr int kRounds = 1000;
@@ -100,10 +123,13 @@ Truth TrueDistance::at(const Pose& world_from_a, const Pose& world_from_b) {
     const Corner next = farthest(v);
     const Real gap = length - v.dot(next.point) / length;
     if (static_cast<double>(gap) < best.gap) {
-      best = {static_cast<double>(length), std::max(0.0, static_cast<double>(gap))};
+      const Real radii = static_cast<Real>(a_.radius) + static_cast<Real>(b_.radius);
+      best = {std::max(0.0, static_cast<double>(length - radii)),
+              std::max(0.0, static_cast<double>(gap))};
     }
-    const bool known = std::any_of(corners_.begin(), corners_.end(),
-                                   [&](const Corner& c) { return c.a == next.a && c.b == next.b; });
+    const bool known = std::any_of(corners_.begin(), corners_.end(), [&](const Corner& c) {
+      return c.own_a == next.own_a && c.own_b == next.own_b;
+    });
     if (known || gap <= 1e-18L * length) break;
     corners_.push_back(next);
   }

@@ -1,8 +1,8 @@
 // The reference distance for the error of every row, from a method that shares nothing with
 // the core: Wolfe's nearest point (P. Wolfe, "Finding the nearest point in a polytope", 1976) over
-// all differences of vertices, in 80-bit long doubles, each answer with the gap between its primal
-// and its dual value. Bodies are the hulls of the polyhedra's vertices; poses are the exact
-// rotations of their quaternions.
+// all differences of support points, in 80-bit long doubles, each answer with the gap between its
+// primal and its dual value. Bodies are the hulls of the polyhedra's vertices, or the curved
+// shapes; radii are taken off. Poses are the exact rotations of their quaternions.
 #pragma once
 
 #include <vector>
@@ -26,20 +26,23 @@ class TrueDistance {
  private:
   using Real = long double;
   using Point = Eigen::Matrix<Real, 3, 1>;
-  using Points = Eigen::Matrix<Real, 3, Eigen::Dynamic>;
-  // A difference b - a of two vertices, and its weight in the nearest point.
+  using Matrix = Eigen::Matrix<Real, 3, 3>;
+  // A difference b - a of two points of the bodies, each in its own frame, and its weight in the
+  // nearest point.
   struct Corner {
-    int a, b;
-    Point point;
+    Point own_a, own_b, point;
     Real weight;
   };
 
+  [[nodiscard]] static Point support(const ConvexPolyhedron& body, const Point& along);
+  void place(Corner& corner) const;
   [[nodiscard]] Corner farthest(const Point& against) const;
   [[nodiscard]] Point nearest() const;
   void minimise();
 
-  Points own_a_, own_b_;
-  Points a_, b_;  // in the world, relative to A's position
+  const ConvexPolyhedron &a_, &b_;
+  Matrix world_from_a_, world_from_b_;
+  Point apart_;  // from A's position to B's
   std::vector<Corner> corners_;
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/overlaps.hpp"
 
@@ -104,7 +105,40 @@ std::vector<Trajectory> sliding_boxes() {
   return all;
 }
 
+constexpr const char* kCurvedKinds[] = {"ellipsoid", "cylinder", "cone"};
+constexpr const char* kOtherKinds[] = {"box", "link", "capsule", "sphere"};
+
+ConvexPolyhedron body_of_kind(const std::string& kind, Random& random) {
+  const auto length = [&] { return random.uniform(0.05, 0.25); };
+  const auto made = [](ShapeResult shape) { return std::get<ConvexPolyhedron>(std::move(shape)); };
+  if (kind == "box") return random_box(random);
+  if (kind == "link") return random_link(random);
+  const double x = length(), y = length(), z = length();
+  if (kind == "ellipsoid") return made(ellipsoid({x, y, z}));
+  if (kind == "cylinder") return made(cylinder(x, y));
+  if (kind == "cone") return made(cone(x, y));
+  if (kind == "capsule") return made(segment({0, 0, -y}, {0, 0, y}, x));
+  if (kind == "sphere") return made(point(Vec3::Zero(), x));
+  throw std::invalid_argument(fmt::format("there is no kind of body named '{}'", kind));
+}
+
+std::vector<Trajectory> passing_kinds(const std::string& kind_a, const std::string& kind_b) {
+  Random random(5);
+  std::vector<Trajectory> all;
+  for (int i = 0; i < kTrajectories; ++i) {
+    const auto a = std::make_shared<const ConvexPolyhedron>(body_of_kind(kind_a, random));
+    const auto b = std::make_shared<const ConvexPolyhedron>(body_of_kind(kind_b, random));
+    const double size = a->bounding_radius + a->radius + b->bounding_radius + b->radius;
+    all.push_back({a, b, pass(random, kLinkDrift, size + 0.01, size + 1.0)});
+  }
+  return all;
+}
+
 std::vector<Trajectory> trajectories(const std::string& name) {
+  if (const std::size_t dash = name.find('-');
+      dash != std::string::npos && !name.ends_with("boxes")) {
+    return passing_kinds(name.substr(0, dash), name.substr(dash + 1));
+  }
   if (name == "boxes") return passing(random_box, kBallDrift, 0.8, 2.0);
   if (name == "parallel-boxes") return sliding_boxes();
   if (name == "links") return passing(random_link, kLinkDrift, 0.5, 1.5);
@@ -146,6 +180,17 @@ std::vector<std::string> workload_names() {
     for (const int order : kOrders) names.push_back(fmt::format("{}{}", kind, order));
   }
   names.insert(names.end(), {"boxes", "parallel-boxes", "links"});
+  return names;
+}
+
+std::vector<std::string> curved_workload_names() {
+  std::vector<std::string> names;
+  for (const auto* a = std::begin(kCurvedKinds); a != std::end(kCurvedKinds); ++a) {
+    for (const auto* b = a; b != std::end(kCurvedKinds); ++b) {
+      names.push_back(fmt::format("{}-{}", *a, *b));
+    }
+    for (const char* b : kOtherKinds) names.push_back(fmt::format("{}-{}", *a, b));
+  }
   return names;
 }
 

@@ -36,6 +36,9 @@ struct Workload {
 //   each
 //                   other face to face
 //   links           hulls like those of robot links, 2 mm and 5 mrad a step
+//   A-B             of ellipsoid, cylinder, cone, capsule, sphere, box and link (a hull), one each
+//   of
+//                   0.1 to 0.5 m, on the trajectories of links
 // Made at first use and kept. Throws std::invalid_argument for any other name.
 [[nodiscard]] const Workload& workload(const std::string& name);
 
@@ -44,7 +47,9 @@ inline constexpr int kTrajectorySteps = 100;
 // The orders of §3.5.
 inline constexpr int kOrders[] = {2, 4, 6, 8, 10, 15, 20, 30, 40};
 
-// Every name but those of overlaps.hpp, in the order of the tables.
+// Every name but those of curved bodies and of overlaps.hpp, in the order of the tables.
 [[nodiscard]] std::vector<std::string> workload_names();
+// Those of curved bodies: "ellipsoid-ellipsoid", ...
+[[nodiscard]] std::vector<std::string> curved_workload_names();
 
 }  // namespace clearance::bench

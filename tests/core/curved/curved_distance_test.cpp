@@ -1,29 +1,38 @@
 // Distances of curved bodies against closed forms, against published figures and against the
-// polyhedral query, which proves its answers by other means.
+// polyhedral query, which proves its answers by other means; and curved bodies where users meet
+// them: states, options, batches, the models around bodies.
 #include "core/curved/curved_distance.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "core/batch.hpp"
 #include "core/distance.hpp"
+#include "core/enclosing_polyhedron.hpp"
+#include "core/model/curved_extent.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/made.hpp"
+#include "tests/shared/nonsense_state.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
 
 using test::at;
+using test::cold;
 using test::made;
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& world_from_a,
-                    const Pose& world_from_b) {
+DistanceResult answer(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                      const Pose& world_from_a, const Pose& world_from_b) {
   return test::cold(a, b, relative_pose(world_from_a, world_from_b));
 }
 
@@ -42,7 +51,7 @@ void expect_answer(const DistanceResult& r, double exact, double size, double ro
 TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
   // (5.2.2) gives the points to 1e-11; the distance is 1.29549481993874080913966969921.
   const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({5, 2, 1}));
-  const DistanceResult r = cold(a, b, at(0, 0, 0), at(4, 4, 4));
+  const DistanceResult r = answer(a, b, at(0, 0, 0), at(4, 4, 4));
   expect_answer(r, 1.29549481993874080914, 10.0 + 6.9);
   EXPECT_NEAR(r.point_on_a.x(), 0.13705777781256, 1e-10);
   EXPECT_NEAR(r.point_on_a.y(), 1.43051641611194, 1e-10);
@@ -56,38 +65,38 @@ TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
                                     made(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
   for (const ConvexPolyhedron& a : round) {
     for (const ConvexPolyhedron& b : round) {
-      expect_answer(cold(a, b, at(0, 0, 0), at(3, 4, 0)), 3.5, 6.5);
-      expect_answer(cold(a, b, at(0, 0, 0), at(0.75, 0, 0)), -0.75, 2.25);
+      expect_answer(answer(a, b, at(0, 0, 0), at(3, 4, 0)), 3.5, 6.5);
+      expect_answer(answer(a, b, at(0, 0, 0), at(0.75, 0, 0)), -0.75, 2.25);
     }
   }
 }
 
 TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
   const ConvexPolyhedron a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
-  expect_answer(cold(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);     // coaxial
-  expect_answer(cold(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);  // caps half over each other
-  expect_answer(cold(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);   // side by side
-  expect_answer(cold(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0, 15.0);  // rim to rim, 3 and 4
+  expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);     // coaxial
+  expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);  // caps half over each other
+  expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);   // side by side
+  expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0, 15.0);  // rim to rim, 3 and 4
   const Pose crossed = turned_at(3, 0, 0, Vec3::UnitX(), kHalfTurn / 2);
-  expect_answer(cold(a, b, at(0, 0, 0), crossed), 1.5, 8.0, 1e-16);
+  expect_answer(answer(a, b, at(0, 0, 0), crossed), 1.5, 8.0, 1e-16);
 }
 
 TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
   const ConvexPolyhedron cone_a = made(cone(1.0, 1.0)), sphere = made(ellipsoid({1, 1, 1}));
-  expect_answer(cold(cone_a, sphere, at(0, 0, 0), at(0, 0, 4)), 2.0, 8.0);
-  expect_answer(cold(cone_a, sphere, at(0, 0, 0), at(0, 0, -4)), 2.0, 8.0);
+  expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, 4)), 2.0, 8.0);
+  expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, -4)), 2.0, 8.0);
   // The side leads from (1, -1) to (0, 1); its outward normal is (2, 1) / sqrt 5.
   const double side = (2.0 * 3.0 + 1.0 * 1.5 - 1.0) / std::sqrt(5.0) - 1.0;
-  expect_answer(cold(cone_a, sphere, at(0, 0, 0), at(3, 0, 1.5)), side, 8.0);
+  expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(3, 0, 1.5)), side, 8.0);
 }
 
 TEST(CurvedDistance, OfAHalfSpaceIsThatOfOneSupportPoint) {
   const HalfSpace rows[] = {{{0, 0, 1}, 0.0}};
   const ConvexPolyhedron floor = made(polyhedron_from_halfspaces(rows));
   const ConvexPolyhedron ground = floor, body = made(ellipsoid({3, 2, 1}));
-  expect_answer(cold(ground, body, at(0, 0, 0), at(5, 6, 4)), 3.0, 12.0);
-  expect_answer(cold(body, ground, at(5, 6, 4), at(0, 0, 0)), 3.0, 12.0);
-  expect_answer(cold(ground, body, at(0, 0, 0), at(5, 6, 0.25)), -0.75, 12.0);
+  expect_answer(answer(ground, body, at(0, 0, 0), at(5, 6, 4)), 3.0, 12.0);
+  expect_answer(answer(body, ground, at(5, 6, 4), at(0, 0, 0)), 3.0, 12.0);
+  expect_answer(answer(ground, body, at(0, 0, 0), at(5, 6, 0.25)), -0.75, 12.0);
 }
 
 TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
@@ -95,23 +104,23 @@ TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
   for (double tilt = 1e-14; tilt < 1e-2; tilt *= 10.0) {
     const Pose pose = turned_at(0, 0, 3, Vec3::UnitY(), tilt);
     const double exact = 3.0 - std::cos(tilt) - 0.5 * std::sin(tilt) - 1.0;
-    expect_answer(cold(a, b, at(0, 0, 0), pose), exact, 6.0, 4e-16);
+    expect_answer(answer(a, b, at(0, 0, 0), pose), exact, 6.0, 4e-16);
   }
 }
 
 TEST(CurvedDistance, OfDiscsAndNeedlesIsRightAlongTheirAxes) {
   const ConvexPolyhedron disc = made(ellipsoid({1, 1, 1e-4}));
   const ConvexPolyhedron needle = made(ellipsoid({1e-4, 1e-4, 1}));
-  expect_answer(cold(disc, needle, at(0, 0, 0), at(0, 0, 2)), 1.0 - 1e-4, 5.0);
-  expect_answer(cold(disc, disc, at(0, 0, 0), at(0, 0, 1)), 1.0 - 2e-4, 4.0);
-  expect_answer(cold(needle, needle, at(0, 0, 0), at(1, 0, 0)), 1.0 - 2e-4, 4.0);
+  expect_answer(answer(disc, needle, at(0, 0, 0), at(0, 0, 2)), 1.0 - 1e-4, 5.0);
+  expect_answer(answer(disc, disc, at(0, 0, 0), at(0, 0, 1)), 1.0 - 2e-4, 4.0);
+  expect_answer(answer(needle, needle, at(0, 0, 0), at(1, 0, 0)), 1.0 - 2e-4, 4.0);
 }
 
 TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
   const ConvexPolyhedron a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
   // Sideways, 1.5 - 1 = 0.5 is shorter than lengthwise, 5.
-  expect_answer(cold(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);
-  const DistanceResult r = cold(a, b, at(0, 0, 0), at(0, 0, 4.75));
+  expect_answer(answer(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);
+  const DistanceResult r = answer(a, b, at(0, 0, 0), at(0, 0, 4.75));
   expect_answer(r, -0.25, 10.0);
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
   EXPECT_NEAR(r.normal.z(), 1.0, 1e-7);
@@ -119,7 +128,7 @@ TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
 
 TEST(CurvedDistance, OfEllipsoidsWithOneCentreIsTheSumOfTheirShortestSemiAxes) {
   const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({1.5, 2, 3}));
-  expect_answer(cold(a, b, at(0, 0, 0), at(0, 0, 0)), -2.5, 8.0);
+  expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 0)), -2.5, 8.0);
 }
 
 TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
@@ -159,9 +168,202 @@ TEST(CurvedDistance, OfABadPoseIsUnknown) {
   const ConvexPolyhedron a = made(cylinder(1, 1));
   Pose bad = at(0, 0, 0);
   bad.position.x() = std::nan("");
-  const DistanceResult r = cold(a, a, at(0, 0, 0), bad);
+  const DistanceResult r = answer(a, a, at(0, 0, 0), bad);
   EXPECT_EQ(r.status, DistanceStatus::kBadPose);
   EXPECT_EQ(r.upper, kInfinity);
+}
+
+// One of every kind.
+std::vector<ConvexPolyhedron> every_kind() {
+  const std::array<Vec3, 5> hull{Vec3(0, 0, 0.4), Vec3(0.3, 0, 0), Vec3(-0.2, 0.3, 0),
+                                 Vec3(-0.2, -0.3, 0), Vec3(0, 0, -0.3)};
+  return {made(ellipsoid({0.2, 0.3, 0.5})),
+          made(ellipsoid({0.3, 0.3, 0.01}, 0.05)),
+          made(cylinder(0.2, 0.4)),
+          made(cylinder(0.3, 0.01, 0.1)),
+          made(cone(0.3, 0.3)),
+          made(truncated_cone(0.3, 0.1, 0.2, 0.05)),
+          made(box({0.2, 0.3, 0.1})),
+          made(rounded_by(0.1, made(box({0.2, 0.3, 0.1})))),
+          made(rounded_by(0.05, made(polyhedron_from_vertices(hull)))),
+          made(point({0.1, 0, 0}, 0.2)),
+          made(segment({0, 0, -0.2}, {0, 0.1, 0.2}, 0.1))};
+}
+
+TEST(CurvedBodies, MeetEveryOtherKindByPosesAndByRelativePoseAlike) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  Random random(31);
+  for (const ConvexPolyhedron& a : bodies) {
+    for (const ConvexPolyhedron& b : bodies) {
+      TrackingState by_poses, by_relative;
+      for (int step = 0; step < 6; ++step) {
+        const Pose world_from_a = random.pose(0.8), world_from_b = random.pose(0.8);
+        const DistanceResult r = distance(a, b, world_from_a, world_from_b, by_poses);
+        const DistanceResult s =
+            distance(a, b, relative_pose(world_from_a, world_from_b), by_relative);
+        EXPECT_TRUE(same_bits(r, s));
+        EXPECT_LE(r.lower, r.upper);
+        EXPECT_LE(r.upper - r.lower, 1e-13 * 4.0) << name(r.status);
+      }
+    }
+  }
+}
+
+TEST(CurvedBodies, HaveTheSameBitsInABatch) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  std::vector<const ConvexPolyhedron*> shapes;
+  std::vector<BodyPair> pairs;
+  std::vector<Pose> poses;
+  Random random(32);
+  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+    shapes.push_back(&bodies[b]);
+    poses.push_back(random.pose(2.0));
+    for (std::uint32_t a = 0; a < b; ++a) pairs.push_back({a, b});
+  }
+  DistanceBatch batch(shapes, pairs);
+  std::vector<TrackingState> states(pairs.size());
+  for (int step = 0; step < 40; ++step) {
+    for (Pose& pose : poses) pose.position += 0.02 * random.direction();
+    const std::uint64_t before = allocations();
+    const auto found = batch.evaluate(poses);
+    EXPECT_EQ(allocations(), before);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto [a, b] = pairs[i];
+      const DistanceResult r = distance(bodies[a], bodies[b], poses[a], poses[b], states[i]);
+      EXPECT_TRUE(same_bits(found[i], r)) << a << " " << b;
+      EXPECT_EQ(batch.point_on_b(i), states[i].b.point);
+    }
+  }
+}
+
+TEST(CurvedBodies, KeepTheirBoundsWithStatesOfOtherPairs) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  Random random(33);
+  for (int k = 0; k < 2000; ++k) {
+    const ConvexPolyhedron& a = bodies[random.integer(0, 5)];
+    const ConvexPolyhedron& b = bodies[random.integer(0, static_cast<int>(bodies.size()) - 1)];
+    const Pose pose = random.pose(1.0);
+    const DistanceResult fresh = cold(a, b, pose);
+    TrackingState state = test::nonsense_state(a, b, random);
+    if (random.chance(0.5)) {
+      state.a.kind = FeatureKind::kDirection;
+      state.a.point = random.direction();
+    }
+    const DistanceResult r = distance(a, b, Pose{}, pose, state);
+    EXPECT_LE(r.lower, fresh.upper) << k;
+    EXPECT_GE(r.upper, fresh.lower) << k;
+  }
+}
+
+TEST(CurvedBodies, AreFarAwayBySpheresWhereNobodyAsksByHowMuch) {
+  const ConvexPolyhedron a = made(cylinder(0.3, 0.4)), b = made(ellipsoid({1, 2, 3}, 0.5));
+  TrackingState state;
+  const RelativePose pose = relative_pose(at(0, 0, 0), at(20, 0, 0));
+  const DistanceResult r = distance(a, b, pose, state, {.far_away = 10.0});
+  EXPECT_EQ(r.status, DistanceStatus::kFarAway);
+  EXPECT_NEAR(r.lower, 20.0 - 0.5 - 3.5, 1e-12);
+  EXPECT_LE(r.lower, distance(a, b, pose, state).lower);
+}
+
+TEST(CurvedBodies, AreNotAskedHowDeepTheyOverlapUnlessSomebodyAsks) {
+  const ConvexPolyhedron a = made(cylinder(0.3, 0.4)), b = made(cone(0.5, 0.5));
+  TrackingState state;
+  const RelativePose pose = relative_pose(at(0, 0, 0), at(0.1, 0, 0.2));
+  const DistanceResult r = distance(a, b, pose, state, {.depth = false});
+  EXPECT_EQ(r.status, DistanceStatus::kDepthNotAsked);
+  EXPECT_LT(r.iterations, 100);
+  const DistanceResult s = distance(a, b, pose, state);
+  EXPECT_EQ(s.status, DistanceStatus::kOverlapping);
+  EXPECT_LE(r.lower, s.upper);
+  EXPECT_LE(s.lower, r.upper);
+}
+
+// Against a box that is as long as doubles allow to be sure of.
+TEST(CurvedBodies, MeetUnboundedBodies) {
+  const std::array<HalfSpace, 2> wedge_rows{HalfSpace{{1, 0, 0}, 0}, HalfSpace{{0, 1, 0}, 0}};
+  const std::array<HalfSpace, 2> slab_rows{HalfSpace{{0, 0, 1}, 1}, HalfSpace{{0, 0, -1}, 1}};
+  const std::array<HalfSpace, 3> corner_rows{HalfSpace{{1, 0, 1}, 0}, HalfSpace{{0, 1, 1}, 0},
+                                             HalfSpace{{-1, -1, 1}, 0}};
+  const ConvexPolyhedron wedge = made(polyhedron_from_halfspaces(wedge_rows));
+  const ConvexPolyhedron slab = made(polyhedron_from_halfspaces(slab_rows));
+  const ConvexPolyhedron corner = made(polyhedron_from_halfspaces(corner_rows));
+  const ConvexPolyhedron ball = made(ellipsoid({1, 1, 1}));
+  const auto expect = [](const DistanceResult& r, double exact) {
+    EXPECT_NEAR(r.distance, exact, 1e-13);
+    EXPECT_LE(r.lower, exact + 1e-15);
+    EXPECT_GE(r.upper, exact - 1e-15);
+    EXPECT_NE(r.status, DistanceStatus::kIterationLimit);
+  };
+  expect(cold(wedge, ball, at(4, 3, 7)), 4.0);   // edge
+  expect(cold(wedge, ball, at(-4, 3, 7)), 2.0);  // side
+  expect(cold(wedge, ball, at(-5, 0.5, -7)), -0.5);
+  expect(cold(slab, ball, at(5, 6, 4)), 2.0);
+  expect(cold(slab, ball, at(5, 6, 0.5)), -1.5);
+  expect(cold(corner, ball, at(0, 0, 5)), 4.0);  // apex
+  expect(cold(ball, slab, at(5, 6, 4)), 2.0);
+  const ConvexPolyhedron rod = made(cylinder(0.5, 2.0));
+  expect(cold(wedge, rod, at(4, 3, 0)), 4.5);
+  expect(cold(slab, rod, at(4, 3, 3.5)), 0.5);
+}
+
+TEST(CurvedBodies, AreInsideTheModelsAroundThem) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  Random random(34);
+  for (int k = 0; k < 20; ++k) {
+    std::vector<PlacedShape> placed;
+    for (int i = 0; i < 3; ++i) {
+      placed.push_back({&bodies[random.integer(0, 5)], random.pose(0.5)});
+    }
+    const auto model = enclosing_polyhedron(placed);
+    ASSERT_TRUE(model);
+    const double error = excess(*model, placed);
+    EXPECT_LT(error, 0.6);
+    for (const PlacedShape& body : placed) {
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 n = random.direction();
+        const Mat3 turn = rotation_matrix(body.frame_from_shape.orientation);
+        const CurvedShape& shape = body.shape->curved;
+        const double reach = support_value(shape, turn.transpose() * n) + body.shape->radius +
+                             n.dot(body.frame_from_shape.position);
+        double of_model = -kInfinity;
+        for (const Vec3& anchor : model->anchors) of_model = std::max(of_model, n.dot(anchor));
+        EXPECT_LE(reach, of_model + 1e-15);
+      }
+    }
+  }
+}
+
+TEST(CurvedBodies, ReachNoFartherThanTheirExtents) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  Random random(35);
+  for (int k = 0; k < 500; ++k) {
+    const CurvedShape& shape = bodies[random.integer(0, 5)].curved;
+    const Vec3 from = random.in_box(2.0), n = random.direction(), to_middle = middle(shape);
+    double farthest = 0.0;
+    for (const Vec3& p : surface_points(shape, 24)) {
+      EXPECT_LE(n.dot(p), support_value(shape, n) + 1e-15);
+      EXPECT_LE((p - from).norm(), farthest_from(shape, from) + 1e-15);
+      farthest = std::max(farthest, (p - to_middle).norm());
+    }
+    EXPECT_NEAR(farthest_from(shape, to_middle), farthest, 1e-14);
+  }
+}
+
+TEST(CurvedBodies, AreRefusedWhereNoSceneHasThem) {
+  const auto refused = [](const ShapeResult& made) {
+    return std::holds_alternative<ShapeError>(made);
+  };
+  EXPECT_TRUE(refused(ellipsoid({1, 1, 0})));
+  EXPECT_TRUE(refused(ellipsoid({1, std::nan(""), 1})));
+  EXPECT_TRUE(refused(ellipsoid({1, 1e13, 1})));
+  EXPECT_TRUE(refused(ellipsoid({1, 1, 1}, -1.0)));
+  EXPECT_TRUE(refused(cylinder(0.0, 1.0)));
+  EXPECT_TRUE(refused(cylinder(1.0, 0.0)));
+  EXPECT_TRUE(refused(cone(1.0, kInfinity)));
+  EXPECT_TRUE(refused(truncated_cone(0.0, 0.0, 1.0)));
+  EXPECT_TRUE(refused(truncated_cone(1.0, -1.0, 1.0)));
+  EXPECT_TRUE(refused(rounded_by(1e13, test::cube())));
+  EXPECT_TRUE(refused(rounded_by(std::nan(""), test::cube())));
 }
 
 }  // namespace

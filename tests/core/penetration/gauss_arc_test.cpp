@@ -53,13 +53,13 @@ void expect_depth_of_all(const DistanceResult& r, double depth) {
   EXPECT_LE(r.upper - r.lower, 5e-14);
 }
 
-struct TwoBodies {
+struct TurnedPair {
   ConvexPolyhedron a, b;
 };
 
 // Balls of facets and of corners, of one size and one small in the other; hulls of scattered
 // points, which are no balls; and one of few corners against one of many.
-std::vector<TwoBodies> pairs_of_many_corners(Random& random) {
+std::vector<TurnedPair> pairs_of_many_corners(Random& random) {
   const ConvexPolyhedron ball = made(hard::facet_ball(6)), dual = made(hard::dual_ball(6));
   const ConvexPolyhedron small = made(hard::scaled(hard::facet_ball(6), 0.4));
   const ConvexPolyhedron rough = made(hard::random_hull(random, 60));

@@ -1,4 +1,8 @@
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
 #include "tools/bench/intervals.hpp"
@@ -18,10 +22,53 @@ btTransform transform_of(const Pose& pose) {
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), vector(pose.position));
 }
 
+// Bullet has no ellipsoid: this is what its other shapes are, a support function.
+class Ellipsoid : public btConvexInternalShape {
+ public:
+  explicit Ellipsoid(const Vec3& semi_axes) : semi_axes_(vector(semi_axes)) {
+    m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
+  }
+  btVector3 localGetSupportingVertexWithoutMargin(const btVector3& along) const override {
+    const btVector3 scaled = semi_axes_ * along;
+    return semi_axes_ * scaled / scaled.length();
+  }
+  btVector3 localGetSupportingVertex(const btVector3& along) const override {
+    return localGetSupportingVertexWithoutMargin(along);
+  }
+  void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* along, btVector3* found,
+                                                         int count) const override {
+    for (int i = 0; i < count; ++i) found[i] = localGetSupportingVertexWithoutMargin(along[i]);
+  }
+  void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }
+  const char* getName() const override { return "Ellipsoid"; }
+
+ private:
+  btVector3 semi_axes_;
+};
+
 class Bullet {
  public:
-  using Shape = std::shared_ptr<btConvexHullShape>;
+  using Shape = std::shared_ptr<btConvexShape>;
+  static Shape curved(const CurvedShape& shape) {
+    if (shape.kind == CurvedShape::Kind::kEllipsoid) {
+      return std::make_shared<Ellipsoid>(shape.semi_axes);
+    }
+    const auto& [low, high] = shape.discs;
+    const double length = high.height - low.height;
+    if (high.radius == 0.0) return std::make_shared<btConeShapeZ>(low.radius, length);
+    return std::make_shared<btCylinderShapeZ>(btVector3(low.radius, low.radius, 0.5 * length));
+  }
   static Shape shape(const ConvexPolyhedron& body) {
+    if (body.is_curved()) {
+      Shape made = curved(body.curved);
+      made->setMargin(0.0);
+      return made;
+    }
+    // Their radius is their margin, which GJK leaves out and query() takes off.
+    if (body.vertices.size() == 1) return std::make_shared<btSphereShape>(body.radius);
+    if (body.vertices.size() == 2) {
+      return std::make_shared<btCapsuleShapeZ>(body.radius, body.edges.front().end);
+    }
     const auto hull = std::make_shared<btConvexHullShape>();
     for (const Vec3& p : welded(body).points) hull->addPoint(vector(p), false);
     hull->recalcLocalAabb();
@@ -41,7 +88,7 @@ class Bullet {
       return {.distance = 0.0, .ok = result.status == btGjkEpaSolver2::sResults::Penetrating};
     }
     guess_ = in_frame(a, result.witnesses[0] - result.witnesses[1]);
-    return {.distance = result.distance};
+    return {.distance = result.distance - a_->getMargin() - b_->getMargin()};
   }
 
  private:
@@ -57,6 +104,7 @@ class Bullet {
 void register_bullet() {
   register_rows<Bullet>("peer/bullet/");
   register_intervals<Bullet>("peer/bullet/");
+  register_curved_rows<Bullet>("peer/bullet/");
 }
 
 }  // namespace clearance::bench

@@ -1,6 +1,8 @@
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
 
+#include <variant>
+
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/peers/fcl_bodies.hpp"
@@ -9,10 +11,17 @@
 namespace clearance::bench {
 namespace {
 
+// FCL's solvers are functions of the shapes' types: of a pair of them, the one that applies.
+template <class Use>
+void with_types(const FclShape& a, const FclShape& b, const Use& use) {
+  std::visit([&](const auto& of_a) { std::visit([&](const auto& of_b) { use(*of_a, *of_b); }, b); },
+             a);
+}
+
 class Pair {
  public:
-  using Shape = std::shared_ptr<FclHull>;
-  static Shape shape(const ConvexPolyhedron& body) { return fcl_hull(body); }
+  using Shape = FclShape;
+  static Shape shape(const ConvexPolyhedron& body) { return fcl_shape(body); }
   Pair(Shape a, Shape b) : a_(std::move(a)), b_(std::move(b)) {}
 
  protected:
@@ -20,8 +29,10 @@ class Pair {
   Answer ask(const Gjk& gjk, const Pose& world_from_a, const Pose& world_from_b) {
     double apart = 0.0;
     fcl::Vector3d on_a, on_b;
-    gjk.shapeDistance(*a_, fcl_transform(world_from_a), *b_, fcl_transform(world_from_b), &apart,
-                      &on_a, &on_b);
+    with_types(a_, b_, [&](const auto& a, const auto& b) {
+      gjk.shapeDistance(a, fcl_transform(world_from_a), b, fcl_transform(world_from_b), &apart,
+                        &on_a, &on_b);
+    });
     return {.distance = apart};
   }
   Shape a_, b_;
@@ -69,6 +80,9 @@ void register_fcl() {
   register_rows<WithLibccd<12>>("peer/fcl-tight/");
   register_rows<WithOwnGjk>("peer/fcl-gjk/");
   register_intervals<WithOwnGjk>("peer/fcl-gjk/");
+  register_curved_rows<WithLibccd<6>>("peer/fcl/");
+  register_curved_rows<WithLibccd<12>>("peer/fcl-tight/");
+  register_curved_rows<WithOwnGjk>("peer/fcl-gjk/");
 }
 
 }  // namespace clearance::bench

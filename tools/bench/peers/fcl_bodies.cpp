@@ -19,6 +19,24 @@ std::shared_ptr<FclHull> fcl_hull(const ConvexPolyhedron& body) {
   return std::make_shared<FclHull>(points, static_cast<int>(mesh.faces.size()), faces);
 }
 
+FclShape fcl_shape(const ConvexPolyhedron& body) {
+  const CurvedShape& shape = body.curved;
+  if (shape.kind == CurvedShape::Kind::kEllipsoid) {
+    return std::make_shared<fcl::Ellipsoidd>(shape.semi_axes);
+  }
+  if (shape.kind == CurvedShape::Kind::kTruncatedCone) {
+    const auto& [low, high] = shape.discs;
+    const double length = high.height - low.height;
+    if (high.radius == 0.0) return std::make_shared<fcl::Coned>(low.radius, length);
+    return std::make_shared<fcl::Cylinderd>(low.radius, length);
+  }
+  if (body.vertices.size() == 1) return std::make_shared<fcl::Sphered>(body.radius);
+  if (body.vertices.size() == 2) {
+    return std::make_shared<fcl::Capsuled>(body.radius, body.edges.front().end);
+  }
+  return fcl_hull(body);
+}
+
 fcl::Transform3d fcl_transform(const Pose& pose) {
   fcl::Transform3d t = fcl::Transform3d::Identity();
   t.linear() = pose.orientation.normalized().toRotationMatrix();

@@ -1,9 +1,15 @@
 // Our bodies as FCL has them.
 #pragma once
 
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/sphere.h>
 
 #include <memory>
+#include <variant>
 
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
@@ -14,6 +20,13 @@ using FclHull = fcl::Convex<double>;
 
 // Vertices closer than rounding are welded.
 [[nodiscard]] std::shared_ptr<FclHull> fcl_hull(const ConvexPolyhedron& body);
+
+// Curved bodies as what they are: ellipsoid, cylinder, cone; a capsule along z, a sphere around the
+// origin; others as hulls.
+using FclShape = std::variant<std::shared_ptr<FclHull>, std::shared_ptr<fcl::Ellipsoidd>,
+                              std::shared_ptr<fcl::Cylinderd>, std::shared_ptr<fcl::Coned>,
+                              std::shared_ptr<fcl::Capsuled>, std::shared_ptr<fcl::Sphered>>;
+[[nodiscard]] FclShape fcl_shape(const ConvexPolyhedron& body);
 
 [[nodiscard]] fcl::Transform3d fcl_transform(const Pose& pose);
 

@@ -10,7 +10,7 @@ namespace clearance::bench {
 
 // The rows that the report shows, as a --benchmark_filter.
 inline constexpr const char* kReportRows =
-    "^(tracked/|cold/|batch/|peer/|overlap/|interval/|adjacency/|variant/"
+    "^(tracked/|cold/|curved/|batch/|peer/|overlap/|interval/|adjacency/|variant/"
     "((base|dual|aggressive|consistent|all-facets)/(tracked|cold)|"
     "(base-repeated|moved-before|moved)/tracked|base/interval/[0-9]+)/f)";
 
