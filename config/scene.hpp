@@ -37,8 +37,8 @@ struct Object {
   // A pose that comes again, bit for bit, for longer than this is frozen; 0: it may, as of an
   // object at rest.
   std::int64_t frozen_limit_ns = 0;
-  // Of a link whose pose follows from joints: no point of it is farther from where the chain has it,
-  // m. Its parts' own errors have been widened by it. 0: of poses that are sent.
+  // Of a link whose pose follows from joints: no point of it is farther from where the chain has
+  // it, m. Its parts' own errors have been widened by it. 0: of poses that are sent.
   double pose_error = 0.0;
   bool may_jump = false;  // poses need not be such as the object can have reached: a simulation's
   // Only poses of this source are used; empty: of the first that sends some, while it does.

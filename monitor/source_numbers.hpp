@@ -11,8 +11,8 @@
 
 namespace clearance {
 
-// Whose poses or joints the cell asks for, each once, in its order. The reader of cells refuses more
-// than there are places.
+// Whose poses or joints the cell asks for, each once, in its order. The reader of cells refuses
+// more than there are places.
 [[nodiscard]] std::vector<SourceName> named_sources(const Scene& scene);
 
 // The sources that the cell names come first, in its order; the others follow as they are first

@@ -76,8 +76,8 @@ TEST(RobotsInTheTick, BoundsAccountForTheRoundingOfTheChain) {
       const double reach =
           part.object_from_part.position.norm() + part.shape.bounding_radius + part.shape.radius;
       EXPECT_LE(kinematics.links(0)[index].error(reach), object.pose_error) << object.name;
-      EXPECT_GE(object.parts[0].shape.position_error, object.pose_error);
-      EXPECT_GE(object.parts[0].shape.error_bound_as_a, object.pose_error);
+      EXPECT_GE(part.shape.position_error, object.pose_error);
+      EXPECT_GE(part.shape.error_bound_as_a, object.pose_error);
       EXPECT_LT(object.pose_error, 1e-10) << object.name;
     }
   }
