@@ -234,8 +234,7 @@ int run_view(const Scene& scene, const Arguments& arguments, StopSignal& stop) {
   std::unique_ptr<Source> source;
   if (arguments.recording.empty()) {
     route_dds_log();
-    source = std::make_unique<view::LiveSource>(
-        scene, arguments.dds.resolve(scene));
+    source = std::make_unique<view::LiveSource>(scene, arguments.dds.resolve(scene));
   } else {
     source = recording_source(scene, arguments, scratch, stop);
     if (!source) return kFailed;
