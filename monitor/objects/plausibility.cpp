@@ -181,7 +181,9 @@ void Anchor::follow(const Pose& pose, std::int64_t stamp_ns, const Object& objec
 
 bool OtherPlace::add(const Pose& pose, std::int64_t stamp_ns, const Object& object,
                      const Landmarks& landmarks) noexcept {
-  const bool stays = any_ && can_reach(object, landmarks, pose_, pose, elapsed(last_ns_, stamp_ns));
+  const std::int64_t passed_ns = elapsed(last_ns_, stamp_ns);
+  const bool stays = any_ && passed_ns <= std::max(kGapNs, 2 * object.age_limit_ns) &&
+                     can_reach(object, landmarks, pose_, pose, passed_ns);
   if (!stays) since_ns_ = stamp_ns;
   any_ = true;
   pose_ = pose;

@@ -79,10 +79,9 @@ class Repetition {
 
 // Where the twists lead from an older pose: poses that are elsewhere contradict them. A twist may
 // be off in time by the age limit, and by a sixth of itself; over the whole time that is summed up,
-// noise comes to little, where samples come as often as age limits or their noise is below a
-// thirtieth of the object's speed, and an offset to no more than a fiftieth of that. Samples
-// without a twist are left out; where twists come less often than every two age limits, nothing is
-// told.
+// noise of up to a thirtieth of the object's speed comes to little, and an offset to no more than a
+// fiftieth of that. Samples without a twist are left out; where twists come less often than every
+// two age limits, nothing is told.
 class Reckoning {
  public:
   // Adds the sample's twist, if it has one. False: it leads elsewhere. `stamp_ns` is in the tick's
@@ -133,6 +132,8 @@ class OtherPlace {
  public:
   // Until when they have to stay there to be taken.
   static constexpr std::int64_t kTakenAfterNs = 10'000'000'000;
+  // Two that are farther apart than this, and than two age limits, are not said to stay.
+  static constexpr std::int64_t kGapNs = 1'000'000'000;
 
   // True: they have stayed long enough. Stamps are in the tick's time.
   [[nodiscard]] bool add(const Pose& pose, std::int64_t stamp_ns, const Object& object,

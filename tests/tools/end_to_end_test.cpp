@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <csignal>
 
+#include "monitor/recording/writer.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -73,6 +76,53 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   EXPECT_THAT(online, HasSubstr("reports compared"));
   EXPECT_THAT(online, Not(HasSubstr("reports are missing"))) << "a tick was lost";
   EXPECT_TRUE(daemon.wrote(" 0 reports dropped")) << daemon.output();
+}
+
+// Every 10 ms for 0.2 s, at half a radian a second.
+void record_turning_joint(const std::string& file, const Scene& scene) {
+  RecordingWriter writer(file, scene.topics);
+  writer.catalogue(*make_catalogue(scene), kStart);
+  PoseBatch batch;
+  batch.source = SourceName("arm");
+  batch.scene_revision = scene.revision;
+  for (int k = 0; k < 20; ++k) {
+    const std::int64_t now = kStart + 10 * kTick * k;
+    ++batch.sequence_number;
+    batch.joints = {{.variable = 0,
+                     .stamp_ns = now,
+                     .position = 0.005 * k,
+                     .velocity = 0.5,
+                     .has_velocity = true}};
+    writer.write(TopicKind::kJointStates, now, now, *make_joint_states(batch, scene));
+  }
+  ASSERT_TRUE(writer.close()) << writer.error();
+}
+
+TEST(EndToEnd, RestampedJointStatesKeepTheirScheduleAndTheirVelocitiesFollowTheRate) {
+  const ScratchFolder folder;
+  const std::string file = folder / "joints.mcap";
+  const Scene scene = scara_cell();
+  record_turning_joint(file, scene);
+  const DdsOptions dds = own_dds();
+  Participant client(dds);
+  const dds_entity_t reader = client.reader(TopicKind::kJointStates, scene.topics.joint_states, 64);
+  run(kReplay,
+      with({file, "--only", "clearance/joint_states", "--restamp", "--rate", "2", "--wait", "20"},
+           dds_arguments(dds)));
+  std::int64_t last_ns = 0;
+  int heard = 0;
+  for (;; ++heard) {
+    Sample<clearance_msg_JointStates> states;
+    void* pointer = &*states;
+    dds_sample_info_t info{};
+    if (dds_take(reader, &pointer, &info, 1, 1) != 1 || !info.valid_data) break;
+    if (heard > 0) {
+      EXPECT_NEAR(states->stamp_ns - last_ns, 5 * kTick, 1);
+    }
+    last_ns = states->stamp_ns;
+    EXPECT_EQ(states->velocities._buffer[0], 1.0);
+  }
+  EXPECT_EQ(heard, 20);
 }
 
 }  // namespace

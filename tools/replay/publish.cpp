@@ -116,11 +116,13 @@ class Sender {
     return schedule_.of(message.publish_ns);
   }
 
-  static std::int64_t moved_to_now(const RecordedMessage& message,
-                                   clearance_msg_JointStates& states) {
-    const std::int64_t shift = dds_time() - message.log_ns;
-    states.stamp_ns += shift;
-    return message.publish_ns + shift;
+  std::int64_t moved_to_now(const RecordedMessage& message,
+                            clearance_msg_JointStates& states) const {
+    states.stamp_ns = schedule_.of(states.stamp_ns);
+    for (std::uint32_t i = 0; i < states.velocities._length; ++i) {
+      states.velocities._buffer[i] *= schedule_.rate;
+    }
+    return schedule_.of(message.publish_ns);
   }
 
   bool restamp_;

@@ -68,6 +68,16 @@ TEST(Plausibility, PlaceThatTheObjectCannotReachSoonIsTakenAfterTenSeconds) {
   }
 }
 
+TEST(Plausibility, TwoWildPosesWithSilenceBetweenAreNotAPlaceWhereItStays) {
+  const Scene scene = balls_of_speed(2.0);
+  Monitor monitor(scene);
+  (void)status_at(monitor, 0.0, 0);
+  EXPECT_EQ(status_at(monitor, -20'000.0, 1), PairStatus::kUnknown);
+  for (const int tick : {11'000, 11'001, 11'021, 11'022}) {
+    EXPECT_EQ(status_at(monitor, -20'000.0, tick), PairStatus::kUnknown) << tick;
+  }
+}
+
 TEST(Plausibility, PosesThatAlternateAreNeverKnown) {
   const Scene scene = balls_of_speed(2.0);
   Monitor monitor(scene);

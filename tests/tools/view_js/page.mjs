@@ -50,6 +50,7 @@ async function live() {
 
 // The recording stands still where the page says.
 const settled = (time) => page.waitForFunction((at) => window.clearance?.isAt(at), time);
+const standsStill = () => page.waitForFunction(() => window.clearance?.isAt(parseFloat(document.getElementById("time").textContent)));
 const shownTime = () => page.$eval("#time", ({ textContent }) => parseFloat(textContent));
 
 async function recording() {
@@ -70,9 +71,9 @@ async function recording() {
   await page.mouse.move(box.x + 0.75 * box.width, box.y + 20, { steps: 4 });
   await page.mouse.up();
   await page.waitForFunction((time) => Math.abs(parseFloat(document.getElementById("time").textContent) - time) > 0.05, before);
-  await page.waitForTimeout(200);
-  const dragged = await shownTime();
+  await standsStill();
   const share = await page.evaluate(() => { document.getElementById("share").click(); return location.href; });
+  const dragged = Number(new URL(share).searchParams.get("t"));
   await page.keyboard.press("w");
   await settled(closest.time);
   await page.goto(share);
