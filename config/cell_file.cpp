@@ -15,10 +15,12 @@
 #include "config/mesh_file.hpp"
 #include "config/object_reader.hpp"
 #include "config/pair_reader.hpp"
+#include "config/planning_scene_reader.hpp"
 #include "config/quantities.hpp"
 #include "config/refresh_share.hpp"
 #include "config/revision.hpp"
 #include "config/robot_reader.hpp"
+#include "config/ros_reader.hpp"
 #include "config/scalar.hpp"
 #include "config/shape_reader.hpp"
 #include "config/simulation_reader.hpp"
@@ -41,8 +43,9 @@ constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 // The sections of a cell, one function each.
 class CellReader {
  public:
-  CellReader(const std::filesystem::path& file, Diagnostics& diagnostics, Revision& revision)
-      : file_(file), diagnostics_(diagnostics), revision_(revision) {}
+  CellReader(const std::filesystem::path& file, const CellOptions& options,
+             Diagnostics& diagnostics, Revision& revision)
+      : file_(file), options_(options), diagnostics_(diagnostics), revision_(revision) {}
 
   void read(const YamlNode& root, Scene& scene);
 
@@ -52,10 +55,12 @@ class CellReader {
   void read_dds(const YamlNode& node, Scene& scene);
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
+  void refuse_frames_without_a_world(const YamlNode& root, const Scene& scene);
   // Has to be last: it needs every pair with its parts.
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
+  const CellOptions& options_;
   Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // where the cell gives it
@@ -97,6 +102,9 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
         quantities.milliseconds(*limit, "how far ahead of now a stamp may be", kNotNegative)
             .value_or(scene.future_limit_ns);
   }
+  if (const YamlNode* gradients = map.optional("gradients")) {
+    scene.gradients = read_flag(*gradients, diagnostics_).value_or(false);
+  }
 }
 
 // DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
@@ -108,7 +116,9 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
                                    {"catalogue", &topics.catalogue},
                                    {"health", &topics.health},
                                    {"zones", &topics.zones},
-                                   {"joint_states", &topics.joint_states}}) {
+                                   {"joint_states", &topics.joint_states},
+                                   {"separation", &topics.separation},
+                                   {"gradients", &topics.gradients}}) {
     const YamlNode* name_node = map.optional(key);
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
@@ -170,22 +180,28 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
   const YamlNode* robots_node = map.optional("robots");
-  const YamlNode* objects_node =
-      robots_node == nullptr ? map.required("objects") : map.optional("objects");
+  const YamlNode* scenes_node = map.optional("scenes");
+  const YamlNode* objects_node = robots_node == nullptr && scenes_node == nullptr
+                                     ? map.required("objects")
+                                     : map.optional("objects");
   const YamlNode* pairs_node = map.required("pairs");
   const YamlNode* allowed_node = map.optional("allowed_collisions");
   const YamlNode* zones_node = map.optional("zones");
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
-  ShapeReader shapes(quantities, file_.parent_path(), revision_);
+  MeshLibrary meshes(file_, revision_, options_.tell);
+  ShapeReader shapes(quantities, meshes, defaults.mesh_limits);
   if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
+  if (scenes_node != nullptr)
+    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
   RobotList robots;
   if (robots_node != nullptr) {
     robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);
-  } else if (objects_node == nullptr) {
+  } else if (objects_node == nullptr && scenes_node == nullptr) {
     list.names_known = false;
   }
+  if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
   GroupIndex group_index(list, diagnostics_);
@@ -195,7 +211,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     pairs =
         read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
   if (zones_node != nullptr)
-    scene.zones = read_zones(*zones_node, list, pairs, group_index, quantities);
+    scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
   if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
     scene.simulation = read_simulation(*simulation_node, list, quantities);
@@ -218,9 +234,27 @@ void CellReader::read(const YamlNode& root, Scene& scene) {
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
+  if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, scene.ros, diagnostics_);
   read_objects_and_pairs(map, quantities, scene);
   map.refuse_unknown_keys();
+  refuse_frames_without_a_world(root, scene);
   if (diagnostics_.empty()) refuse_small_budget(root, scene);
+}
+
+// Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
+void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Scene& scene) {
+  const auto object =
+      std::ranges::find_if(scene.objects, [](const Object& each) { return !each.frame.empty(); });
+  const auto robot = std::ranges::find_if(
+      scene.robots, [](const Robot& each) { return !each.base.frame.empty(); });
+  if (!scene.ros.world_frame.empty()) return;
+  if (object == scene.objects.end() && robot == scene.robots.end()) return;
+  diagnostics_.add(root,
+                   fmt::format("found that '{}' follows the frame '{}', and no world_frame; "
+                               "expected the frame of tf that is the cell's world: ros2: "
+                               "{{world_frame: map}}",
+                               object == scene.objects.end() ? robot->name : object->name,
+                               object == scene.objects.end() ? robot->base.frame : object->frame));
 }
 
 // A budget that cannot refresh every pair in time would break the promise of refresh_s in silence.
@@ -237,7 +271,8 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 }  // namespace
 
 // The revision covers the text and, through the shape reader, the bytes of every mesh file.
-CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file) {
+CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
+                      const CellOptions& options) {
   Diagnostics diagnostics(file.string());
   const auto document = parse_yaml(yaml);
   if (const auto* fault = std::get_if<YamlFault>(&document)) {
@@ -245,16 +280,18 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
     return diagnostics.sorted();
   }
   Scene scene;
-  Revision revision;
+  Revision revision(options.root);
   revision.add(yaml);
-  CellReader(file, diagnostics, revision).read(std::get<YamlNode>(document), scene);
+  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), scene);
   if (!diagnostics.empty()) return diagnostics.sorted();
   scene.revision = revision.value();
   scene.yaml = yaml;
+  scene.file = std::filesystem::absolute(file).lexically_normal();
+  scene.files = revision.files();
   return scene;
 }
 
-CellResult read_cell(const std::filesystem::path& file) {
+CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {
   const auto bytes = read_bytes(file.string());
   if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
     Diagnostics diagnostics(file.string());
@@ -262,7 +299,7 @@ CellResult read_cell(const std::filesystem::path& file) {
                     fmt::format("found no cell file: {}; expected a YAML file", fault->reason));
     return diagnostics.sorted();
   }
-  return parse_cell(std::get<std::string>(bytes), file);
+  return parse_cell(std::get<std::string>(bytes), file, options);
 }
 
 }  // namespace clearance

@@ -38,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kDone = 0, kOutOfMemory = 3, kThrew = 4;
 
 // Bytes of address space that this process has; 0: not known.
-std::size_t address_space() {
+[[maybe_unused]] std::size_t address_space() {
   std::size_t pages = 0;
   if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
     if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;

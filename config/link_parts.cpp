@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <system_error>
@@ -11,8 +12,8 @@
 namespace clearance {
 namespace {
 
-constexpr std::array<const char*, 4> kKinds = {"mesh", "box", "cylinder",
-                                               "sphere"};  // as the variant
+constexpr std::array<const char*, 5> kKinds = {"mesh", "box", "cylinder", "sphere",
+                                               "capsule"};  // as the variant
 
 }  // namespace
 
@@ -23,10 +24,11 @@ void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& dia
 }
 
 // A mesh that is not there is reported as the URDF names it.
-std::optional<ShapeResult> LinkParts::hull_of(const UrdfMesh& mesh) {
+std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const UrdfMesh& mesh) {
   const auto path = files_.find(mesh.file);
   if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) {
-    return shapes_.mesh_hull({.file = path->string(), .scale = mesh.scale}, at_, at_);
+    return shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_}, at_,
+                              at_);
   }
   const std::string package = package_of(mesh.file);
   const std::string missing =
@@ -40,21 +42,35 @@ std::optional<ShapeResult> LinkParts::hull_of(const UrdfMesh& mesh) {
   return std::nullopt;
 }
 
-std::optional<ShapeResult> LinkParts::shape_of(const UrdfCollision& collision) {
-  if (const auto* shape = std::get_if<UrdfBox>(&collision.shape)) return box(0.5 * shape->size);
+std::optional<std::variant<MeshParts, ShapeError>> LinkParts::shapes_of(
+    const UrdfCollision& collision) {
+  const auto one = [](ShapeResult made) -> std::variant<MeshParts, ShapeError> {
+    if (auto* error = std::get_if<ShapeError>(&made)) return std::move(*error);
+    MeshParts parts;
+    parts.shapes.push_back(std::get<ConvexPolyhedron>(std::move(made)));
+    return parts;
+  };
+  if (const auto* shape = std::get_if<UrdfBox>(&collision.shape)) {
+    return one(box(0.5 * shape->size));
+  }
   if (const auto* shape = std::get_if<UrdfSphere>(&collision.shape)) {
-    return point(Vec3::Zero(), shape->radius);
+    return one(point(Vec3::Zero(), shape->radius));
+  }
+  if (const auto* shape = std::get_if<UrdfCapsule>(&collision.shape)) {
+    const Vec3 end(0.0, 0.0, 0.5 * shape->length);
+    return one(segment(-end, end, shape->radius));
   }
   if (const auto* shape = std::get_if<UrdfCylinder>(&collision.shape)) {
-    return cylinder(shape->radius, 0.5 * shape->length);
+    return one(cylinder(shape->radius, 0.5 * shape->length));
   }
-  return hull_of(std::get<UrdfMesh>(collision.shape));
+  return parts_of(std::get<UrdfMesh>(collision.shape));
 }
 
-std::vector<Part> LinkParts::of(const UrdfLink& link) {
-  std::vector<Part> parts;
-  for (const UrdfCollision& collision : link.collisions) {
-    auto result = shape_of(collision);
+double LinkParts::add(const UrdfLink& link, Object& object) {
+  double mesh_error = 0.0;
+  for (std::size_t place = 0; place < link.collisions.size(); ++place) {
+    const UrdfCollision& collision = link.collisions[place];
+    auto result = shapes_of(collision);
     if (!result) continue;
     const char* kind = kKinds[collision.shape.index()];
     if (const auto* error = std::get_if<ShapeError>(&*result)) {
@@ -63,11 +79,14 @@ std::vector<Part> LinkParts::of(const UrdfLink& link) {
                            link.name, error->reason));
       continue;
     }
-    parts.push_back({kind + std::to_string(parts.size()),
-                     std::get<ConvexPolyhedron>(std::move(*result)),
-                     pose_of(collision.link_from_shape)});
+    auto& parts = std::get<MeshParts>(*result);
+    mesh_error = std::max(mesh_error, parts.error);
+    for (std::size_t i = 0; i < parts.shapes.size(); ++i) {
+      object.parts.push_back({name_of_part(kind + std::to_string(place), i, parts.shapes.size()),
+                              std::move(parts.shapes[i]), pose_of(collision.link_from_shape)});
+    }
   }
-  return parts;
+  return mesh_error;
 }
 
 }  // namespace clearance

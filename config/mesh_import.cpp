@@ -39,7 +39,7 @@ Vec3 corner(const aiMesh& mesh, unsigned f, unsigned k, const aiMatrix4x4& place
 // Depth first through the scene graph; `outer` is the transform from the node's parent to the
 // file's root, column vectors on the right.
 void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
-             std::vector<Vec3>& vertices) {
+             std::vector<Triangle>& triangles) {
   const aiMatrix4x4 placed = outer * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] >= scene.mNumMeshes) throw BadMesh{"it places a mesh that it lacks"};
@@ -47,13 +47,14 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices < 3) continue;  // stray points and lines are no part of the surface
-      for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        vertices.push_back(corner(mesh, f, k, placed));
+      for (unsigned k = 1; k + 1 < face.mNumIndices; ++k) {
+        triangles.push_back({corner(mesh, f, 0, placed), corner(mesh, f, k, placed),
+                             corner(mesh, f, k + 1, placed)});
       }
     }
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    collect(scene, *node.mChildren[i], placed, vertices);
+    collect(scene, *node.mChildren[i], placed, triangles);
 }
 
 // Assimp's message, without the name that it invents for what it reads from memory.
@@ -94,7 +95,7 @@ void refuse_cut_off_stl(const std::string& bytes) {
 }
 
 // Of STL, OBJ and COLLADA.
-std::vector<Vec3> import_with_assimp(const std::string& bytes, const std::string& format) {
+std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::string& format) {
   if (format == "stl") refuse_cut_off_stl(bytes);
   if (format == "dae") {
     if (const std::string fault = fault_of_collada(bytes); !fault.empty()) throw BadMesh{fault};
@@ -104,24 +105,24 @@ std::vector<Vec3> import_with_assimp(const std::string& bytes, const std::string
   keep_one_format(importer, format);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
   if (scene == nullptr) throw BadMesh{plain(importer.GetErrorString())};
-  std::vector<Vec3> vertices;
-  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
-  return vertices;
+  std::vector<Triangle> triangles;
+  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), triangles);
+  return triangles;
 }
 
 }  // namespace
 
-// No post-processing step of assimp is used: joining vertices or triangulating does not change
-// their convex hull. Assimp throws for some malformed files, so everything is caught here.
-std::variant<std::vector<Vec3>, MeshFault> import_mesh(const std::string& bytes,
-                                                       const std::string& format) {
+// No post-processing step of assimp is used: what it would join and triangulate is joined and
+// triangulated here. Assimp throws for some malformed files, so everything is caught.
+std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
+                                                           const std::string& format) {
   try {
     auto result =
         format == "ply"
-            ? ply_vertices(bytes)
-            : std::variant<std::vector<Vec3>, MeshFault>(import_with_assimp(bytes, format));
-    const auto* vertices = std::get_if<std::vector<Vec3>>(&result);
-    if (vertices != nullptr && vertices->empty()) return MeshFault{"it has no faces"};
+            ? ply_triangles(bytes)
+            : std::variant<std::vector<Triangle>, MeshFault>(import_with_assimp(bytes, format));
+    const auto* triangles = std::get_if<std::vector<Triangle>>(&result);
+    if (triangles != nullptr && triangles->empty()) return MeshFault{"it has no faces"};
     return result;
   } catch (const BadMesh& fault) {
     return MeshFault{fault.reason};

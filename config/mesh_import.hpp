@@ -4,13 +4,16 @@
 #pragma once
 
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "config/mesh_file.hpp"
 
 namespace clearance {
 
-// As mesh_vertices(), which calls it in a child process. `format`: in lower case, without a dot.
-[[nodiscard]] std::variant<std::vector<Vec3>, MeshFault> import_mesh(const std::string& bytes,
-                                                                     const std::string& format);
+// The triangles as read_mesh() gives them, which calls it in a child process, in the order of the
+// file. `format`: in lower case, without a dot.
+[[nodiscard]] std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
+                                                                         const std::string& format);
 
 }  // namespace clearance

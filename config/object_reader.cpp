@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "config/ros_reader.hpp"
+
 namespace clearance {
 namespace {
 
@@ -48,16 +50,17 @@ class ObjectReader {
         diagnostics_(quantities.diagnostics()),
         shapes_(shapes) {}
 
-  // Sets names_known to false when the name or a group cannot be read.
-  Object read(const YamlNode& node, bool& names_known);
+  // Adds to `list`; its names are not known when the name or a group cannot be read.
+  void read(const YamlNode& node, ObjectList& list);
 
  private:
   void read_groups(const YamlNode& node, Object& object, bool& names_known);
   void read_parts(MapReader& map, const YamlNode& node, Object& object);
-  void read_part(const YamlNode& node, Object& object);
+  void read_part(const YamlNode& node, std::size_t place, Object& object);
   // `node` is where a part that is refused is reported.
-  void add_part(const YamlNode& node, NamedShape shape, std::string name, const Pose& pose,
+  void add_part(const YamlNode& node, NamedShape shape, const std::string& name, const Pose& pose,
                 Object& object);
+  void refuse_same_part_names(const YamlNode& node, std::size_t first, const Object& object);
   void read_motion(MapReader& map, Object& object);
   void forbid(MapReader& map, const std::string& key, const std::string& reason);
 
@@ -65,18 +68,22 @@ class ObjectReader {
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
   ShapeReader& shapes_;
+  double mesh_error_ = 0.0;  // of the object's meshes, the largest
 };
 
 // The order matters: `fixed` decides which of the other keys an object may have.
-Object ObjectReader::read(const YamlNode& node, bool& names_known) {
+void ObjectReader::read(const YamlNode& node, ObjectList& list) {
   Object object;
+  mesh_error_ = 0.0;
   MapReader map(node, "an object", diagnostics_);
   const YamlNode* name_node = map.required("name");
   const auto name =
       name_node == nullptr ? std::nullopt : read_name(*name_node, "an object's name", diagnostics_);
   object.name = name.value_or("");
-  names_known = names_known && name.has_value();
-  if (const YamlNode* groups = map.optional("groups")) read_groups(*groups, object, names_known);
+  list.names_known = list.names_known && name.has_value();
+  if (const YamlNode* groups = map.optional("groups")) {
+    read_groups(*groups, object, list.names_known);
+  }
   if (const YamlNode* fixed = map.optional("fixed")) {
     object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
   }
@@ -87,7 +94,8 @@ Object ObjectReader::read(const YamlNode& node, bool& names_known) {
   read_motion(map, object);
   read_parts(map, node, object);
   map.refuse_unknown_keys();
-  return object;
+  if (mesh_error_ > 0.0) list.mesh_errors[object.name] = mesh_error_;
+  list.objects.push_back(std::move(object));
 }
 
 // Reports a key that has no meaning here: it would be ignored in silence otherwise. Asking for it
@@ -105,7 +113,8 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
       object.world_from_object = quantities_.pose(*pose).value_or(Pose{});
     }
     object.max_speed = 0.0;
-    for (const char* key : {"max_speed", "age_limit_ms", "frozen_limit_ms", "may_jump", "source"}) {
+    for (const char* key :
+         {"max_speed", "age_limit_ms", "frozen_limit_ms", "may_jump", "source", "frame"}) {
       forbid(map, key, "a fixed object; expected it of moving objects only");
     }
     return;
@@ -121,6 +130,8 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
   object.frozen_limit_ns = own.frozen_limit_ns;
   object.may_jump = own.may_jump;
   object.source = own.source;
+  if (const YamlNode* frame = map.optional("frame"))
+    object.frame = read_frame(*frame, diagnostics_).value_or("");
 }
 
 // A group that cannot be read may be the one that a rule names, so names are no longer known then
@@ -146,8 +157,8 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
   const YamlNode* parts = map.optional("parts");
   if (parts == nullptr) {
     if (auto shape = shapes_.read(map, node)) {
-      std::string name = shape->kind;
-      add_part(*shape->node, std::move(*shape), std::move(name), Pose{}, object);
+      const std::string name = shape->kind;
+      add_part(*shape->node, std::move(*shape), name, Pose{}, object);
     }
     return;
   }
@@ -157,46 +168,59 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
   if (parts->kind == YamlNode::Kind::kSequence && parts->items.empty()) {
     diagnostics_.add(*parts, "found an empty list; expected at least one part");
   }
-  for (const YamlNode& part : read_list(*parts, "parts", diagnostics_)) read_part(part, object);
+  std::size_t place = 0;
+  for (const YamlNode& part : read_list(*parts, "parts", diagnostics_)) {
+    read_part(part, place++, object);
+  }
+}
+
+// Of the parts from `first` on, whose name is at `node`.
+void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t first,
+                                          const Object& object) {
+  for (std::size_t i = first; i < object.parts.size(); ++i) {
+    const std::string& name = object.parts[i].name;
+    const auto same = [&](const Part& part) { return part.name == name; };
+    if (std::count_if(object.parts.begin(), object.parts.end(), same) == 1) continue;
+    diagnostics_.add(
+        node, fmt::format("found the part name '{}' again; expected it once an object", name));
+    return;
+  }
 }
 
 // A part without a name is called after its shape and its place in the object: box0.
-void ObjectReader::read_part(const YamlNode& node, Object& object) {
+void ObjectReader::read_part(const YamlNode& node, std::size_t place, Object& object) {
   MapReader map(node, "a part", diagnostics_);
   const YamlNode* name_node = map.optional("name");
   const YamlNode* pose_node = map.optional("pose");
   auto shape = shapes_.read(map, node);
   map.refuse_unknown_keys();
   std::optional<std::string> name;
-  if (name_node != nullptr) {
-    name = read_name(*name_node, "a part's name", diagnostics_);
-    const bool taken = name && std::any_of(object.parts.begin(), object.parts.end(),
-                                           [&](const Part& part) { return part.name == *name; });
-    if (taken) {
-      diagnostics_.add(
-          *name_node,
-          fmt::format("found the part name '{}' again; expected it once an object", *name));
-    }
-  }
+  if (name_node != nullptr) name = read_name(*name_node, "a part's name", diagnostics_);
   const Pose pose = pose_node == nullptr ? Pose{} : quantities_.pose(*pose_node).value_or(Pose{});
   if (!shape) return;
-  std::string own_name = name.value_or(shape->kind + std::to_string(object.parts.size()));
-  add_part(node, std::move(*shape), std::move(own_name), pose, object);
+  const std::size_t first = object.parts.size();
+  add_part(node, std::move(*shape), name.value_or(shape->kind + std::to_string(place)), pose,
+           object);
+  if (name) refuse_same_part_names(*name_node, first, object);
 }
 
 // A moving object must be bounded: the broad phase and the bounds between two ticks enclose it in a
 // sphere.
-void ObjectReader::add_part(const YamlNode& node, NamedShape shape, std::string name,
+void ObjectReader::add_part(const YamlNode& node, NamedShape shape, const std::string& name,
                             const Pose& pose, Object& object) {
-  if (!object.fixed && !shape.shape.bounded()) {
-    diagnostics_.add(
-        node,
-        fmt::format(
-            "found an unbounded {} in a moving object; expected a bounded shape, or fixed: true",
-            shape.kind));
-    return;
+  mesh_error_ = std::max(mesh_error_, shape.mesh_error);
+  for (std::size_t i = 0; i < shape.shapes.size(); ++i) {
+    if (!object.fixed && !shape.shapes[i].bounded()) {
+      diagnostics_.add(
+          node,
+          fmt::format(
+              "found an unbounded {} in a moving object; expected a bounded shape, or fixed: true",
+              shape.kind));
+      return;
+    }
+    object.parts.push_back(
+        {name_of_part(name, i, shape.shapes.size()), std::move(shape.shapes[i]), pose});
   }
-  object.parts.push_back({std::move(name), std::move(shape.shape), pose});
 }
 
 // Where an object's name stands, or the object when it has none.
@@ -221,6 +245,7 @@ std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagno
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
   MapReader map(node, "the defaults", quantities.diagnostics());
+  read_part_limits(map, quantities, defaults.mesh_limits);
   if (const YamlNode* margin = map.optional("margin")) {
     defaults.margin = quantities.length(*margin, "the margin", kNotNegative).value_or(0.0);
   }
@@ -249,7 +274,7 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
     return list;
   }
   for (const YamlNode& item : items) {
-    list.objects.push_back(reader.read(item, list.names_known));
+    reader.read(item, list);
     list.places.push_back(&name_place(item));
   }
   if (node.kind != YamlNode::Kind::kSequence) list.names_known = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct ObjectDefaults {
   std::int64_t frozen_limit_ns = 0;  // none
   bool may_jump = false;
   std::string source;  // any
+  PartLimits mesh_limits;
 };
 
 // The name of a source, at most as long as a batch can carry; nothing after a diagnostic.
@@ -30,7 +32,8 @@ struct ObjectDefaults {
 // places.
 struct ObjectList {
   std::vector<Object> objects;
-  std::vector<const YamlNode*> places;  // of each object: where its name stands
+  std::vector<const YamlNode*> places;        // of each object: where its name stands
+  std::map<std::string, double> mesh_errors;  // of those with meshes (cell_file.hpp)
   bool names_known = true;  // false: some name or group could not be read; others may seem unknown
 };
 

@@ -18,7 +18,7 @@
 namespace clearance {
 namespace {
 
-// Left through ply_vertices() only.
+// Left through ply_triangles() only.
 struct BadPly {
   std::string reason;
 };
@@ -184,7 +184,7 @@ Header read_header(Reader& reader) {
   return header;
 }
 
-// Vertices, and the corners of faces as numbers of vertices.
+// Vertices, and three corners of each triangle as numbers of vertices.
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<double> corners;
@@ -208,8 +208,8 @@ void read_item(const Element& element, Format format, Reader& reader, Mesh& mesh
       const std::vector<double> list = read_list(property, format, reader);
       const bool corners = element.name == "face" &&
                            (property.name == "vertex_indices" || property.name == "vertex_index");
-      if (corners && list.size() >= 3) {
-        mesh.corners.insert(mesh.corners.end(), list.begin(), list.end());
+      for (std::size_t k = 1; corners && k + 1 < list.size(); ++k) {
+        mesh.corners.insert(mesh.corners.end(), {list[0], list[k], list[k + 1]});
       }
       continue;
     }
@@ -220,22 +220,26 @@ void read_item(const Element& element, Format format, Reader& reader, Mesh& mesh
   if (element.name == "vertex") mesh.vertices.push_back(vertex);
 }
 
-// The file's vertices at its faces' corners.
-std::vector<Vec3> at_corners(const Mesh& mesh) {
-  std::vector<Vec3> vertices;
-  for (const double corner : mesh.corners) {
-    if (!(corner >= 0.0 && corner < static_cast<double>(mesh.vertices.size())) ||
-        corner != std::floor(corner)) {
-      throw BadPly{fmt::format("a face names vertex {} of {}", corner, mesh.vertices.size())};
-    }
-    vertices.push_back(mesh.vertices[static_cast<std::size_t>(corner)]);
+const Vec3& vertex_of(const Mesh& mesh, double corner) {
+  if (!(corner >= 0.0 && corner < static_cast<double>(mesh.vertices.size())) ||
+      corner != std::floor(corner)) {
+    throw BadPly{fmt::format("a face names vertex {} of {}", corner, mesh.vertices.size())};
   }
-  return vertices;
+  return mesh.vertices[static_cast<std::size_t>(corner)];
+}
+
+std::vector<Triangle> triangles_of(const Mesh& mesh) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
+    triangles.push_back({vertex_of(mesh, mesh.corners[i]), vertex_of(mesh, mesh.corners[i + 1]),
+                         vertex_of(mesh, mesh.corners[i + 2])});
+  }
+  return triangles;
 }
 
 }  // namespace
 
-std::variant<std::vector<Vec3>, MeshFault> ply_vertices(const std::string& bytes) {
+std::variant<std::vector<Triangle>, MeshFault> ply_triangles(const std::string& bytes) {
   try {
     Reader reader(bytes);
     const Header header = read_header(reader);
@@ -246,7 +250,7 @@ std::variant<std::vector<Vec3>, MeshFault> ply_vertices(const std::string& bytes
         read_item(element, *header.format, reader, mesh);
       }
     }
-    return at_corners(mesh);
+    return triangles_of(mesh);
   } catch (const BadPly& fault) {
     return MeshFault{fault.reason};
   }

@@ -10,9 +10,10 @@
 
 namespace clearance {
 
-// The vertices that faces of three or more corners name, in the file's order of faces, some more
-// than once. Elements `vertex` (x, y, z) and `face` (vertex_indices or vertex_index); others are
-// read over. Every index and count is checked.
-[[nodiscard]] std::variant<std::vector<Vec3>, MeshFault> ply_vertices(const std::string& bytes);
+// The faces of three or more corners as fans of triangles, in the file's order. Elements `vertex`
+// (x, y, z) and `face` (vertex_indices or vertex_index); others are read over. Every index and
+// count is checked.
+[[nodiscard]] std::variant<std::vector<Triangle>, MeshFault> ply_triangles(
+    const std::string& bytes);
 
 }  // namespace clearance

@@ -121,6 +121,14 @@ std::optional<double> Quantities::speed(const YamlNode& node, const std::string&
   return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
 }
 
+std::optional<double> Quantities::acceleration(const YamlNode& node,
+                                               const std::string& what) const {
+  const auto value =
+      read_number(node, within_cell(kNotNegative, units_.length),
+                  fmt::format("{} in {}/s2", what, word(units_.length)), diagnostics_);
+  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+}
+
 // Fractions of a millisecond are allowed; the result is rounded to whole nanoseconds.
 std::optional<std::int64_t> Quantities::milliseconds(const YamlNode& node, const std::string& what,
                                                      const Range& range) const {

@@ -54,6 +54,8 @@ class Quantities {
                                             const std::string& what) const;  // rad
   [[nodiscard]] std::optional<double> speed(const YamlNode& node,
                                             const std::string& what) const;  // m/s
+  [[nodiscard]] std::optional<double> acceleration(const YamlNode& node,
+                                                   const std::string& what) const;  // m/s2
   // At most a day; ns.
   [[nodiscard]] std::optional<std::int64_t> milliseconds(const YamlNode& node,
                                                          const std::string& what,

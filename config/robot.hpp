@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/ros_settings.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -18,7 +19,7 @@ enum class JointType : std::uint8_t {
   kContinuous,  // turns about its axis
   kPrismatic,   // slides along its axis, within limits
   kPlanar,      // slides in the plane across its axis, and turns about it
-  kFloating,    // moves anyhow
+  kFloating,    // six degrees of freedom
 };
 
 // How many numbers say where a joint of this type is: planar x, y, angle; floating x, y, z and a
@@ -80,11 +81,11 @@ struct RobotBase {
   std::uint32_t object = 0;           // index into Scene::objects, of a moving object
   std::uint32_t robot = 0, link = 0;  // of a robot before this one
   Pose base_from_root;                // where, in the frame of that
+  // The frame of tf that it follows, and where the root link is in that. Its first joint is then
+  // floating, one that the description does not have. Empty: none.
+  std::string frame;
+  Pose frame_from_root;
 };
-
-// When a joint state of ROS 2 held: as its header says, or when it was sent, by the clock of the
-// machine that sent it.
-enum class JointStamps : std::uint8_t { kMessage, kSent };
 
 struct Robot {
   std::string name;
@@ -92,11 +93,17 @@ struct Robot {
   // The topic of ROS 2 whose joints are this robot's, with or without the prefix, and no other
   // topic's are; "/left/joint_states". Empty: any topic, by the names with the prefix.
   std::string joint_states;
-  JointStamps stamps = JointStamps::kMessage;
+  RosStamps stamps = RosStamps::kMessage;
   RobotBase base;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;
   std::vector<std::string> notes;  // what was left out, and why: for the log
+
+  // Whether the variable says where its base is, as a frame of tf does.
+  [[nodiscard]] bool is_of_base(std::uint32_t variable) const noexcept {
+    return !base.frame.empty() && variable >= joints.front().variable &&
+           variable < joints.front().variable + variables_of(JointType::kFloating);
+  }
 };
 
 }  // namespace clearance

@@ -11,6 +11,8 @@
 #include <set>
 #include <system_error>
 
+#include "config/mesh_file.hpp"
+#include "config/planning_scene.hpp"
 #include "config/robot_exceptions.hpp"
 #include "config/robot_files.hpp"
 #include "config/yaml_emitter.hpp"
@@ -40,6 +42,7 @@ class RobotCellWriter {
   void emit_head();
   void emit_object(const UrdfLink& link);
   void emit_shape(const UrdfCollision& collision);
+  void emit_scenes();
   void emit_pairs();
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
@@ -104,9 +107,11 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape);
   const auto* mesh = std::get_if<UrdfMesh>(&collision.shape);
   const auto* box = std::get_if<UrdfBox>(&collision.shape);
+  const auto* capsule = std::get_if<UrdfCapsule>(&collision.shape);
   const char* const key = mesh != nullptr       ? "mesh"
                           : box != nullptr      ? "box"
                           : cylinder != nullptr ? "cylinder"
+                          : capsule != nullptr  ? "capsule"
                                                 : "sphere";
   out_ << YAML::Key << key;
   out_ << YAML::Value << YAML::Flow << YAML::BeginMap;
@@ -123,6 +128,13 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   } else if (cylinder != nullptr) {
     out_ << YAML::Key << "radius" << YAML::Value << shortest(cylinder->radius);
     out_ << YAML::Key << "length" << YAML::Value << shortest(cylinder->length);
+  } else if (capsule != nullptr) {
+    const Vec3 end(0.0, 0.0, 0.5 * capsule->length);
+    out_ << YAML::Key << "from" << YAML::Value;
+    emit(out_, -end);
+    out_ << YAML::Key << "to" << YAML::Value;
+    emit(out_, end);
+    out_ << YAML::Key << "radius" << YAML::Value << shortest(capsule->radius);
   } else {
     out_ << YAML::Key << "radius" << YAML::Value
          << shortest(std::get<UrdfSphere>(collision.shape).radius);
@@ -172,11 +184,40 @@ void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b
   out << YAML::EndSeq;
 }
 
-// One rule: the group against itself is every pair of links.
+// What the file has is told; a file with a fault is the cell's to report.
+void RobotCellWriter::emit_scenes() {
+  if (options_.scenes.empty()) return;
+  const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
+  out_ << YAML::Key << "scenes" << YAML::Value << YAML::BeginSeq;
+  for (const std::filesystem::path& scene : options_.scenes) {
+    const auto path = std::filesystem::absolute(scene).lexically_normal();
+    out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "file" << YAML::Value;
+    emit_text(out_, path.lexically_relative(directory).string());
+    out_ << YAML::Key << "group" << YAML::Value;
+    emit_text(out_, scene.stem().string());
+    out_ << YAML::EndMap;
+    const auto bytes = read_bytes(path.string());
+    if (std::holds_alternative<MeshFault>(bytes)) continue;
+    const auto read = read_planning_scene(std::get<std::string>(bytes));
+    if (const auto* planning = std::get_if<PlanningScene>(&read)) {
+      for (const std::string& note : planning->notes)
+        notes_.push_back(fmt::format("{}: {}", scene.filename().string(), note));
+    }
+  }
+  out_ << YAML::EndSeq;
+}
+
+// The group against itself is every pair of links; and against each planning scene.
 void RobotCellWriter::emit_pairs() {
   out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
   emit_between(out_, group_, group_);
-  out_ << YAML::EndMap << YAML::EndSeq;
+  out_ << YAML::EndMap;
+  for (const std::filesystem::path& scene : options_.scenes) {
+    out_ << YAML::Flow << YAML::BeginMap;
+    emit_between(out_, group_, scene.stem().string());
+    out_ << YAML::EndMap;
+  }
+  out_ << YAML::EndSeq;
 }
 
 // Both kinds of exceptions stand in the cell with their reasons.
@@ -242,6 +283,7 @@ std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   if (!without.empty()) {
     notes_.push_back(fmt::format("links without collision shapes left out: {}", without));
   }
+  emit_scenes();
   emit_pairs();
   emit_exceptions();
   out_ << YAML::EndMap << YAML::Newline;

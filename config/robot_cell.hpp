@@ -24,6 +24,9 @@ struct RobotCellOptions {
   // The root link, and what fixed joints join to it, is fixed at the origin of the world. Otherwise
   // every link moves, and its pose has to arrive.
   bool fixed_base = false;
+  // MoveIt planning scenes, whose obstacles are watched against the robot; each a group of the
+  // file's name.
+  std::vector<std::filesystem::path> scenes;
 };
 
 // The text of the cell, and notes for the person who asked for it (what was left out and why).

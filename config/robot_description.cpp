@@ -33,7 +33,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
                                       fault->reason));
     return std::nullopt;
   }
-  revision.add(std::get<std::string>(bytes));
+  revision.add_file(*path, std::get<std::string>(bytes));
   return path;
 }
 

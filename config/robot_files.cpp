@@ -4,6 +4,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "config/revision.hpp"
+
 namespace clearance {
 namespace {
 
@@ -17,6 +19,16 @@ std::optional<std::filesystem::path> installed_package(const std::string& packag
     const std::filesystem::path directory = std::filesystem::path(prefix) / "share" / package;
     if (std::error_code fault; !prefix.empty() && std::filesystem::is_directory(directory, fault))
       return directory;
+  }
+  return std::nullopt;
+}
+
+// Under the root of another machine: what was installed there, wherever that was.
+std::optional<std::filesystem::path> kept_package(const std::string& package,
+                                                  const std::filesystem::path& root) {
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root, fault)) {
+    if (entry.is_directory(fault) && entry.path().filename() == package) return entry.path();
   }
   return std::nullopt;
 }
@@ -35,7 +47,7 @@ std::optional<std::filesystem::path> directory_of(const std::string& package,
     if (std::error_code fault; std::filesystem::is_directory(at / package, fault))
       return at / package;
   }
-  return installed_package(package);
+  return files.root.empty() ? installed_package(package) : kept_package(package, files.root);
 }
 
 }  // namespace
@@ -53,9 +65,9 @@ std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) c
     if (!directory || slash == std::string::npos) return std::nullopt;
     path = *directory / name.substr(slash + 1);
   } else if (name.starts_with(kFile)) {
-    path = name.substr(kFile.size());
+    path = path_in(root, "", name.substr(kFile.size()));
   } else {
-    path = named_in.parent_path() / name;  // an absolute path stays as it is
+    path = path_in(root, named_in.parent_path(), name);
   }
   return std::filesystem::absolute(path).lexically_normal();
 }

@@ -20,6 +20,7 @@ struct RobotFiles {
   // package:// names and where they are. Others are looked for in the directory of `named_in` and
   // those above it, a directory of that name or one within, and then where AMENT_PREFIX_PATH says.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  std::filesystem::path root = {};  // as of path_in()
 
   // The absolute path, whether there is such a file or not; nothing: its package is nowhere.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;

@@ -123,7 +123,8 @@ void ModelBuilder::add_joint(const UrdfJoint& joint, std::uint32_t parent) {
   model_.robot.joints.push_back(made);
 }
 
-// URDF's default is x, which for a planar joint nobody means: MoveIt takes its plane to be x y.
+// URDF's default axis is x, but MoveIt takes the plane of a planar joint to be x y: the file has to
+// state its normal.
 void ModelBuilder::read_axis(const UrdfJoint& joint, RobotJoint& made) {
   if (made.type == JointType::kFloating) return;
   if (made.type == JointType::kPlanar && !joint.axis) {
@@ -154,7 +155,7 @@ void ModelBuilder::add_variables(const UrdfJoint& joint, RobotJoint& made) {
   if (variables_of(made.type) == 1) read_limits(joint, model_.variables.back());
 }
 
-// A velocity of 0 stands in many files for one that nobody looked up.
+// Many files state a velocity of 0 where the limit is not known: it counts as none.
 void ModelBuilder::read_limits(const UrdfJoint& joint, JointVariable& variable) {
   const bool bounded = joint.type == "revolute" || joint.type == "prismatic";
   if (!joint.limit) {
@@ -234,6 +235,23 @@ std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,
                                                  const std::filesystem::path& urdf,
                                                  const std::string& prefix) {
   return ModelBuilder(description, urdf, prefix).build();
+}
+
+void float_root(RobotModel& model, const std::string& prefix, const std::string& name) {
+  constexpr std::uint32_t kAdded = variables_of(JointType::kFloating);
+  RobotJoint joint;
+  joint.name = prefix + name + "_base";
+  joint.type = JointType::kFloating;
+  for (RobotJoint& below : model.robot.joints) {
+    ++below.parent;
+    below.variable += kAdded;
+  }
+  model.robot.links.insert(model.robot.links.begin(), {prefix + name + "_world"});
+  model.robot.joints.insert(model.robot.joints.begin(), joint);
+  std::vector<JointVariable> added(kAdded);
+  for (std::uint32_t i = 0; i < kAdded; ++i)
+    added[i].name = joint.name + std::string(suffix(JointType::kFloating, i));
+  model.variables.insert(model.variables.begin(), added.begin(), added.end());
 }
 
 }  // namespace clearance

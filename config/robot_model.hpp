@@ -24,4 +24,9 @@ struct RobotModel {
                                                                const std::filesystem::path& urdf,
                                                                const std::string& prefix);
 
+// Puts a floating joint below the root, as a robot has it whose base follows a frame of tf: its
+// first link is then the world, "PREFIXNAME_world", its first joint and variables those of
+// "PREFIXNAME_base".
+void float_root(RobotModel& model, const std::string& prefix, const std::string& name);
+
 }  // namespace clearance

@@ -15,6 +15,7 @@
 #include "config/robot_description.hpp"
 #include "config/robot_exceptions.hpp"
 #include "config/robot_files.hpp"
+#include "config/ros_reader.hpp"
 #include "config/spelling.hpp"
 
 namespace clearance {
@@ -28,9 +29,10 @@ struct RobotKeys {
   const YamlNode* base_node = nullptr;
   const YamlNode* joints_node = nullptr;
   std::string name, prefix, joint_states;
-  JointStamps stamps = JointStamps::kMessage;
+  RosStamps stamps = RosStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
+  std::int64_t base_age_limit_ns = 0;  // of a base that follows a frame
 };
 
 class RobotReader {
@@ -52,9 +54,9 @@ class RobotReader {
  private:
   RobotKeys read_keys(const YamlNode& node);
   void read_packages(const YamlNode& node, RobotKeys& keys);
-  void read_ros(MapReader& map, RobotKeys& keys);
+  void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
-  void read_base(const YamlNode& node, const RobotList& list, RobotBase& base);
+  void read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys, RobotBase& base);
   void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
   void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
   void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
@@ -83,12 +85,13 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   for (const YamlEntry& entry : node.entries) {
     const auto name = read_name(entry.key, "a package's name", diagnostics_);
     const auto path = read_text(entry.value, "the directory of a package", diagnostics_);
-    if (name && path) keys.packages.emplace_back(*name, file_.parent_path() / *path);
+    if (name && path)
+      keys.packages.emplace_back(*name, path_in(revision_.root(), file_.parent_path(), *path));
   }
 }
 
 // Where on ROS 2 its joint states are, and what their stamps are worth.
-void RobotReader::read_ros(MapReader& map, RobotKeys& keys) {
+void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* node = map.optional("joint_states")) {
     const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
     if (topic && !topic->starts_with('/')) {
@@ -98,15 +101,7 @@ void RobotReader::read_ros(MapReader& map, RobotKeys& keys) {
     }
     keys.joint_states = topic.value_or("");
   }
-  if (const YamlNode* node = map.optional("stamps")) {
-    const auto text = read_text(*node, "message or sent", diagnostics_);
-    if (text && *text != "message" && *text != "sent") {
-      diagnostics_.add(*node, fmt::format("found '{}'; expected message (the stamp in it) or sent "
-                                          "(when it was sent)",
-                                          *text));
-    }
-    if (text == "sent") keys.stamps = JointStamps::kSent;
-  }
+  if (const YamlNode* node = map.optional("stamps")) keys.stamps = read_stamps(*node, diagnostics_);
 }
 
 RobotKeys RobotReader::read_keys(const YamlNode& node) {
@@ -118,7 +113,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   keys.srdf_node = map.optional("srdf");
   keys.base_node = map.optional("base");
   keys.joints_node = map.optional("joints");
-  read_ros(map, keys);
+  read_joint_topic(map, keys);
   if (keys.name_node != nullptr) {
     keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
   }
@@ -138,6 +133,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   if (const YamlNode* source = map.optional("source")) {
     keys.limits.source = read_source(*source, diagnostics_).value_or("");
   }
+  read_part_limits(map, quantities_, keys.limits.mesh_limits);
   map.refuse_unknown_keys();
   if (keys.name.empty()) return keys;
   if (const auto [same, is_new] = names_.emplace(keys.name, node.line); !is_new) {
@@ -206,12 +202,28 @@ void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBas
                                *name, did_you_mean(*name, names)));
 }
 
-void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotBase& base) {
+void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys,
+                            RobotBase& base) {
   MapReader map(node, "a robot's base", diagnostics_);
-  if (const YamlNode* pose = map.optional("pose")) {
-    base.base_from_root = quantities_.pose(*pose).value_or(Pose{});
+  Pose pose;
+  if (const YamlNode* given = map.optional("pose"))
+    pose = quantities_.pose(*given).value_or(Pose{});
+  const YamlNode* on = map.optional("on");
+  const YamlNode* frame = map.optional("frame");
+  if (frame != nullptr) {
+    base.frame = read_frame(*frame, diagnostics_).value_or("");
+    base.frame_from_root = pose;
+    if (on != nullptr) {
+      diagnostics_.add(*on, "found 'on' of a base that follows a frame; expected one of the two");
+    }
+    if (const YamlNode* age = map.optional("age_limit_ms")) {
+      keys.base_age_limit_ns =
+          quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
+    }
+  } else {
+    base.base_from_root = pose;
+    if (on != nullptr) stand_on(*on, list, base);
   }
-  if (const YamlNode* on = map.optional("on")) stand_on(*on, list, base);
   map.refuse_unknown_keys();
 }
 
@@ -220,7 +232,8 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
                             Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
   for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
-  LinkParts parts({description.urdf, keys.packages}, *keys.urdf_node, shapes_, diagnostics_);
+  LinkParts parts({description.urdf, keys.packages, revision_.root()}, *keys.urdf_node, shapes_,
+                  keys.limits.mesh_limits, diagnostics_);
   for (std::uint32_t i = 0; i < robot.links.size(); ++i) {
     RobotLink& link = robot.links[i];
     if (i == 0) {
@@ -231,7 +244,8 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
       if (parent != at_rest_.end())
         at_rest_[link.name] = compose(parent->second, joint.parent_from_joint);
     }
-    if (written[link.name]->collisions.empty()) continue;
+    const auto description_of = written.find(link.name);
+    if (description_of == written.end() || description_of->second->collisions.empty()) continue;
     YamlNode name = *keys.name_node;
     name.text = link.name;
     name.quoted = true;
@@ -240,7 +254,9 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
     object.name = link.name;
     object.groups = {keys.name};
     object.margin = keys.limits.margin;
-    object.parts = parts.of(*written[link.name]);
+    if (const double error = parts.add(*description_of->second, object); error > 0.0) {
+      objects_.mesh_errors[object.name] = error;
+    }
     if (const auto place = at_rest_.find(link.name); place != at_rest_.end()) {
       object.fixed = true;
       object.world_from_object = place->second;
@@ -289,19 +305,24 @@ void RobotReader::account_for_rounding(const RobotList& list) {
 }
 
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
-  const RobotKeys keys = read_keys(node);
+  RobotKeys keys = read_keys(node);
   auto description = read_description({.urdf = keys.urdf_node,
                                        .srdf = keys.srdf_node,
-                                       .files = {file_, keys.packages},
+                                       .files = {file_, keys.packages, revision_.root()},
                                        .prefix = keys.prefix},
                                       diagnostics_, revision_);
+  RobotBase base;
+  if (keys.base_node != nullptr) read_base(*keys.base_node, list, keys, base);
   Robot robot;
-  if (description) robot = std::move(description->model.robot);
+  if (description) {
+    if (!base.frame.empty()) float_root(description->model, keys.prefix, keys.name);
+    robot = std::move(description->model.robot);
+  }
+  robot.base = base;
   robot.name = keys.name;
   robot.prefix = keys.prefix;
   robot.joint_states = keys.joint_states;
   robot.stamps = keys.stamps;
-  if (keys.base_node != nullptr) read_base(*keys.base_node, list, robot.base);
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
   const auto first = static_cast<std::uint32_t>(list.variables.size());
@@ -310,6 +331,12 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
     variable.age_limit_ns = keys.limits.age_limit_ns;
     variable.source = keys.limits.source;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
+  }
+  if (!base.frame.empty()) {
+    for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
+      variables[i].source.clear();
+      if (keys.base_age_limit_ns > 0) variables[i].age_limit_ns = keys.base_age_limit_ns;
+    }
   }
   if (keys.joints_node != nullptr)
     read_joints(*keys.joints_node, keys.prefix, quantities_, variables);

@@ -23,6 +23,16 @@ bool is_partition(const std::string& name) noexcept {
   return name.find_first_of("*?[") == std::string::npos && name.size() <= kLongest;
 }
 
+SeparatedCount separated_count(const Scene& scene) noexcept {
+  SeparatedCount count;
+  for (const Zone& zone : scene.zones) {
+    if (!zone.separation) continue;
+    ++count.zones;
+    count.pairs += zone.pairs.size();
+  }
+  return count;
+}
+
 std::string summary(const Scene& scene) {
   std::size_t fixed = 0, parts = 0, facets = 0;
   for (const Object& object : scene.objects) {

@@ -5,11 +5,16 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/robot.hpp"
+#include "config/ros_settings.hpp"
+#include "config/separation.hpp"
 #include "config/simulation.hpp"
+#include "config/topics.hpp"
 #include "core/convex_polyhedron.hpp"
 #include "core/pose.hpp"
 
@@ -43,6 +48,7 @@ struct Object {
   bool may_jump = false;  // poses need not be such as the object can have reached: a simulation's
   // Only poses of this source are used; empty: of the first that sends some, while it does.
   std::string source;
+  std::string frame;  // of tf, whose poses are the object's; empty: none
 };
 
 // Two objects to be watched. first < second; every pair once.
@@ -54,20 +60,11 @@ struct ObjectPair {
 // A named threshold on the distance less both margins, for every watched pair between two groups.
 struct Zone {
   std::string name;
-  std::string group_a, group_b;      // a group, or one object by its name
-  double enter_below = 0.0;          // m
-  double leave_above = 0.0;          // m, >= enter_below: hysteresis
-  std::vector<std::uint32_t> pairs;  // indices into Scene::pairs
-};
-
-// DDS names of the topics; the defaults are those of idl/README.md.
-struct Topics {
-  std::string poses = "clearance/poses";
-  std::string distances = "clearance/distances";
-  std::string catalogue = "clearance/catalogue";
-  std::string health = "clearance/health";
-  std::string zones = "clearance/zones";
-  std::string joint_states = "clearance/joint_states";
+  std::string group_a, group_b;               // a group, or one object by its name
+  double enter_below = 0.0;                   // m
+  double leave_above = 0.0;                   // m, >= enter_below: hysteresis
+  std::vector<std::uint32_t> pairs;           // indices into Scene::pairs
+  std::optional<Separation> separation = {};  // of people and a robot; its pairs are published
 };
 
 // All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and
@@ -77,6 +74,10 @@ struct Scene {
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
                                // scenes that differ have different revisions; never 0
   std::string yaml;            // the text it was read from, for recordings
+  // Where that text stood, and the files that it names, directly or not: meshes, URDF, SRDF,
+  // planning scenes. Absolute; each once, in the order in which they were read.
+  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
@@ -84,10 +85,12 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  std::uint32_t domain = 0;                  // DDS
-  std::string partition;                     // DDS; empty: the default partition
+  bool gradients = false;        // of published pairs by the joints of robots: in every report
+  std::uint32_t domain = 0;      // DDS
+  std::string partition;         // DDS; empty: the default partition
   std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
   Topics topics;
+  RosSettings ros;
   std::vector<Object> objects;
   std::vector<Robot> robots;  // each stands on the world, an object, or a robot before it
   std::vector<JointVariable> variables;  // of all robots: what joint states can give
@@ -99,6 +102,12 @@ struct Scene {
 // Whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
 // default partition, and without wildcards, which would join cells that were to be kept apart.
 [[nodiscard]] bool is_partition(const std::string& name) noexcept;
+
+// How many zones have `separation`, and how many pairs these have, each counted once a zone.
+struct SeparatedCount {
+  std::size_t zones = 0, pairs = 0;
+};
+[[nodiscard]] SeparatedCount separated_count(const Scene& scene) noexcept;
 
 // One line: how many objects, robots, parts, facets, pairs and zones.
 [[nodiscard]] std::string summary(const Scene& scene);

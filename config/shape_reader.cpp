@@ -6,10 +6,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <variant>
 #include <vector>
 
-#include "config/mesh_file.hpp"
 #include "config/spelling.hpp"
 
 namespace clearance {
@@ -22,6 +23,9 @@ const std::array<std::string, 11> kShapeKinds = {
 
 // Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
+
+// Of a mesh: more take long to find, and every one is a row of queries.
+constexpr std::int64_t kMostParts = 64;
 
 // The conditions on a shape as a whole, beyond those that are checked number by number.
 std::string solid_needs(const std::string& kind) {
@@ -36,25 +40,31 @@ std::string solid_needs(const std::string& kind) {
   return fmt::format("a {} of ordinary size", kind);
 }
 
-// A mesh's own coordinates to metres.
-std::vector<Vec3> scaled(const std::vector<Vec3>& vertices, const Vec3& scale, LengthUnit unit) {
-  std::vector<Vec3> placed;
-  placed.reserve(vertices.size());
-  for (const Vec3& v : vertices) {
-    placed.emplace_back(metres(v.x() * scale.x(), unit), metres(v.y() * scale.y(), unit),
-                        metres(v.z() * scale.z(), unit));
+}  // namespace
+
+void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& limits) {
+  if (const YamlNode* node = map.optional("tolerance")) {
+    limits.tolerance =
+        quantities.length(*node, "how far the parts of a mesh may reach beyond it", kPositive)
+            .value_or(limits.tolerance);
   }
-  return placed;
+  if (const YamlNode* node = map.optional("max_parts")) {
+    const auto most =
+        read_integer(*node, 1, kMostParts, "parts of a mesh at most", quantities.diagnostics());
+    if (most) limits.max_parts = static_cast<std::size_t>(*most);
+  }
 }
 
-}  // namespace
+std::string name_of_part(const std::string& name, std::size_t i, std::size_t count) {
+  return count == 1 ? name : fmt::format("{}.{}", name, i);
+}
 
 std::span<const std::string> ShapeReader::kinds() { return kShapeKinds; }
 
 // Exactly one shape key must be there; two would leave one of them out in silence. The shape itself
 // is made by the core, whose reason for refusing it goes into the message.
 std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
-  NamedShape found{"", nullptr, {}};
+  NamedShape found{"", nullptr, {}, 0.0};
   for (const std::string& kind : kShapeKinds) {
     const YamlNode* node = map.optional(kind);
     if (node == nullptr) continue;
@@ -74,7 +84,7 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
     }
     return std::nullopt;
   }
-  std::optional<ShapeResult> result = read_kind(found.kind, *found.node);
+  auto result = read_kind(found.kind, *found.node);
   if (!result) return std::nullopt;
   if (const auto* error = std::get_if<ShapeError>(&*result)) {
     quantities_.diagnostics().add(
@@ -82,12 +92,26 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
                                  found.kind, error->reason, solid_needs(found.kind)));
     return std::nullopt;
   }
-  found.shape = std::get<ConvexPolyhedron>(std::move(*result));
+  auto& parts = std::get<MeshParts>(*result);
+  found.shapes = std::move(parts.shapes);
+  found.mesh_error = parts.error;
   return found;
 }
 
+std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_kind(const std::string& kind,
+                                                                          const YamlNode& node) {
+  if (kind == "mesh") return read_mesh(node);
+  std::optional<ShapeResult> result = read_simple_kind(kind, node);
+  if (!result) return std::nullopt;
+  if (auto* error = std::get_if<ShapeError>(&*result)) return std::move(*error);
+  MeshParts one;
+  one.shapes.push_back(std::get<ConvexPolyhedron>(std::move(*result)));
+  return one;
+}
+
 // A chain of comparisons instead of a table: a few kinds, read once for each part.
-std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const YamlNode& node) {
+std::optional<ShapeResult> ShapeReader::read_simple_kind(const std::string& kind,
+                                                         const YamlNode& node) {
   if (kind == "box") return read_box(node);
   if (kind == "sphere") return read_sphere(node);
   if (kind == "capsule") return read_capsule(node);
@@ -96,8 +120,7 @@ std::optional<ShapeResult> ShapeReader::read_kind(const std::string& kind, const
   if (kind == "half_space") return read_half_space(node);
   if (kind == "ellipsoid") return read_ellipsoid(node);
   if (kind == "cylinder" || kind == "cone") return read_cylinder_or_cone(kind, node);
-  if (kind == "truncated_cone") return read_truncated_cone(node);
-  return read_mesh(node);
+  return read_truncated_cone(node);
 }
 
 // `rounding: r`, which most solids may have: the body is all points within r of what is described.
@@ -305,47 +328,19 @@ Vec3 ShapeReader::read_scale(const YamlNode* node) const {
   return scale;
 }
 
-// Each file is read once, however many parts use it, and its bytes go into the scene's revision:
-// two scenes with different meshes must not pass for one.
-const std::vector<Vec3>* ShapeReader::load(const YamlNode& file_node, const std::string& file) {
-  const std::filesystem::path path = directory_ / file;
-  const auto [entry, is_new] = meshes_.try_emplace(path.string());
-  std::optional<std::vector<Vec3>>& vertices = entry->second;
-  if (is_new) {
-    const auto bytes = read_bytes(path.string());
-    if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
-      quantities_.diagnostics().add(file_node,
-                                    fmt::format("found a mesh file that cannot be used: {}; "
-                                                "expected a path relative to the cell file",
-                                                fault->reason));
-      return nullptr;
-    }
-    // Once for each file: parts that share a mesh add nothing to the revision.
-    revision_.add(std::get<std::string>(bytes));
-    auto result = mesh_vertices(std::get<std::string>(bytes), path.extension().string());
-    if (const auto* fault = std::get_if<MeshFault>(&result)) {
-      quantities_.diagnostics().add(
-          file_node, fmt::format("found a mesh file that cannot be used: '{}': {}; "
-                                 "expected an undamaged mesh with faces, in one file",
-                                 path.string(), fault->reason));
-      return nullptr;
-    }
-    vertices = std::get<std::vector<Vec3>>(std::move(result));
-  }
-  return vertices ? &*vertices : nullptr;
-}
-
-std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
+std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_mesh(const YamlNode& node) {
   Diagnostics& diagnostics = quantities_.diagnostics();
   MapReader map(node, "a mesh", diagnostics);
   const YamlNode* file_node = map.required("file");
   const YamlNode* scale_node = map.optional("scale");
   const YamlNode* unit_node = map.optional("unit");
   const YamlNode* reach_node = map.optional("reach");
+  const std::size_t before = diagnostics.count();
+  MeshUse use{.file = "", .unit = quantities_.units().length, .limits = limits_};
+  read_part_limits(map, quantities_, use.limits);
   const auto rounding = read_rounding(map);
   map.refuse_unknown_keys();
-  const std::size_t before = diagnostics.count();
-  MeshUse use{.file = "", .scale = read_scale(scale_node), .unit = quantities_.units().length};
+  use.scale = read_scale(scale_node);
   if (reach_node != nullptr) {
     use.reach = quantities_.length(*reach_node, "the largest coordinate of the mesh", kPositive)
                     .value_or(use.reach);
@@ -353,29 +348,46 @@ std::optional<ShapeResult> ShapeReader::read_mesh(const YamlNode& node) {
   if (unit_node != nullptr) use.unit = read_length_unit(*unit_node, diagnostics).value_or(use.unit);
   if (file_node == nullptr) return std::nullopt;
   const auto file = read_text(*file_node, "the path of a mesh file", diagnostics);
-  if (!file || diagnostics.count() != before) return std::nullopt;
+  if (!file || !rounding || diagnostics.count() != before) return std::nullopt;
   use.file = *file;
-  auto hull = mesh_hull(use, *file_node, node);
-  return hull ? rounded(rounding, *std::move(hull)) : std::nullopt;
+  auto parts = mesh_parts(use, *file_node, node);
+  if (!parts || std::holds_alternative<ShapeError>(*parts)) return parts;
+  for (ConvexPolyhedron& shape : std::get<MeshParts>(*parts).shapes) {
+    ShapeResult round = rounded_by(*rounding, std::move(shape));
+    if (auto* error = std::get_if<ShapeError>(&round)) return std::move(*error);
+    shape = std::get<ConvexPolyhedron>(std::move(round));
+  }
+  return parts;
 }
 
-std::optional<ShapeResult> ShapeReader::mesh_hull(const MeshUse& use, const YamlNode& file_node,
-                                                  const YamlNode& node) {
-  const std::vector<Vec3>* vertices = load(file_node, use.file);
-  if (vertices == nullptr) return std::nullopt;
-  // Checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
-  const std::vector<Vec3> placed = scaled(*vertices, use.scale, use.unit);
-  for (const Vec3& vertex : placed) {
-    const double farthest = vertex.cwiseAbs().maxCoeff();
-    if (farthest <= use.reach) continue;
-    quantities_.diagnostics().add(
-        node, fmt::format("found a mesh with a vertex {:.4g} m from its origin along an axis; "
-                          "expected another unit or scale, or, where the body reaches farther than "
-                          "{:g} m, 'reach' beside 'file'",
-                          farthest, use.reach));
-    return std::nullopt;
+std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::mesh_parts(
+    const MeshUse& use, const YamlNode& file_node, const YamlNode& node) {
+  Diagnostics& diagnostics = quantities_.diagnostics();
+  auto result = meshes_.parts(use);
+  if (auto* parts = std::get_if<MeshParts>(&result)) return std::move(*parts);
+  auto& refusal = std::get<MeshRefusal>(result);
+  switch (refusal.kind) {
+    case MeshRefusal::Kind::kFile:
+      diagnostics.add(file_node, fmt::format("found a mesh file that cannot be used: {}; expected "
+                                             "a path relative to the cell file",
+                                             refusal.reason));
+      return std::nullopt;
+    case MeshRefusal::Kind::kDamaged:
+      diagnostics.add(file_node, fmt::format("found a mesh file that cannot be used: {}; expected "
+                                             "an undamaged mesh with faces, in one file",
+                                             refusal.reason));
+      return std::nullopt;
+    case MeshRefusal::Kind::kTooLarge:
+      diagnostics.add(node,
+                      fmt::format("found a mesh with a vertex {} from its origin along an axis; "
+                                  "expected another unit or scale, or, where the body reaches "
+                                  "farther than {:g} m, 'reach' beside 'file'",
+                                  refusal.reason, use.reach));
+      return std::nullopt;
+    case MeshRefusal::Kind::kNotSolid:
+      break;
   }
-  return polyhedron_from_vertices(placed);
+  return ShapeError{std::move(refusal.reason)};
 }
 
 }  // namespace clearance

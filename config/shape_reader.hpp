@@ -1,15 +1,15 @@
 // Reads the convex shapes of a cell file, which stand under `box:`, `mesh:` and similar keys.
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "config/map_reader.hpp"
+#include "config/mesh_parts.hpp"
 #include "config/quantities.hpp"
-#include "config/revision.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
@@ -18,26 +18,22 @@ namespace clearance {
 struct NamedShape {
   std::string kind;  // the key: "box"
   const YamlNode* node;
-  ConvexPolyhedron shape;
+  std::vector<ConvexPolyhedron> shapes;  // one; of a mesh the parts that contain it
+  double mesh_error = 0.0;               // how far these reach beyond the mesh, m
 };
 
-// A mesh file and how its coordinates become metres.
-struct MeshUse {
-  std::string file;  // relative to the reader's directory
-  Vec3 scale = Vec3::Ones();
-  LengthUnit unit = LengthUnit::kMetre;
-  // No vertex may be farther from the mesh's origin along an axis, m: one wrong number in a file,
-  // or a file in another unit, makes a body of kilometres, of which every distance would be 0.
-  double reach = 100.0;
-};
+// `tolerance` and `max_parts` of a map, over what is there.
+void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& limits);
 
-// Lengths are converted to metres here; what the core gets is SI. Mesh files are read once and kept
-// by path as long as the reader lives.
+// What one of `count` parts is called that a shape of that name became: "palm.3".
+[[nodiscard]] std::string name_of_part(const std::string& name, std::size_t i, std::size_t count);
+
+// Lengths are converted to metres here; what the core gets is SI.
 class ShapeReader {
  public:
-  // Mesh paths are relative to `directory`; the bytes of every mesh go into `revision` once.
-  ShapeReader(const Quantities& quantities, std::filesystem::path directory, Revision& revision)
-      : quantities_(quantities), directory_(std::move(directory)), revision_(revision) {}
+  // `limits`: of meshes that do not state their own.
+  ShapeReader(const Quantities& quantities, MeshLibrary& meshes, const PartLimits& limits)
+      : quantities_(quantities), meshes_(meshes), limits_(limits) {}
 
   // "box", "sphere", ...: the keys of which a part has exactly one.
   [[nodiscard]] static std::span<const std::string> kinds();
@@ -46,13 +42,15 @@ class ShapeReader {
   // one. `at` is the map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 
-  // The hull of all vertices of a mesh, which contains it; nothing after a diagnostic. `file_node`
-  // is where the file is named, `node` where its size is.
-  [[nodiscard]] std::optional<ShapeResult> mesh_hull(const MeshUse& use, const YamlNode& file_node,
-                                                     const YamlNode& node);
+  // The parts of a mesh; nothing after a diagnostic. `file_node` is where the file is named, `node`
+  // where its size is.
+  [[nodiscard]] std::optional<std::variant<MeshParts, ShapeError>> mesh_parts(
+      const MeshUse& use, const YamlNode& file_node, const YamlNode& node);
 
  private:
-  std::optional<ShapeResult> read_kind(const std::string& kind, const YamlNode& node);
+  std::optional<std::variant<MeshParts, ShapeError>> read_kind(const std::string& kind,
+                                                               const YamlNode& node);
+  std::optional<ShapeResult> read_simple_kind(const std::string& kind, const YamlNode& node);
   std::optional<ShapeResult> read_box(const YamlNode& node) const;
   std::optional<ShapeResult> read_sphere(const YamlNode& node) const;
   std::optional<ShapeResult> read_capsule(const YamlNode& node) const;
@@ -63,19 +61,15 @@ class ShapeReader {
   std::optional<ShapeResult> read_prism(const YamlNode& node) const;
   std::optional<ShapeResult> read_half_space(const YamlNode& node) const;
   std::optional<ShapeResult> read_polyhedron(const YamlNode& node) const;
-  std::optional<ShapeResult> read_mesh(const YamlNode& node);
+  std::optional<std::variant<MeshParts, ShapeError>> read_mesh(const YamlNode& node);
   // One inequality normal . x <= offset, in metres.
   std::optional<HalfSpace> read_row(const YamlNode& node) const;
   std::optional<double> read_rounding(MapReader& map) const;
   static std::optional<ShapeResult> rounded(std::optional<double> rounding, ShapeResult made);
   Vec3 read_scale(const YamlNode* node) const;
-  // The vertices of a mesh file in its own unit; null after a diagnostic.
-  const std::vector<Vec3>* load(const YamlNode& file_node, const std::string& file);
-
   const Quantities& quantities_;
-  std::filesystem::path directory_;
-  Revision& revision_;
-  std::map<std::string, std::optional<std::vector<Vec3>>> meshes_;  // by path; nothing: a bad one
+  MeshLibrary& meshes_;
+  PartLimits limits_;
 };
 
 }  // namespace clearance

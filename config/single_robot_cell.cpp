@@ -56,8 +56,8 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
   return std::string(out.c_str()) + "\n";
 }
 
-CellResult read_single_robot(const SingleRobotOptions& options) {
-  return parse_cell(single_robot_cell(options), options.urdf);
+CellResult read_single_robot(const SingleRobotOptions& options, const CellOptions& cell_options) {
+  return parse_cell(single_robot_cell(options), options.urdf, cell_options);
 }
 
 }  // namespace clearance

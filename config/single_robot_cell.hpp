@@ -23,6 +23,7 @@ struct SingleRobotOptions {
 [[nodiscard]] std::string single_robot_cell(const SingleRobotOptions& options);
 
 // What that text says; the errors are those of a cell, at lines of this text.
-[[nodiscard]] CellResult read_single_robot(const SingleRobotOptions& options);
+[[nodiscard]] CellResult read_single_robot(const SingleRobotOptions& options,
+                                           const CellOptions& cell_options = {});
 
 }  // namespace clearance

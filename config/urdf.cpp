@@ -176,9 +176,13 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
     collision.shape = UrdfCylinder{radius, xml.size(*cylinder, "length")};
   } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
     collision.shape = UrdfSphere{xml.size(*sphere, "radius")};
+  } else if (const XMLElement* capsule = geometry->FirstChildElement("capsule")) {
+    const double radius = xml.size(*capsule, "radius");
+    collision.shape = UrdfCapsule{radius, xml.size(*capsule, "length")};
   } else {
-    xml.report(*geometry,
-               "found a geometry of an unknown kind; expected mesh, box, cylinder or sphere");
+    xml.report(
+        *geometry,
+        "found a geometry of an unknown kind; expected mesh, box, cylinder, sphere or capsule");
   }
   return collision;
 }
@@ -271,22 +275,17 @@ void read_joints(XmlReader& xml, UrdfRobot& robot) {
   }
 }
 
-// Only pairs that are disabled one by one. Newer elements that change the default are refused:
-// leaving them out would watch, or not watch, other pairs than the file says.
-void read_disabled(XmlReader& xml, Srdf& srdf) {
-  for (const char* newer : {"disable_default_collisions", "enable_collisions"}) {
-    for (const XMLElement* found : children(*xml.root(), newer)) {
-      xml.report(*found, fmt::format("found <{}>; expected <disable_collisions> only", newer));
-    }
-  }
-  for (const XMLElement* at : children(*xml.root(), "disable_collisions")) {
-    // The reason is optional in an SRDF but required in a cell.
+// The pairs of one kind of element. The reason is optional in an SRDF but required in a cell.
+std::vector<SrdfDisabled> read_pairs_of(XmlReader& xml, const char* name) {
+  std::vector<SrdfDisabled> pairs;
+  for (const XMLElement* at : children(*xml.root(), name)) {
     const char* reason = at->Attribute("reason");
     const std::string link_a = xml.attribute(*at, "link1");
-    srdf.disabled.push_back({link_a, xml.attribute(*at, "link2"),
-                             reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason,
-                             at->GetLineNum()});
+    pairs.push_back({link_a, xml.attribute(*at, "link2"),
+                     reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason,
+                     at->GetLineNum()});
   }
+  return pairs;
 }
 
 // The value, if nothing was wrong with the file; else all that was, by line.
@@ -317,7 +316,10 @@ std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file) {
   if (xml.root() != nullptr) {
     srdf.robot = xml.attribute(*xml.root(), "name");
     srdf.line = xml.root()->GetLineNum();
-    read_disabled(xml, srdf);
+    srdf.disabled = read_pairs_of(xml, "disable_collisions");
+    srdf.enabled = read_pairs_of(xml, "enable_collisions");
+    for (const XMLElement* at : children(*xml.root(), "disable_default_collisions"))
+      srdf.disabled_by_default.push_back({xml.attribute(*at, "link"), at->GetLineNum()});
   }
   return value_or_faults(std::move(srdf), xml);
 }

@@ -27,6 +27,10 @@ struct UrdfCylinder {
 struct UrdfSphere {
   double radius;  // m
 };
+// An extension of URDF; length between the centres of its ends.
+struct UrdfCapsule {
+  double radius, length;  // m; along z, centred
+};
 
 // Where a child's frame is in its parent's, as written: rpy about the fixed axes x, y, z.
 struct UrdfOrigin {
@@ -36,7 +40,7 @@ struct UrdfOrigin {
 
 // <collision>: one geometry and its <origin>. A link may have several.
 struct UrdfCollision {
-  std::variant<UrdfMesh, UrdfBox, UrdfCylinder, UrdfSphere> shape;
+  std::variant<UrdfMesh, UrdfBox, UrdfCylinder, UrdfSphere, UrdfCapsule> shape;
   UrdfOrigin link_from_shape;
 };
 
@@ -76,17 +80,26 @@ struct UrdfRobot {
   std::vector<UrdfJoint> joints;
 };
 
-// <disable_collisions link1="..." link2="..." reason="..."/>.
+// <disable_collisions link1="..." link2="..." reason="..."/>, and <enable_collisions .../>.
 struct SrdfDisabled {
   std::string link_a, link_b, reason;
   int line = 0;
 };
 
-// <robot> of an SRDF, in the order of the file.
+// <disable_default_collisions link="..."/>: every pair of the link is disabled but those that are
+// enabled one by one.
+struct SrdfDefault {
+  std::string link;
+  int line = 0;
+};
+
+// <robot> of an SRDF, in the order of the file. What is disabled one by one is so whatever else is
+// said of it.
 struct Srdf {
   std::string robot;  // its name
   int line = 0;       // of the name
-  std::vector<SrdfDisabled> disabled;
+  std::vector<SrdfDisabled> disabled = {}, enabled = {};
+  std::vector<SrdfDefault> disabled_by_default = {};
 };
 
 // "FILE:LINE: what was found, what was expected".
@@ -99,8 +112,7 @@ using UrdfFaults = std::vector<UrdfFault>;  // at least one, by line
 // Plain URDF: xacro has to be expanded before. Checks that joints join links that exist into trees.
 [[nodiscard]] std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file);
 
-// The <disable_collisions> of an SRDF. The newer <disable_default_collisions> and
-// <enable_collisions> are refused, since ignoring them would watch the wrong pairs.
+// What an SRDF says of pairs.
 [[nodiscard]] std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file);
 
 }  // namespace clearance

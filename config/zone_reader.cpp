@@ -10,11 +10,15 @@
 #include <string>
 #include <tuple>
 
+#include "config/separation_reader.hpp"
+
 namespace clearance {
 namespace {
 
 // The bound of the sequence in the catalogue.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
+// The same of pairs: of those in zones with `separation`, and of those that are published.
+constexpr std::size_t kMaxPairs = 4096;
 
 // The place of a pair in the scene's list, which is sorted by key.
 std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, PairKey key) {
@@ -69,11 +73,16 @@ class ZoneReader {
     if (const YamlNode* name = map.required("name")) read_zone_name(*name, zone);
     const auto between = group_index_.read_between(map);
     read_thresholds(map, zone);
+    const YamlNode* separation = map.optional("separation");
     map.refuse_unknown_keys();
     if (between) {
       zone.group_a = between->names[0];
       zone.group_b = between->names[1];
       fill_zone(node, *between, objects_, pairs_, group_index_, diagnostics, zone);
+      if (separation != nullptr) {
+        zone.separation =
+            read_separation(*separation, *between, zone, pairs_.pairs, objects_, quantities_);
+      }
     }
     return zone;
   }
@@ -122,11 +131,31 @@ class ZoneReader {
   std::map<std::string, const YamlNode*> names_;
 };
 
+// What is published of a pair is found in every tick from a distance of that tick.
+void publish_separated_pairs(const YamlNode& node, const std::vector<Zone>& zones,
+                             std::vector<ObjectPair>& pairs, Diagnostics& diagnostics) {
+  std::size_t separated = 0;
+  for (const Zone& zone : zones) {
+    if (!zone.separation) continue;
+    separated += zone.pairs.size();
+    for (const std::uint32_t pair : zone.pairs) pairs[pair].publish = true;
+  }
+  if (separated == 0) return;
+  const auto published =
+      static_cast<std::size_t>(std::ranges::count(pairs, true, &ObjectPair::publish));
+  if (std::max(separated, published) <= kMaxPairs) return;
+  diagnostics.add(node, fmt::format("found {} pairs in zones with 'separation', which are "
+                                    "published, and {} published pairs in all; expected at most "
+                                    "{} of either: put fewer objects on each side of the zones",
+                                    separated, published, kMaxPairs));
+}
+
 }  // namespace
 
 // Zones stay in the order of the file: their index is their id in a report.
-std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects, const PairList& pairs,
-                             GroupIndex& group_index, const Quantities& quantities) {
+std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects,
+                             GroupIndex& group_index, const Quantities& quantities,
+                             PairList& pairs) {
   std::vector<Zone> zones;
   ZoneReader reader(objects, pairs, group_index, quantities);
   for (const YamlNode& item : read_list(node, "zones", quantities.diagnostics())) {
@@ -137,6 +166,7 @@ std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects, co
         node.items[kMaxZones],
         fmt::format("found {} zones; expected at most {}", zones.size(), kMaxZones));
   }
+  publish_separated_pairs(node, zones, pairs.pairs, quantities.diagnostics());
   return zones;
 }
 

@@ -10,9 +10,9 @@
 namespace clearance {
 
 // Reports a zone that covers a pair which is neither watched nor allowed to touch: it would
-// promise what nobody looks at.
+// promise what nobody looks at. Pairs of zones with `separation` become published ones.
 [[nodiscard]] std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects,
-                                           const PairList& pairs, GroupIndex& group_index,
-                                           const Quantities& quantities);
+                                           GroupIndex& group_index, const Quantities& quantities,
+                                           PairList& pairs);
 
 }  // namespace clearance

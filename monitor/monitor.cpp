@@ -7,6 +7,8 @@
 //   evaluate    Schedule                       -> PairTable: tight bounds; zone crossings found
 //   sweep       zone crossings                 -> ZoneCrossings: bounds since the last tick
 //   conclude    PairTable, ZoneCrossings       -> Zones, minimum, published pairs of the Report
+//   separate    published pairs                -> zones with `separation` of the Report
+//   differentiate  published pairs, links      -> gradients of the Report
 //   report      all of these                   -> the rest of the Report, which nothing reads
 #include "monitor/monitor.hpp"
 
@@ -18,11 +20,13 @@
 #include "monitor/conclude.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
+#include "monitor/gradients/differentiate.hpp"
 #include "monitor/objects/displacements.hpp"
 #include "monitor/objects/ingest.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/pairs/worker_pool.hpp"
 #include "monitor/schedule/scheduler.hpp"
+#include "monitor/separation/separations.hpp"
 #include "monitor/zones/zone_levels.hpp"
 #include "monitor/zones/zones.hpp"
 
@@ -62,7 +66,9 @@ struct Monitor::State {
   ZoneCrossings crossings;  // evaluate and sweep
   Zones zones;              // conclude
   Conclusion conclusion;    // conclude
-  Report report;            // report
+  const Separations separations;
+  Differentiation differentiation;  // differentiate
+  Report report;                    // conclude, separate, differentiate and report
 
   State(const Scene& the_scene, const MonitorOptions& options);
 
@@ -92,6 +98,8 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.crossings.sweep(s.culling.seen(), s.zones, tick);
   conclude(s.published, s.displaced, s.culling, s.scheduler, s.zone_levels, s.crossings, tick,
            s.zones, s.conclusion, s.report.pairs);
+  s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
+  s.differentiation.differentiate(s.report.pairs, s.inputs.robots, s.report.gradients);
   s.write_report(s.scene.budget - tick.budget.left());
   return s.report;
 }
@@ -166,7 +174,9 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
               scheduler.left_out(), share),
       crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
-      zones(the_scene, zone_levels) {
+      zones(the_scene, zone_levels),
+      separations(the_scene, zone_levels),
+      differentiation(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
   displaced.changed.reserve(scene.objects.size());
@@ -174,6 +184,8 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
   report.zones.assign(zones.reports().begin(), zones.reports().end());
+  separations.prepare(report);
+  report.gradients = unknown_gradients(differentiation.rows());
 }
 
 void Monitor::State::displace() noexcept {

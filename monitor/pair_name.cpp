@@ -10,8 +10,6 @@ std::string part_name(const Object& object, std::uint32_t part) {
 
 }  // namespace
 
-std::string pair_name(const std::string& a, const std::string& b) { return a + " - " + b; }
-
 std::string pair_name(const Scene& scene, std::uint32_t pair) {
   if (pair >= scene.pairs.size()) return "pair " + std::to_string(pair);
   const ObjectPair& objects = scene.pairs[pair];

@@ -10,7 +10,9 @@
 
 namespace clearance {
 
-[[nodiscard]] std::string pair_name(const std::string& a, const std::string& b);
+[[nodiscard]] inline std::string pair_name(const std::string& a, const std::string& b) {
+  return a + " - " + b;
+}
 
 // `pair`: index into Scene::pairs; one that is not there is named by its number.
 [[nodiscard]] std::string pair_name(const Scene& scene, std::uint32_t pair);

@@ -92,6 +92,51 @@ struct ZoneReport {
   std::uint32_t cause_object = 0;  // of `pair`, for all causes from kLate on: index into objects
 };
 
+// What the figures of a separation rest on.
+enum class SeparationValidity : std::uint8_t {
+  kUnknown = 0,   // nothing: an object or its largest speed is not known. Scaling 0
+  kAssumed = 1,   // a pose is late or a speed not known: stated largest speeds stand for them
+  kMeasured = 2,  // poses that are on time, and a robot's speed that is known
+};
+
+// A pair of a zone with `separation`, as ISO/TS 15066 has it (monitor/separation/README.md). m,
+// m/s, ns. Unknown: clearance and remaining -infinity, speeds and distances NaN.
+struct PairSeparation {
+  std::uint32_t zone = 0, pair = 0;  // indices into Scene::zones and Scene::pairs
+  SeparationValidity validity = SeparationValidity::kUnknown;
+  double clearance = 0.0;  // lower bound of the distance less both margins
+  // Towards each other, at most; not below 0.
+  double human_speed = 0.0, robot_speed = 0.0;
+  // S_h, S_r and S_s, and with C, Z_d and Z_r the protective separation distance S_p.
+  double human_term = 0.0, robot_term = 0.0, stopping_term = 0.0;
+  double protective_distance = 0.0;
+  double remaining = 0.0;  // clearance less S_p: below 0 the robot has to be stopped or slower
+  // The largest speed of the robot towards the person that keeps it at 0 or above; 0: none does,
+  // infinity: the speed does not matter.
+  double speed_limit = 0.0;
+  // The largest share of its present speed, 0 to 1, that does. 0 where nothing is known.
+  double scaling = 0.0;
+  std::int64_t age_human_ns = 0, age_robot_ns = 0;  // as PairReport::age_a_ns
+};
+
+// The least of a zone's pairs, each by itself.
+struct ZoneSeparation {
+  std::uint32_t zone = 0;
+  SeparationValidity validity = SeparationValidity::kUnknown;
+  std::uint32_t pair = 0;  // that of the least scaling, of these of the least `remaining`
+  double remaining = 0.0, speed_limit = 0.0, scaling = 0.0;
+};
+
+// How published pairs' distances change with joint positions, as
+// monitor/gradients/gradient_rows.hpp lays them out: NaN where the pair was not evaluated in this
+// tick, or a joint that moves it is not known. Both are empty unless Scene::gradients.
+struct Gradients {
+  std::vector<double> rates;  // m/rad or m/m, one an entry of the rows; sized once
+  // One a row, m/s: the distance's rate of change if all joints stood still, by what else moves.
+  // NaN where PairReport::closing_speed is.
+  std::vector<double> drifts;
+};
+
 struct Report {
   std::uint64_t cycle = 0;           // counts ticks from 1
   std::int64_t now_ns = 0;           // the time the tick was told
@@ -116,6 +161,10 @@ struct Report {
   std::uint64_t oldest_evaluation_cycles = 0;
   std::vector<PairReport> pairs;  // those with ObjectPair::publish, in scene order; sized once
   std::vector<ZoneReport> zones;  // one a zone, in scene order; sized once
+  // Of zones with `separation`, in scene order, and of their pairs, zone by zone; sized once.
+  std::vector<ZoneSeparation> separated_zones;
+  std::vector<PairSeparation> separated_pairs;
+  Gradients gradients;
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
 };
 

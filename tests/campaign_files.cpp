@@ -122,7 +122,7 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
         "name: m\nunits: {length: m, angle: rad}\nobjects:\n  - {name: a, mesh: "
         "{file: " +
         file +
-        "}}\n  - {name: b, sphere: {radius: 1}}\n"
+        ", max_parts: 1}}\n  - {name: b, sphere: {radius: 1}}\n"
         "pairs: [{between: [a, b]}]\n";
     all.push_back({mesh.name, file, mesh.bytes, [cell](const auto& at) {
                      return std::holds_alternative<Scene>(parse_cell(cell, at));

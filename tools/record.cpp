@@ -91,7 +91,7 @@ int run(int argc, char** argv, StopSignal& stop) {
   }
   std::optional<Scene> scene;
   if (!arguments.cell.empty()) {
-    scene = scene_or_errors(read_cell(arguments.cell));
+    scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
     if (!scene) return kBadCell;
   }
   const Scene* const known = scene ? &*scene : nullptr;

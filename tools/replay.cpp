@@ -122,6 +122,11 @@ void add_options(CLI::App& app, ReplayArguments& arguments) {
                "Only pairs that the cell publishes go into the table")
       ->needs(csv)
       ->group(kOffline);
+  app.add_flag("--gradients", arguments.gradients,
+               "Compute gradients of distances by joint positions, for -o, as 'gradients: true' in "
+               "the cell does")
+      ->needs(offline)
+      ->group(kOffline);
   app.add_option("--plot", arguments.plot,
                  "Draw distances, bounds, zones and closing speeds over time (SVG, by gnuplot)")
       ->needs(offline)

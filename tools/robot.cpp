@@ -17,9 +17,9 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/client/client.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -126,12 +126,12 @@ int run_robot(const Scene& scene, const Arguments& arguments, JointMotion motion
     }
   }
   route_dds_log();
-  Participant participant(arguments.dds.resolve(scene));
-  SimulatedRobot robot(scene, participant, arguments.robot, std::move(motion));
+  client::Connection connection(arguments.dds.resolve(scene), scene.topics);
+  SimulatedRobot robot(scene, connection, arguments.robot, std::move(motion));
   std::optional<LatencyMeter> latency;
-  if (arguments.latency) latency.emplace(participant, scene.topics.distances);
+  if (arguments.latency) latency.emplace(connection);
   spdlog::info("source '{}' moves {} objects and {} joints at {} Hz on {}", arguments.robot.source,
-               robot.objects(), robot.joints(), arguments.rate_hz, participant.where());
+               robot.objects(), robot.joints(), arguments.rate_hz, connection.where());
 
   std::atomic<bool> stop{false}, done{false};
   Histogram lateness;
@@ -146,7 +146,7 @@ int run_robot(const Scene& scene, const Arguments& arguments, JointMotion motion
   print(stdout, "{} batches of {} poses{} sent, {} failed\n", robot.sent(), robot.objects(),
         robot.joints() > 0 ? fmt::format(" and {} joints", robot.joints()) : "", robot.failed());
   print(stdout, "wake-up  {}\n", percentiles(lateness));
-  if (latency) latency->tell(participant.where());
+  if (latency) latency->tell(connection.where());
   return kOk;
 }
 

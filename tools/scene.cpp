@@ -1,5 +1,5 @@
 // clearance-scene: writes cell files, of a robot from its URDF and SRDF or of a generated
-// warehouse, and reports the models of a cell's objects.
+// warehouse, proposes which pairs of a robot may touch, and reports the models of a cell's objects.
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
@@ -10,12 +10,16 @@
 #include <vector>
 
 #include "config/robot_cell.hpp"
+#include "config/single_robot_cell.hpp"
 #include "config/warehouse_cell.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "tools/replay/progress_bar.hpp"
+#include "tools/scene/allowed_collisions.hpp"
 #include "tools/scene/model_report.hpp"
+#include "tools/scene/reduction.hpp"
 
 namespace clearance {
 namespace {
@@ -28,15 +32,21 @@ constexpr const char* kFooter = R"(Exit status:
 
 Examples:
   clearance-scene --from-urdf panda.urdf --srdf panda.srdf --max-speed 3 -o panda.yaml
+  clearance-scene --from-urdf panda.urdf --max-speed 3 --add shelf.scene -o panda.yaml
+  clearance-scene --from-urdf panda.urdf --allow -o panda.srdf
   clearance-scene --warehouse 1000 -o warehouse.yaml
-  clearance-scene --report warehouse.yaml)";
+  clearance-scene --report warehouse.yaml
+  clearance-scene --reduce panda.urdf --tolerance 0.005)";
 
 struct Arguments {
   RobotCellOptions robot;
   std::vector<std::string> packages;
   WarehouseOptions warehouse;
-  std::string output, report;
-  bool json = false, force = false;
+  ReductionOptions reduction;
+  std::uint64_t seed = 1;
+  SamplingOptions sampling;
+  std::string output, report, form = "srdf";
+  bool json = false, force = false, allow = false;
 };
 
 // Parses the NAME=DIRECTORY of --package; false when it is something else.
@@ -55,7 +65,7 @@ int write(const std::string& yaml, const std::string& output) {
     print(stderr, "{}: cannot be written: {}\n", output, std::strerror(errno));
     return kFailed;
   }
-  const auto scene = scene_or_errors(read_cell(output));
+  const auto scene = scene_or_errors(read_cell(output, told_on_stderr()));
   if (!scene) return kBadCell;
   print(stdout, "{}: {}\n", output, summary(*scene));
   return kOk;
@@ -73,11 +83,79 @@ int make_robot_cell(RobotCellOptions options, const std::string& output) {
   return write(cell.yaml, output);
 }
 
-int report(const std::string& cell, bool json) {
-  const auto scene = scene_or_errors(read_cell(cell));
+// Beside the SRDF that there is, if there is one: what both say.
+int propose_allowed(const Arguments& arguments) {
+  const RobotCellOptions& robot = arguments.robot;
+  const auto scene =
+      scene_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
   if (!scene) return kBadCell;
-  print(stdout, "{}", json ? model_json(*scene) : model_table(*scene));
+  ProgressBar bar(false);
+  SamplingOptions options = arguments.sampling;
+  options.seed = arguments.seed;
+  options.progress = [&bar](double share) { bar.show(share, "positions of the joints"); };
+  const std::vector<SampledPair> pairs = sample_contacts(*scene, options);
+  bar.finish();
+  if (!robot.srdf.empty()) {
+    const auto srdf = read_srdf(robot.srdf);
+    if (const auto* faults = std::get_if<UrdfFaults>(&srdf)) {
+      for (const UrdfFault& fault : *faults) print(stderr, "{}\n", fault.text);
+      return kFailed;
+    }
+    print(stderr, "{}", agreement(*scene, pairs, options.samples, std::get<Srdf>(srdf)));
+  }
+  const std::string text = arguments.form == "srdf" ? as_srdf(*scene, pairs, options.samples)
+                                                    : as_cell(*scene, pairs, options.samples);
+  if (arguments.output.empty()) {
+    print(stdout, "{}", text);
+    return kOk;
+  }
+  std::ofstream stream(arguments.output, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (stream) return kOk;
+  print(stderr, "{}: cannot be written: {}\n", arguments.output, std::strerror(errno));
+  return kFailed;
+}
+
+int report(const std::string& cell, bool json) {
+  MeshErrors mesh_errors;
+  CellOptions options = told_on_stderr();
+  options.mesh_errors = &mesh_errors;
+  const auto scene = scene_or_errors(read_cell(cell, options));
+  if (!scene) return kBadCell;
+  print(stdout, "{}", json ? model_json(*scene, mesh_errors) : model_table(*scene, mesh_errors));
   return kOk;
+}
+
+int print_reductions(const ReductionOptions& options, bool json) {
+  const auto made = reduce(options);
+  if (const auto* faults = std::get_if<std::vector<std::string>>(&made)) {
+    for (const std::string& fault : *faults) print(stderr, "{}\n", fault);
+    return kFailed;
+  }
+  const Reductions& all = std::get<Reductions>(made);
+  for (const std::string& note : all.notes) print(stderr, "note: {}\n", note);
+  print(stdout, "{}", json ? reduction_json(all.bodies) : reduction_table(all.bodies));
+  return kOk;
+}
+
+CLI::Option* add_reduction(CLI::App& app, CLI::Option_group& what, ReductionOptions& options) {
+  auto* reduce = what.add_option("--reduce", options.file,
+                                 "Simpler models around a mesh, or around each object of a cell "
+                                 "or link of a robot (.yaml, .urdf), with certified errors")
+                     ->check(CLI::ExistingFile);
+  app.add_option("--object", options.object, "Only this object or link")->needs(reduce);
+  auto* tolerance = app.add_option("--tolerance", options.tolerance,
+                                   "Choose the cheapest model that reaches no farther beyond the "
+                                   "body, m")
+                        ->check(number_from_zero())
+                        ->needs(reduce);
+  app.add_option("--facets", options.facets, "Choose the best of at most this many facets")
+      ->check(CLI::Range(6u, 4096u))
+      ->needs(reduce)
+      ->excludes(tolerance);
+  app.add_flag("--time", options.time, "Measure a query against each model, ns")->needs(reduce);
+  return reduce;
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -91,10 +169,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* report = what->add_option(
       "--report", arguments.report,
       "Print the models of each object of this cell: facets, certified errors, memory");
+  auto* reduce = add_reduction(app, *what, arguments.reduction);
   what->require_option(1);
   app.add_option("-o,--output", arguments.output,
                  "The cell file to write; mesh paths are relative to it")
-      ->excludes(report);
+      ->excludes(report)
+      ->excludes(reduce);
   app.add_option("--srdf", robot.srdf,
                  "The robot's SRDF, which disables pairs, with reasons; without it, links that a "
                  "joint joins are left out")
@@ -118,10 +198,36 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--fixed-base", robot.fixed_base,
                "The root link stands at the world's origin, and no pose arrives for it")
       ->needs(urdf);
-  app.add_option("--seed", arguments.warehouse.seed, "Random seed of the generated warehouse")
+  app.add_option(
+         "--add", robot.scenes,
+         "A planning scene of MoveIt (.scene) whose obstacles the robot is watched against; "
+         "repeatable")
+      ->check(CLI::ExistingFile)
+      ->allow_extra_args(false)
+      ->needs(urdf);
+  auto* allow = app.add_flag(
+      "--allow", arguments.allow,
+      "Write no cell, but which pairs of links need not be watched, by sampling the joints: "
+      "adjacent ones, those in contact at zero, always or never. Never is what the samples show "
+      "and no proof. With --srdf, also where that agrees");
+  allow->needs(urdf);
+  app.add_option("--samples", arguments.sampling.samples, "Positions that --allow tries")
+      ->check(whole_number(1, 1'000'000'000))
       ->capture_default_str()
-      ->needs(warehouse);
-  app.add_flag("--json", arguments.json, "Print the report as JSON")->needs(report);
+      ->needs(allow);
+  app.add_option("--as", arguments.form,
+                 "What --allow writes: srdf, its <disable_collisions> lines, or cell, the "
+                 "allowed_collisions of a cell")
+      ->check(CLI::IsMember({"srdf", "cell"}))
+      ->capture_default_str()
+      ->needs(allow);
+  app.add_option("--seed", arguments.seed, "Random seed of the warehouse, or of the positions")
+      ->capture_default_str()
+      ->excludes(report)
+      ->excludes(reduce);
+  app.add_flag("--json", arguments.json, "Print the report, or the models, as JSON")
+      ->excludes(urdf)
+      ->excludes(warehouse);
   add_force(app, arguments.force);
   app.footer(kFooter);
 }
@@ -131,7 +237,7 @@ int run(int argc, char** argv) {
   CLI::App app{
       "Writes cell files: of a robot from its URDF (collision shapes) and SRDF (disabled pairs), "
       "or "
-      "of a generated warehouse. Reports the models of a cell's objects."};
+      "of a generated warehouse. Reports the models of a cell's objects, and makes simpler ones."};
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   for (const std::string& package : arguments.packages) {
@@ -140,6 +246,11 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (!arguments.report.empty()) return report(arguments.report, arguments.json);
+  if (!arguments.reduction.file.empty()) {
+    return print_reductions(arguments.reduction, arguments.json);
+  }
+  arguments.warehouse.seed = arguments.seed;
+  if (arguments.allow && arguments.output.empty()) return propose_allowed(arguments);
   if (arguments.output.empty()) {
     print(stderr, "--output is missing: it names the cell file to write\n");
     return kUsage;
@@ -149,6 +260,7 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (!can_create("clearance-scene", arguments.output, arguments.force)) return kFailed;
+  if (arguments.allow) return propose_allowed(arguments);
   if (arguments.robot.urdf.empty()) {
     return write(warehouse_cell(arguments.warehouse), arguments.output);
   }

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"
@@ -29,6 +31,7 @@ using view::Server;
 using view::Source;
 
 constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
+constexpr std::size_t kMostCurves = 64;  // of pairs, that a page may ask for at once
 
 constexpr const char* kFooter =
     R"(Open the address that it prints in a browser; Ctrl-C ends it. Foxglove, Lichtblick and others of
@@ -167,11 +170,30 @@ std::map<std::string, view::Resource> resources(const Scene& scene, const Source
   return all;
 }
 
+// "end=12.5&pairs=3,17"
+view::Resource history(const Source& source, const std::string& query) {
+  double end_s = 0.0;
+  std::vector<std::uint32_t> pairs;
+  std::istringstream fields(query);
+  for (std::string field; std::getline(fields, field, '&');) {
+    const std::size_t value = field.find('=') + 1;
+    if (field.starts_with("end=")) end_s = std::strtod(&field[value], nullptr);
+    if (!field.starts_with("pairs=")) continue;
+    std::istringstream list(field.substr(value));
+    for (std::uint32_t pair = 0; list >> pair && pairs.size() < kMostCurves; list.ignore()) {
+      pairs.push_back(pair);
+    }
+  }
+  return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
+}
+
 view::Content content_of(const Scene& scene, Source& source) {
   return {.name = scene.name,
           .channels = view::channels_of(scene.topics),
           .get =
-              [found = resources(scene, source)](const std::string& path) {
+              [found = resources(scene, source), &source](const std::string& path,
+                                                          const std::string& query) {
+                if (path == "/history.json") return history(source, query);
                 const auto entry = found.find(path);
                 return entry == found.end() ? view::Resource{} : entry->second;
               },
@@ -258,7 +280,7 @@ int run(int argc, char** argv, StopSignal& stop) {
     if (!can_create("clearance-view", picture, arguments.force)) return kFailed;
   }
   start_log("clearance-view", "error");
-  const auto scene = scene_or_errors(read_cell(arguments.cell));
+  const auto scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
   if (!scene) return kBadCell;
   return run_view(*scene, arguments, stop);
 }

@@ -48,6 +48,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--catalogue", arguments.topics.catalogue, "Topic name")->capture_default_str();
   app.add_option("--health", arguments.topics.health, "Topic name")->capture_default_str();
   app.add_option("--zones", arguments.topics.zones, "Topic name")->capture_default_str();
+  app.add_option("--separation", arguments.topics.separation, "Topic name")->capture_default_str();
   arguments.dds.add_to(app, false);
   app.footer(kFooter);
 }
@@ -91,9 +92,9 @@ class Display {
 
 int run_watch(const Arguments& arguments, StopSignal& signal) {
   route_dds_log();
-  Participant participant(arguments.dds.resolve());
-  watch::Feed feed(participant, arguments.topics);
-  Display display(arguments.plain, participant.where());
+  client::Connection connection(arguments.dds.resolve(), arguments.topics);
+  watch::Feed feed(connection);
+  Display display(arguments.plain, connection.where());
   SystemClock clock;
   const std::int64_t started = clock.monotonic_ns();
   double seconds = 0.0;

@@ -6,6 +6,7 @@
 
 #include "core/curved/conclusion.hpp"
 #include "core/curved/depth.hpp"
+#include "core/curved/direction_search.hpp"
 #include "core/curved/half_space.hpp"
 #include "core/curved/newton.hpp"
 #include "core/curved/start.hpp"
@@ -43,13 +44,6 @@ void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& stat
                         : Vec3(0.5 * (points.a + points.b));
 }
 
-// With the pieces that are thought to be active, and if others are with a search for them. Returns
-// how many support points that took.
-int find_direction(CurvedPair& pair, Vec3& n, ActivePieces& active) noexcept {
-  const int supports = refine_direction(pair, active, n).supports;
-  return pair.is_tight() ? supports : supports + search_direction(pair, n, active).supports;
-}
-
 DistanceResult of_unknown() noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   DistanceResult r;
@@ -60,23 +54,23 @@ DistanceResult of_unknown() noexcept {
   return r;
 }
 
-}  // namespace
-
-DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                               const RelativePose& a_from_b, CurvedTrackingState& state,
-                               bool depth) noexcept {
-  if (!a.bounded() && !b.bounded()) return of_unknown();
-  if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
+DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                        const RelativePose& a_from_b, CurvedTrackingState& state,
+                        bool depth) noexcept {
   CurvedPair pair(a, b, a_from_b);
-  forget_nonsense(state, a, b);
+  // The search has no flats.
+  const PiecePair& first = state.active.pieces[0];
+  if (first.a >= pieces_of(a) || first.b >= pieces_of(b)) state.active.count = 0;
   int supports = 0;
   if (!state.normal.isZero()) {
-    supports += find_direction(pair, state.normal, state.active);
+    supports += search_direction(pair, state.normal.normalized(), state.active).supports;
   }
   if (!pair.is_tight()) {
     CurvedStart start = start_direction(pair);
     state.active = start.pieces;
-    if (!start.meet) supports += find_direction(pair, start.normal, state.active);
+    if (!start.meet) {
+      supports += search_direction(pair, start.normal, state.active).supports;
+    }
   }
   double deep = -kInfinity;
   const bool meet = !pair.is_tight() && pair.bounds.lower < 0.0;
@@ -88,8 +82,28 @@ DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron
   state.normal = pair.bounds.normal;
   keep_points(pair, deep, state);
   DistanceResult r = conclude(conclusion_of(pair, deep));
-  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
   r.iterations = static_cast<std::uint16_t>(supports);
+  return r;
+}
+
+// What Newton's method has left open.
+DistanceResult otherwise(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                         const RelativePose& a_from_b, CurvedTrackingState& state,
+                         bool depth) noexcept {
+  if (!a.bounded() && !b.bounded()) return of_unknown();
+  if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
+  return searched(a, b, a_from_b, state, depth);
+}
+
+}  // namespace
+
+DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                               const RelativePose& a_from_b, CurvedTrackingState& state,
+                               bool depth) noexcept {
+  forget_nonsense(state, a, b);
+  DistanceResult r;
+  if (!newton_distance(a, b, a_from_b, state, r)) r = otherwise(a, b, a_from_b, state, depth);
+  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
   return r;
 }
 

@@ -1,17 +1,7 @@
 #include "core/curved/curved_pair.hpp"
 
-#include <algorithm>
-
-#include "core/numerics/error_constants.hpp"
-
 namespace clearance {
 namespace {
-
-// In ulps of A's reach, of B's and of the offset between their origins. A support point: the
-// products with the semi-axes 2, a norm 2.5, a quotient 1; pulled inside, as much again. B's: the
-// direction turned to B's frame 4, the point turned back 4. Placing it and the difference 2, its
-// product with n 3, n's length 2.5. tests/core/curved compares with exact answers.
-constexpr double kUlpsOfA = 18, kUlpsOfB = 26, kUlpsOfOffset = 12;
 
 // No closest point of `body` is farther from its frame's origin than this, m: one of its anchors is
 // within all three lengths of any point of the other one.
@@ -71,12 +61,9 @@ PointPair CurvedPair::add_points(const Vec3& on_a, const Vec3& own_b) noexcept {
 }
 
 double CurvedPair::error() const noexcept {
-  const double offset = pose_.translation.norm();
-  const double farthest = std::max(0.0, std::min(bounds.upper, size));
-  const double turned = std::min(b.reach, a.reach + offset + kStretched * farthest) * kRoundedUp;
-  const double ulps = kUlpsOfA * a.reach + kUlpsOfB * b.reach + kUlpsOfOffset * offset;
-  return kUlp * ulps + a.body->position_error + b.body->position_error + pose_.translation_error +
-         pose_.rotation_error * turned + kUnderflow;
+  return rounding_error(a, b,
+                        {pose_.rotation_error, pose_.translation_error, pose_.translation.norm()},
+                        bounds.upper, size);
 }
 
 }  // namespace clearance

@@ -1,20 +1,14 @@
 // Two bodies and where B is as seen from A: support points of B - A, and the bounds that are known.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
+#include <algorithm>
 
+#include "core/curved/active_pieces.hpp"
 #include "core/curved/piece.hpp"
+#include "core/numerics/error_constants.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
-
-// Which piece of A and which of B.
-struct PiecePair {
-  std::int32_t a = kNone, b = kNone;
-  [[nodiscard]] bool operator==(const PiecePair&) const noexcept = default;
-};
 
 // A point of each body, in its own frame, and B's also in A's.
 struct PointPair {
@@ -27,6 +21,27 @@ struct SupportPair {
   PointPair points;
   double apart = 0.0;  // how far the pieces are apart along n; n from A to B
 };
+
+// In ulps of A's reach, of B's and of the offset between their origins. A support point: the
+// products with the semi-axes 2, a norm 2.5, a quotient 1; pulled inside, as much again. B's: the
+// direction turned to B's frame 4, the point turned back 4. Placing it and the difference 2, its
+// product with n 3, n's length 2.5. tests/core/curved compares with exact answers.
+inline constexpr double kUlpsOfA = 18, kUlpsOfB = 26, kUlpsOfOffset = 12;
+
+// No bound is off by more, either way, m. `at`: how well B's place is known. `upper`: the upper
+// bound, where it is one.
+struct CurvedPlace {
+  double rotation_error, translation_error, apart;  // as in RelativePose4
+};
+[[nodiscard]] inline double rounding_error(const PieceSource& a, const PieceSource& b,
+                                           const CurvedPlace& at, double upper,
+                                           double size) noexcept {
+  const double farthest = std::max(0.0, std::min(upper, size));
+  const double turned = std::min(b.reach, a.reach + at.apart + kStretched * farthest) * kRoundedUp;
+  const double ulps = kUlpsOfA * a.reach + kUlpsOfB * b.reach + kUlpsOfOffset * at.apart;
+  return kUlp * ulps + a.body->position_error + b.body->position_error + at.translation_error +
+         at.rotation_error * turned + kUnderflow;
+}
 
 // The best of what has been found, for the bodies without their radii and before what rounding may
 // have done to it (`error`).

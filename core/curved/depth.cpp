@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/curved/direction_search.hpp"
+#include "core/curved/symmetric_depth.hpp"
 
 namespace clearance {
 namespace {
@@ -15,13 +16,6 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
-
-// Every point of an ellipsoid's surface is on a ball of this radius that lies inside.
-double rolling_ball(const ConvexPolyhedron& body) noexcept {
-  if (body.curved.kind != CurvedShape::Kind::kEllipsoid) return 0.0;
-  const double least = body.curved.semi_axes.minCoeff();
-  return least * (least / body.curved.semi_axes.maxCoeff());
-}
 
 // A direction, how far the bodies reach past each other along it, and the point of A - B that does;
 // both less the rolling balls, without which they are less round.
@@ -94,6 +88,7 @@ class DepthSearch {
 
   DepthBounds run() noexcept {
     descend(pair_.bounds.normal);
+    found_.lower = std::max(least_symmetric_depth(pair_), by_rolling_ball());
     if (pass(kTolerance * pair_.size)) return found_;
     for (const double tolerance : kCoarser) {
       if (tolerance * pair_.size < depth() - found_.lower && !pass(tolerance * pair_.size)) break;
@@ -109,6 +104,16 @@ class DepthSearch {
     found_.supports += search_direction(pair_, n, none).supports;
   }
 
+  // The balls that roll inside both make one inside A - B that touches the deepest point there; a
+  // ball around the origin that lies in it is as large as the depth where that is no larger than
+  // both: no other direction need be looked at.
+  double by_rolling_ball() noexcept {
+    const Vec3 n = pair_.bounds.normal;
+    const Vec3 middle = -pair_.support(n).points.difference() - ball_ * n;
+    ++found_.supports;
+    return ball_ - middle.norm();
+  }
+
   Corner corner(const Vec3& n) noexcept {
     const SupportPair at = pair_.support(n);
     ++found_.supports;
@@ -119,6 +124,7 @@ class DepthSearch {
   bool pass(double tolerance) noexcept {
     for (int start = 0; start < 32; ++start) {
       const double before = depth();
+      if (before - found_.lower <= tolerance) return true;
       const int limit = std::min(kSupports, found_.supports + kSupportsOfPass);
       const PassEnd end = cover(tolerance, limit);
       if (end == PassEnd::kCovered) {

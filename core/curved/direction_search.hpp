@@ -2,18 +2,9 @@
 // are active there.
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "core/curved/curved_pair.hpp"
 
 namespace clearance {
-
-// The pieces that were active where the last search ended: a hint and never a fact.
-struct ActivePieces {
-  std::array<PiecePair, 3> pieces;
-  std::size_t count = 0;
-};
 
 struct DirectionSearchEnd {
   int iterations = 0;

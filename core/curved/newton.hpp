@@ -1,20 +1,27 @@
-// The direction along which two bodies are farthest apart, by Newton's method with pieces that stay
-// the same: from the last direction of a tracked pair, mostly one or two steps.
+// Newton's method on the direction, as one query: see newton-inl.hpp.
 #pragma once
 
-#include "core/curved/direction_search.hpp"
+#include "core/curved/tracking.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
-struct NewtonEnd {
-  bool tight = false;  // pair.bounds are, and no piece was left out
-  int supports = 0;
-};
+// From the state's direction and pieces, or from the line between the frames' origins. True: the
+// bounds are tight, and `result` is the answer. False: the bodies overlap or nearly touch, or
+// another one is unbounded, or rounding leaves the bounds too wide, or many pieces are as near as
+// each other; the state is then a hint for the search of direction_search.hpp, if anything.
+[[nodiscard]] bool newton_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                   const RelativePose& a_from_b, CurvedTrackingState& state,
+                                   DistanceResult& result) noexcept;
 
-// From n (unit) with these pieces, one to three, whose functions are equal at the best direction. n
-// moves on whatever comes of it. Not tight: other pieces count, or the bodies nearly touch, or
-// overlap, or rounding leaves the bounds too wide: the search of direction_search.hpp decides.
-[[nodiscard]] NewtonEnd refine_direction(CurvedPair& pair, const ActivePieces& active,
-                                         Vec3& n) noexcept;
+// The same for relative_pose(world_from_a, world_from_b), to the bit, and faster. What it leaves
+// open `otherwise` answers, from the same state.
+using OtherDistance = DistanceResult (*)(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                         const RelativePose& a_from_b, TrackingState& state,
+                                         bool depth) noexcept;
+[[nodiscard]] DistanceResult newton_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                             const Pose& world_from_a, const Pose& world_from_b,
+                                             TrackingState& state,
+                                             OtherDistance otherwise) noexcept;
 
 }  // namespace clearance

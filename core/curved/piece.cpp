@@ -50,13 +50,6 @@ PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept {
   return source;
 }
 
-std::int32_t pieces_of(const ConvexPolyhedron& body) noexcept {
-  if (!body.is_curved()) {
-    return static_cast<std::int32_t>(body.anchors.size() * (body.rays.size() + 1));
-  }
-  return body.curved.kind == CurvedShape::Kind::kEllipsoid ? 1 : 2;
-}
-
 std::int32_t farthest_piece(const PieceSource& source, const Vec3& m) noexcept {
   const ConvexPolyhedron& body = *source.body;
   switch (body.curved.kind) {

@@ -44,7 +44,11 @@ struct PieceSource {
 [[nodiscard]] PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept;
 
 // A polyhedron has a piece an anchor, and behind these as many for each of its rays.
-[[nodiscard]] std::int32_t pieces_of(const ConvexPolyhedron& body) noexcept;
+[[nodiscard]] inline std::int32_t pieces_of(const ConvexPolyhedron& body) noexcept {
+  if (body.is_curved()) return body.curved.kind == CurvedShape::Kind::kEllipsoid ? 1 : 2;
+  const auto anchors = static_cast<std::int32_t>(body.anchors.size());
+  return anchors * (static_cast<std::int32_t>(body.rays.size()) + 1);
+}
 
 // How much of a direction is across the axis of a truncated cone, and which way (unit).
 struct Azimuth {

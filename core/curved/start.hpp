@@ -1,7 +1,7 @@
 // The first direction of a search: by GJK, with points of the bodies that stay where they are.
 #pragma once
 
-#include "core/curved/direction_search.hpp"
+#include "core/curved/curved_pair.hpp"
 
 namespace clearance {
 

@@ -44,7 +44,7 @@ HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const Conv
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state, Start... start) {
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return by_direction(a, b, relative_pose(world_from_a, world_from_b), state, true);
+    return by_direction(a, b, world_from_a, world_from_b, state);
   }
   if (state.a.penetrating) return walk_penetrating(a, b, world_from_a, world_from_b, state);
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);

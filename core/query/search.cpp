@@ -8,6 +8,7 @@
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
 #include "core/curved/curved_distance.hpp"
+#include "core/curved/newton.hpp"
 #include "core/feature_walk/feature_walk.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
@@ -170,6 +171,12 @@ DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b
                             bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   return curved_distance(a, b, a_from_b, state, depth);
+}
+
+DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                            const Pose& world_from_a, const Pose& world_from_b,
+                            TrackingState& state) noexcept {
+  return newton_distance(a, b, world_from_a, world_from_b, state, &by_direction);
 }
 
 DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

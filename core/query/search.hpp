@@ -24,6 +24,10 @@ namespace clearance {
 [[nodiscard]] DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                           const RelativePose& a_from_b, TrackingState& state,
                                           bool depth) noexcept;
+// The same by poses.
+[[nodiscard]] DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+                                          const Pose& world_from_a, const Pose& world_from_b,
+                                          TrackingState& state) noexcept;
 
 // distance() of bodies that penetrated each other in the last query.
 [[nodiscard]] DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "monitor/app/options.hpp"
+#include "monitor/app/program.hpp"
 
 namespace clearance {
 namespace {
@@ -60,7 +61,8 @@ void CellArguments::add_to(CLI::App& app, bool from_ros) {
 }
 
 CellResult CellArguments::read() const {
-  return cell.empty() ? read_single_robot(robot) : read_cell(cell);
+  return cell.empty() ? read_single_robot(robot, told_on_stderr())
+                      : read_cell(cell, told_on_stderr());
 }
 
 std::vector<std::filesystem::path> CellArguments::files() const {

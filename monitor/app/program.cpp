@@ -55,6 +55,10 @@ std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
+CellOptions told_on_stderr() {
+  return {.tell = [](const std::string& line) { print(stderr, "{}\n", printable(line)); }};
+}
+
 // The number of errors stands last, where a person looks first.
 std::optional<Scene> scene_or_errors(CellResult cell) {
   if (Scene* const scene = std::get_if<Scene>(&cell)) return std::move(*scene);

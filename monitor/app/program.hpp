@@ -33,6 +33,9 @@ using ExitCodeOf = std::function<ExitCode(const std::exception&)>;
 // Adds --version. The exit code when there is nothing more to do: --help, --version or wrong usage.
 [[nodiscard]] std::optional<int> parse(CLI::App& app, int argc, char** argv);
 
+// What reading a cell tells the person who waits for it goes to stderr.
+[[nodiscard]] CellOptions told_on_stderr();
+
 // The scene, or nothing after every error in the cell has gone to stderr, a line each.
 [[nodiscard]] std::optional<Scene> scene_or_errors(CellResult cell);
 

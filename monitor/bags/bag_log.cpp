@@ -28,12 +28,11 @@ constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 
 std::string last_name_of(const std::string& topic) { return topic.substr(topic.rfind('/') + 1); }
 
-std::set<std::uint32_t> links_of(const Scene& scene) {
-  std::set<std::uint32_t> links;
-  for (const Robot& robot : scene.robots) {
-    for (const RobotLink& link : robot.links) links.insert(link.object);
-  }
-  return links;
+// Transforms of both topics are one source.
+std::string transforms_source(std::string topic) {
+  constexpr std::string_view kStatic = "_static";
+  if (topic.ends_with(kStatic)) topic.erase(topic.size() - kStatic.size());
+  return topic;
 }
 
 }  // namespace
@@ -44,19 +43,11 @@ BagLog::BagLog(const std::filesystem::path& path, const Scene& scene,
       options_(options),
       path_(path),
       bag_(open_bag(path)),
+      frames_(scene, TrackedFrames::ByName::kYes),
       heard_(scene.variables.size()),
       given_(scene, options.joints) {
   error_ = given_.error();
   ended_ = !error_.empty();
-  const std::set<std::uint32_t> links = links_of(scene);
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].fixed && !links.contains(i)) frames_[scene.objects[i].name] = i;
-  }
-  for (const Robot& robot : scene.robots) {
-    if (robot.base.kind == RobotBase::Kind::kWorld) {
-      world_from_root_link_[robot.links.front().name] = robot.base.base_from_root;
-    }
-  }
 }
 
 const std::string& BagLog::error() const noexcept {
@@ -139,13 +130,13 @@ std::int64_t BagLog::stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic&
 }
 
 // What the robot of the first joint that is known wants holds for all, as on DDS.
-JointStamps BagLog::stamps_of(const JointNames& names) const {
+RosStamps BagLog::stamps_of(const JointNames& names) const {
   for (std::uint32_t i = 0; i < joint_state_->name._length; ++i) {
     const std::uint32_t variable = names.find(joint_state_->name._buffer[i]);
     if (variable >= scene_.variables.size()) continue;
     return scene_.robots[scene_.variables[variable].robot].stamps;
   }
-  return JointStamps::kMessage;
+  return RosStamps::kMessage;
 }
 
 void BagLog::note_unknown(const JointNames& names) {
@@ -160,7 +151,7 @@ void BagLog::take_joints(const BagMessage& message, Topic& topic) {
     ++topic.undecodable;
     return;
   }
-  const bool by_stamp = stamps_of(*topic.names) == JointStamps::kMessage;
+  const bool by_stamp = stamps_of(*topic.names) == RosStamps::kMessage;
   const std::int64_t stamp =
       by_stamp ? stamp_of(stamp_ns(joint_state_->header), message.log_ns, topic) : message.log_ns;
   PoseBatch batch;
@@ -174,8 +165,7 @@ void BagLog::take_joints(const BagMessage& message, Topic& topic) {
     ++topic.empty;
     return;
   }
-  topic.rate.note(scene_, batch);
-  wait(message.topic->name, message.log_ns, std::move(batch));
+  give(message.topic->name, message.log_ns, std::move(batch), topic);
 }
 
 // Transforms that never change hold whenever anything comes.
@@ -187,28 +177,29 @@ void BagLog::take_transforms(const BagMessage& message, Topic& topic) {
   for (std::uint32_t i = 0; i < transforms_->transforms._length; ++i) {
     tree_.set(transforms_->transforms._buffer[i], topic.use == Use::kStaticTransforms);
   }
-  PoseBatch batch;
-  for (const auto& [frame, object] : frames_) {
-    if (const auto sample = tracked(object, message.log_ns, topic))
-      batch.samples.push_back(*sample);
+  const std::string source = transforms_source(message.topic->name);
+  PoseBatch poses;
+  const std::vector<TrackedFrames::Follower>& followers = frames_.followers();
+  for (std::size_t i = 0; i < followers.size(); ++i) {
+    std::string root;
+    const auto place = frames_.find(tree_, followers[i].frame, &root);
+    if (!place) continue;
+    roots_met_.insert(root);
+    const bool by_stamp = place->stamp_ns && scene_.ros.stamps == RosStamps::kMessage;
+    const std::int64_t stamp =
+        by_stamp ? stamp_of(*place->stamp_ns, message.log_ns, topic) : message.log_ns;
+    PoseBatch base;
+    frames_.add(i, place->root_from_frame, stamp, followers[i].is_base ? base : poses);
+    for (const JointSample& sample : base.joints) heard_[sample.variable] = true;
+    give(base_source(source), message.log_ns, std::move(base), topic);
   }
-  if (batch.samples.empty()) return;
-  topic.rate.note(scene_, batch);
-  wait(message.topic->name, message.log_ns, std::move(batch));
+  give(source, message.log_ns, std::move(poses), topic);
 }
 
-std::optional<PoseSample> BagLog::tracked(std::uint32_t object, std::int64_t log_ns, Topic& topic) {
-  const auto place = tree_.find(scene_.objects[object].name);
-  if (!place) return std::nullopt;
-  roots_met_.insert(place->root);
-  PoseSample sample;
-  sample.object = object;
-  sample.stamp_ns = place->stamp_ns ? stamp_of(*place->stamp_ns, log_ns, topic) : log_ns;
-  const auto robot = world_from_root_link_.find(place->root);
-  sample.world_from_object = robot == world_from_root_link_.end()
-                                 ? place->root_from_frame
-                                 : compose(robot->second, place->root_from_frame);
-  return sample;
+void BagLog::give(const std::string& source, std::int64_t log_ns, PoseBatch batch, Topic& topic) {
+  if (batch.empty()) return;
+  topic.rate.note(scene_, batch);
+  wait(source, log_ns, std::move(batch));
 }
 
 void BagLog::wait(const std::string& source, std::int64_t log_ns, PoseBatch batch) {
@@ -264,7 +255,7 @@ std::vector<std::string> BagLog::notes() const {
   }
   note_unheard(scene_, heard_, options_.joints, notes);
   for (const std::string& root : roots_met_) {
-    if (world_from_root_link_.contains(root) || root == "world") continue;
+    if (frames_.is_root_link(root) || root == scene_.ros.world()) continue;
     notes.push_back(fmt::format("frame '{}' is taken to be the cell's world", root));
   }
   return notes;

@@ -13,18 +13,18 @@
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/bags/input_rate.hpp"
-#include "monitor/bags/tf_tree.hpp"
+#include "monitor/frames/tracked_frames.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/joint_names.hpp"
 #include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
 
-// Joint states move the joints of the cell's robots as those that are heard on DDS do. A moving
-// object that is no link of a robot, and whose name is that of a frame, is where /tf and /tf_static
-// say: in the root of the frames, which is taken to be the cell's world, or, where the way leads
-// over the root link of a robot that stands in the world, by where the cell has that. Each topic is
-// a source of its name.
+// Joint states move the joints of the cell's robots as those that are heard on DDS do. Objects and
+// bases of robots that follow frames are where /tf and /tf_static say, and so is a moving object
+// that is no link of a robot and whose name is that of a frame. Without a `world_frame`, the root
+// of the frames is taken to be the cell's world. Each topic is a source of its name, tf_static one
+// with tf.
 //
 // Stamps of 0, and those of another clock than the recorder's (more than 10 s away), say nothing of
 // when a position held: then the time is used at which it was recorded.
@@ -56,21 +56,19 @@ class BagLog final : public InputLog {
   void take(const BagMessage& message);
   void take_joints(const BagMessage& message, Topic& topic);
   void take_transforms(const BagMessage& message, Topic& topic);
+  void give(const std::string& source, std::int64_t log_ns, PoseBatch batch, Topic& topic);
   void wait(const std::string& source, std::int64_t log_ns, PoseBatch batch);
   [[nodiscard]] Use use_of(const BagTopic& topic) const;
   void note_unknown(const JointNames& names);
-  [[nodiscard]] JointStamps stamps_of(const JointNames& names) const;
+  [[nodiscard]] RosStamps stamps_of(const JointNames& names) const;
   [[nodiscard]] std::int64_t stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic& topic);
-  [[nodiscard]] std::optional<PoseSample> tracked(std::uint32_t object, std::int64_t log_ns,
-                                                  Topic& topic);
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;
   InputLogOptions options_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;
-  std::map<std::string, std::uint32_t> frames_;       // moving objects that are no links, by name
-  std::map<std::string, Pose> world_from_root_link_;  // of robots that stand in the world
+  TrackedFrames frames_;
   TfTree tree_;
   CdrDecoder decoder_;
   Sample<sensor_msgs_msg_dds__JointState_> joint_state_;

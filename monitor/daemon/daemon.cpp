@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "monitor/frames/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
 
@@ -50,6 +51,21 @@ std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOption
   return std::make_unique<Recording>(options.record_file, options.recording, scene, poses, health);
 }
 
+std::unique_ptr<RosWriter> open_ros(const Scene& scene, Participant& participant,
+                                    const PoseReader& poses, const ReportQueue& published,
+                                    const RecordingHealth& health) {
+  if (!writes_ros(scene)) return nullptr;
+  return std::make_unique<RosWriter>(scene, participant, poses, published, health);
+}
+
+// ROS 2 knows the default partition only.
+void warn_of_partition(const Scene& scene, const DdsOptions& options) {
+  const bool wants_ros = writes_ros(scene) || TrackedFrames(scene).any();
+  if (options.partition.empty() || !wants_ros) return;
+  spdlog::warn("in partition {} neither tf nor what is written for ROS 2 reaches a node of ROS 2",
+               options.partition);
+}
+
 }  // namespace
 
 // Members are made in the order of their dependencies: ports before the loop that uses them.
@@ -60,13 +76,15 @@ Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
       poses_(scene, participant_),
       publish_queue_(scene, {.reports = kQueuedReports}),
       reports_(scene, participant_, publish_queue_, poses_, recording_health_),
-      recording_(open_recording(scene, options, poses_, recording_health_)) {
+      recording_(open_recording(scene, options, poses_, recording_health_)),
+      ros_(open_ros(scene, participant_, poses_, publish_queue_, recording_health_)) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(scene) +
                                                              PoseReader::joints_a_batch(scene)),
                              .monitor = monitor_options(options)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
+  if (ros_) sinks.push_back(ros_.get());
   loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
 }
 
@@ -77,6 +95,7 @@ void Daemon::run(StopSignal& signal) {
   spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
                scene_.rate_hz, participant_.where());
   spdlog::info("{}", participant_.how_to_reach());
+  warn_of_partition(scene_, options_.dds);
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
@@ -91,6 +110,7 @@ void Daemon::run(StopSignal& signal) {
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
   reports_.finish();
+  if (ros_) ros_->finish();
   if (recording_) recording_->finish();
   spdlog::info("stopped after {} ticks", loop_->statistics().cycle);
 }

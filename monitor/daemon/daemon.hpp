@@ -12,11 +12,12 @@
 #include "config/scene.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/ros/ros_writer.hpp"
 
 namespace clearance {
 
@@ -64,6 +65,7 @@ class Daemon {
   RecordingHealth recording_health_;
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
+  std::unique_ptr<RosWriter> ros_;
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
   std::atomic<bool> stop_{false};

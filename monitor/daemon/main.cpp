@@ -1,10 +1,15 @@
 // clearanced: reads a cell, then publishes its distances at a fixed rate until it is told to stop.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include <spdlog/spdlog.h>
 
+#include "config/spelling.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"
@@ -31,7 +36,7 @@ constexpr const char* kFooter = R"(Exit status:
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
-  clearanced --urdf panda.urdf --srdf panda.srdf --interface default)";
+  clearanced --urdf panda.urdf --srdf panda.srdf --interface default --ros2 markers)";
 
 // The command line, with its defaults.
 struct Arguments {
@@ -41,8 +46,29 @@ struct Arguments {
   DdsArguments dds;
   bool record_over = false;  // replace files that exist already
   RecordingArguments recording;
+  bool gradients = false;
+  std::vector<std::string> ros;  // outputs for ROS 2 beside the cell's
   DaemonOptions daemon;
 };
+
+constexpr std::string_view kAllOutputs = "all";
+
+std::string is_ros_output(const std::string& text) {
+  std::vector<std::string> keys = {std::string(kAllOutputs)};
+  for (const RosOutput& output : kRosOutputs) keys.emplace_back(output.key);
+  if (std::ranges::find(keys, text) != keys.end()) return {};
+  return fmt::format("found '{}'; expected {}", text, one_of(keys));
+}
+
+// A topic that the cell names stays.
+void add_ros_outputs(const std::vector<std::string>& asked, RosOutputs& outputs) {
+  for (const RosOutput& output : kRosOutputs) {
+    const bool is_asked = std::ranges::find(asked, output.key) != asked.end() ||
+                          std::ranges::find(asked, kAllOutputs) != asked.end();
+    std::string& topic = outputs.*output.topic;
+    if (is_asked && topic.empty()) topic = output.standard_topic;
+  }
+}
 
 void add_options(CLI::App& app, Arguments& arguments) {
   arguments.cell.add_to(app, true);
@@ -53,6 +79,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "and so on");
   add_force(app, arguments.record_over);
   arguments.recording.add_to(app, "--record-");
+  app.add_flag("--gradients", arguments.gradients,
+               "Publish how the distances of published pairs change with joint positions, as "
+               "'gradients: true' in the cell does");
+  app.add_option("--ros2", arguments.ros,
+                 "Write for ROS 2, beside what the cell asks for, on the standard topic: markers, "
+                 "diagnostics, minimum_distance, speed_scaling, or all; repeatable")
+      ->allow_extra_args(false)
+      ->check(is_ros_output);
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
   app.add_option("--priority", arguments.daemon.fifo_priority,
@@ -121,8 +155,10 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!arguments.cell.description_topic.empty()) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }
-  const auto scene = scene_or_errors(arguments.cell.read());
+  auto scene = scene_or_errors(arguments.cell.read());
   if (!scene) return kBadCell;
+  scene->gradients = scene->gradients || arguments.gradients;
+  add_ros_outputs(arguments.ros, scene->ros.outputs);
   if (arguments.check) {
     print(stdout, "{}\n", summary(*scene));
     return kOk;

@@ -32,7 +32,8 @@ std::size_t slots(std::size_t bytes_a_slot) {
 ReportQueueOptions queue_options(const Scene& scene) {
   const std::size_t samples = PoseReader::samples_a_batch(scene);
   const std::size_t joints = PoseReader::joints_a_batch(scene);
-  return {.reports = slots(sizeof(PairReport) * scene.pairs.size()),
+  return {.reports = slots(sizeof(PairReport) * scene.pairs.size() +
+                           sizeof(PairSeparation) * separated_count(scene).pairs),
           .inputs = slots(sizeof(PoseSample) * samples + sizeof(JointSample) * joints),
           .samples_a_batch = samples,
           .joints_a_batch = joints};
@@ -50,6 +51,11 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       queue_(scene, queue_options(scene)),
       recorder_(file, scene, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
+  if (!recorder_.without_files().empty()) {
+    spdlog::warn(
+        "the files that the cell names are not in the recording: {}. A replay needs --cell",
+        recorder_.without_files());
+  }
   health_.begin(file_);
   thread_ = std::thread([this] { run(); });
 }

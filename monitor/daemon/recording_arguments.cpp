@@ -15,12 +15,14 @@ namespace clearance {
 namespace {
 
 // As the cell calls them. Without the catalogue nothing else could be read.
-constexpr std::array<std::pair<std::string_view, TopicKind>, 5> kTopicKeys = {
+constexpr std::array<std::pair<std::string_view, TopicKind>, 7> kTopicKeys = {
     {{"poses", TopicKind::kPoses},
      {"joint_states", TopicKind::kJointStates},
      {"distances", TopicKind::kDistances},
      {"zones", TopicKind::kZones},
-     {"health", TopicKind::kHealth}}};
+     {"health", TopicKind::kHealth},
+     {"separation", TopicKind::kSeparation},
+     {"gradients", TopicKind::kGradients}}};
 
 std::string is_topic(const std::string& text) {
   std::vector<std::string> keys;
@@ -33,10 +35,10 @@ std::string is_topic(const std::string& text) {
 
 void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
   const char* const kRecording = "Recording";
-  app.add_option(
-         prefix + "without", without,
-         "Leave this topic out: poses, joint_states, distances, zones or health; repeatable. "
-         "Without poses and joint states nothing can be replayed")
+  app.add_option(prefix + "without", without,
+                 "Leave this topic out: poses, joint_states, distances, zones, health, separation "
+                 "or gradients; repeatable. "
+                 "Without poses and joint states nothing can be replayed")
       ->check(is_topic)
       ->allow_extra_args(false)
       ->group(kRecording);
@@ -55,6 +57,13 @@ void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
       ->check(number_from_zero())
       ->capture_default_str()
       ->group(kRecording);
+  app.add_option(prefix + "attach-mb", attach_mb,
+                 "Keep the files that the cell names (meshes, URDF, SRDF) when all of them, "
+                 "compressed, are no more than so many MB; 0: never. With them a replay needs no "
+                 "cell")
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->group(kRecording);
   app.add_flag(prefix + "uncompressed", uncompressed, "Do not compress (zstd)")->group(kRecording);
 }
 
@@ -63,6 +72,7 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
   RecordingOptions options{
       .overwrite = overwrite,
       .compress = !uncompressed,
+      .attach_bytes = static_cast<std::uint64_t>(std::ceil(std::min(attach_mb * 1e6, kMost))),
       .left_out = {},
       .pairs_every = pairs_every,
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),

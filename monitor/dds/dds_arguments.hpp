@@ -13,7 +13,7 @@
 
 #include "config/scene.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance {
 

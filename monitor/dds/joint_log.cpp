@@ -52,7 +52,9 @@ void JointLog::update_robot(std::uint32_t robot,
                       : joint.stale        ? State::kLate
                                            : State::kFine;
     State& before = states_[joint.variable];
-    if (now == State::kUnseen) unseen.emplace_back(joint.name);
+    // Of a base, RosTransforms says what is missing.
+    if (now == State::kUnseen && !scene_.robots[robot].is_of_base(joint.variable))
+      unseen.emplace_back(joint.name);
     if (now != before) {
       auto& [names, age_ns] = changes[{before, now}];
       names.emplace_back(joint.name);

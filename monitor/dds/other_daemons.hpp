@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "monitor/dds/daemon_identity.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance {
 

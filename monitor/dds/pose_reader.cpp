@@ -113,9 +113,8 @@ PoseReader::PoseReader(const Scene& scene, Participant& participant)
       where_(participant.where()),
       present_(participant),
       ros_joints_(scene, participant),
-      wait_(participant, joint_reader_ == 0
-                             ? std::vector{reader_}
-                             : std::vector{reader_, joint_reader_, present_.reader()}),
+      ros_transforms_(scene, participant, present_),
+      wait_(participant, readers()),
       joint_names_(scene),
       ring_(kBatches),
       sources_(named_sources(scene)),
@@ -126,6 +125,17 @@ PoseReader::PoseReader(const Scene& scene, Participant& participant)
     slot.joints.resize(joints_a_batch(scene));
   });
   thread_ = std::thread([this] { run(); });
+}
+
+// A cell without robots and frames has no use for what ROS 2 says.
+bool PoseReader::hears_ros() const noexcept { return joint_reader_ != 0 || ros_transforms_.any(); }
+
+std::vector<dds_entity_t> PoseReader::readers() const {
+  std::vector<dds_entity_t> readers = ros_transforms_.readers();
+  readers.push_back(reader_);
+  if (joint_reader_ != 0) readers.push_back(joint_reader_);
+  if (hears_ros()) readers.push_back(present_.reader());
+  return readers;
 }
 
 // The listener and the filter are copied by Cyclone; what they point to is here.
@@ -228,15 +238,15 @@ void PoseReader::take_all(dds_entity_t reader, Taken& taken) {
   }
 }
 
-// Waits for data or for the destructor.
+// Waits for data, for the time at which frames want to be looked at, or for the destructor.
 void PoseReader::run() {
   name_thread("poses");
   while (!stop_) {
-    if (!wait_.wait(DDS_INFINITY)) continue;
-    take_all(reader_, taken_);
-    if (joint_reader_ == 0) continue;
-    take_all(joint_reader_, taken_joints_);
-    take_from_ros();
+    if (wait_.wait(ros_transforms_.patience_ns())) {
+      take_all(reader_, taken_);
+      if (joint_reader_ != 0) take_all(joint_reader_, taken_joints_);
+    }
+    if (hears_ros()) take_from_ros();
   }
 }
 
@@ -245,11 +255,14 @@ void PoseReader::take_from_ros() {
   {
     const std::lock_guard lock(tallies_mutex_);
     changed = present_.look();
-    if (changed) ros_joints_.look(present_, wait_);
+    if (changed) ros_transforms_.look();
+    if (changed && joint_reader_ != 0) ros_joints_.look(present_, wait_);
   }
   if (changed) note_writers();
   const std::lock_guard lock(tallies_mutex_);
   ros_joints_.take_all([this](const RosStates& states) { hand_over(states); });
+  if (!ros_transforms_.any()) return;
+  ros_transforms_.take_all([this](const PoseBatch& batch) { hand_over(batch); });
 }
 
 // Names and places of writers that have left are free.
@@ -258,8 +271,9 @@ void PoseReader::note_writers() {
   if (joint_reader_ != 0) {
     const std::vector<std::uint64_t> of_joints = writers_of(joint_reader_);
     writers.insert(writers.end(), of_joints.begin(), of_joints.end());
-    for (const auto& [handle, writer] : present_.writers()) writers.push_back(handle);
   }
+  for (const auto& [handle, writer] : present_.writers()) writers.push_back(handle);
+  writers.push_back(RosTransforms::kWriter);
   names_.keep(writers);
   const std::lock_guard lock(tallies_mutex_);
   sources_.keep(writers);
@@ -304,9 +318,9 @@ void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer)
   ring_.push();
 }
 
-// The same of joint states; more names than a cell has any use for are cut.
+// The same of what is no sample of the poses topic; more names than a cell has any use for are cut.
 template <class Fill>
-void PoseReader::hand_over_joints(SourceTally& tally, const Fill& fill) {
+void PoseReader::hand_over_filled(SourceTally& tally, const Fill& fill) {
   PoseBatch* slot = ring_.back();
   if (slot == nullptr) {
     ++tally.lost;
@@ -327,7 +341,7 @@ void PoseReader::hand_over(clearance_msg_JointStates& states, std::uint64_t writ
   SourceTally* tally = admit(joint_reader_, SourceName(states.source), states.sequence_number,
                              states.names._length, writer);
   if (tally == nullptr) return;
-  hand_over_joints(*tally, [&](PoseBatch& slot) { from_wire(states, joint_names_, slot); });
+  hand_over_filled(*tally, [&](PoseBatch& slot) { from_wire(states, joint_names_, slot); });
 }
 
 // The lock is held.
@@ -335,11 +349,19 @@ void PoseReader::hand_over(const RosStates& states) {
   SourceTally* tally = admit(states.reader, states.source, states.number,
                              states.message.name._length, states.writer);
   if (tally == nullptr) return;
-  hand_over_joints(*tally, [&](PoseBatch& slot) {
+  hand_over_filled(*tally, [&](PoseBatch& slot) {
     from_wire(states.message, states.names, states.stamp_ns, slot);
     slot.source = states.source;
     slot.sequence_number = states.number;
   });
+}
+
+// The lock is held. Fewer than objects and variables, so it fits.
+void PoseReader::hand_over(const PoseBatch& of_frames) {
+  SourceTally* tally = admit(reader_, of_frames.source, of_frames.sequence_number, of_frames.size(),
+                             RosTransforms::kWriter);
+  if (tally == nullptr) return;
+  hand_over_filled(*tally, [&](PoseBatch& slot) { slot = of_frames; });
 }
 
 }  // namespace clearance

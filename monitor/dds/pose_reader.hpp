@@ -1,5 +1,5 @@
-// The topics of poses and joint states, ours and ROS 2's, as a PoseSource: a thread of its own
-// takes samples and hands them to the tick thread.
+// The topics of poses and joint states, ours and ROS 2's, and its tf, as a PoseSource: a thread of
+// its own takes samples and hands them to the tick thread.
 #pragma once
 
 #include <array>
@@ -12,13 +12,14 @@
 
 #include "config/scene.hpp"
 #include "monitor/dds/name_limit.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_sources.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/dds/ros_transforms.hpp"
 #include "monitor/dds/slow_input_log.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"
 
@@ -64,9 +65,12 @@ class PoseReader final : public PoseSource {
   void hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer);
   void hand_over(clearance_msg_JointStates& states, std::uint64_t writer);
   void hand_over(const RosStates& states);
-  // `fill` writes the joints into a slot for the tick.
+  void hand_over(const PoseBatch& of_frames);
+  // `fill` writes poses or joints into a slot for the tick.
   template <class Fill>
-  void hand_over_joints(SourceTally& tally, const Fill& fill);
+  void hand_over_filled(SourceTally& tally, const Fill& fill);
+  [[nodiscard]] bool hears_ros() const noexcept;
+  [[nodiscard]] std::vector<dds_entity_t> readers() const;
   void take_from_ros();
   // Null: the batch, of `count` poses or joints, is refused. Counts what is missing before it.
   SourceTally* admit(dds_entity_t reader, const SourceName& source, std::uint64_t sequence_number,
@@ -82,6 +86,7 @@ class PoseReader final : public PoseSource {
   std::string where_;
   PresentTopics present_;
   RosJointStates ros_joints_;
+  RosTransforms ros_transforms_;
   DataWait wait_;
   std::array<Sample<clearance_msg_PoseBatch>, kDepth> taken_;
   std::array<Sample<clearance_msg_JointStates>, kDepth> taken_joints_;

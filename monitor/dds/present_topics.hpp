@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance {
 

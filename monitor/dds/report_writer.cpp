@@ -1,5 +1,5 @@
-// A thread empties the report queue in order: distances first, then the zones that the report
-// changed. Health is written when statistics arrive, once a second.
+// A thread empties the report queue in order: distances first, then separations and the zones that
+// the report changed. Health is written when statistics arrive, once a second.
 #include "monitor/dds/report_writer.hpp"
 
 #include <fmt/format.h>
@@ -91,11 +91,19 @@ ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQ
       catalogue_(make_writer(participant, scene, TopicKind::kCatalogue)),
       zones_(make_writer(participant, scene, TopicKind::kZones)),
       health_(make_writer(participant, scene, TopicKind::kHealth)),
+      separation_(separated_count(scene).zones == 0
+                      ? 0
+                      : make_writer(participant, scene, TopicKind::kSeparation)),
+      gradients_(scene.gradients ? make_writer(participant, scene, TopicKind::kGradients,
+                                               {.lease_ns = lease_ns(scene.rate_hz)})
+                                 : 0),
       others_(participant, scene.topics.distances, identity_),
       distances_sample_(make_distances(scene)),
+      separation_sample_(make_separation(scene)),
+      gradient_message_(scene),
       written_zones_(scene.zones.size()),
       health_log_(scene) {
-  distances_sample_->daemon = identity_.id;
+  distances_sample_->daemon = separation_sample_->daemon = identity_.id;
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
 }
@@ -154,7 +162,18 @@ void ReportWriter::run() {
 void ReportWriter::write_report(const QueuedReport& queued) {
   to_wire(queued.report, queued.sources(), dds_time(), *distances_sample_);
   write(distances_, &*distances_sample_, "distances");
+  if (separation_ != 0) write_separation(queued.report);
+  if (gradients_ != 0) {
+    clearance_msg_Gradients& gradients = gradient_message_.of(queued.report, dds_time());
+    gradients.daemon = identity_.id;
+    write(gradients_, &gradients, "gradients");
+  }
   write_zones(queued.report);
+}
+
+void ReportWriter::write_separation(const Report& report) {
+  to_wire(report, dds_time(), *separation_sample_);
+  write(separation_, &*separation_sample_, "separation");
 }
 
 // A zone is written at the start, whenever it changes from what was written last, and again after

@@ -10,10 +10,11 @@
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"
 #include "monitor/dds/other_daemons.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/loop/report_queue.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
@@ -45,6 +46,7 @@ class ReportWriter {
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
   void write_report(const QueuedReport& queued);
+  void write_separation(const Report& report);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
   void write(dds_entity_t writer, const void* sample, const char* what);
@@ -55,8 +57,12 @@ class ReportWriter {
   const RecordingHealth& recording_;
   DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
+  dds_entity_t separation_;  // 0: no zone has one
+  dds_entity_t gradients_;   // 0: the scene asks for none
   OtherDaemons others_;
   Sample<clearance_msg_Distances> distances_sample_;
+  Sample<clearance_msg_Separation> separation_sample_;
+  GradientMessage gradient_message_;
   WrittenZones written_zones_;
   bool write_zones_again_ = false;
   HealthLog health_log_;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance {
 

@@ -4,9 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
+#include "monitor/frames/tf_tree.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -15,10 +15,6 @@ namespace {
 // Of ROS 2's topics in DDS: rt/joint_states is /joint_states.
 constexpr std::string_view kRos = "rt/";
 constexpr std::string_view kLast = "/joint_states";
-constexpr std::int64_t kSecondNs = 1'000'000'000;
-// A machine whose clock is off by more than this has another clock; messages in a row that show it.
-constexpr std::int64_t kOtherClockNs = kSecondNs;
-constexpr int kOtherClockMessages = 8;
 constexpr std::size_t kMostUnknownNames = 64;
 
 // The end of a long topic tells more than its beginning.
@@ -26,11 +22,6 @@ SourceName source_name(const std::string& topic, std::size_t writer) {
   const std::string suffix = writer > 1 ? fmt::format("#{}", writer) : "";
   const std::size_t room = kMaxSourceLength - suffix.size();
   return SourceName((topic.size() > room ? topic.substr(topic.size() - room) : topic) + suffix);
-}
-
-std::int64_t stamp_in(const sensor_msgs_msg_dds__JointState_& message) noexcept {
-  const builtin_interfaces_msg_dds__Time_& stamp = message.header.stamp;
-  return stamp.sec * kSecondNs + stamp.nanosec;
 }
 
 }  // namespace
@@ -90,30 +81,22 @@ RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t ha
       .first->second;
 }
 
-// A stamp of 0 is none. What the robot of the first joint that is known wants holds for all.
+// What the robot of the first joint that is known wants holds for all.
 std::int64_t RosJointStates::stamp_of(const sensor_msgs_msg_dds__JointState_& message,
                                       std::int64_t sent_ns, const Topic& topic,
                                       Writer& writer) const {
-  const std::int64_t stamp = stamp_in(message);
-  JointStamps wanted = JointStamps::kMessage;
+  RosStamps wanted = RosStamps::kMessage;
   for (std::uint32_t i = 0; i < message.name._length; ++i) {
     const std::uint32_t variable = topic.names.find(message.name._buffer[i]);
     if (variable >= JointNames::kUnused) continue;
     wanted = scene_.robots[scene_.variables[variable].robot].stamps;
     break;
   }
-  if (stamp == 0 || wanted == JointStamps::kSent) return sent_ns;
-  const bool is_other_clock = std::abs(stamp - sent_ns) > kOtherClockNs;
-  if (!is_other_clock && writer.other_clock > 0) writer.other_clock = 0;
-  if (is_other_clock && writer.other_clock >= 0 && ++writer.other_clock == kOtherClockMessages) {
-    writer.other_clock = -1;
-    spdlog::warn(
-        "joint states from '{}' are stamped {:+.3f} s off the time at which they are sent: by a "
-        "clock of their own, as of a simulation (use_sim_time); 'stamps: sent' of the robot would "
-        "take the time at which they are sent",
-        writer.source.view(), 1e-9 * static_cast<double>(stamp - sent_ns));
-  }
-  return stamp;
+  return writer.stamps.time_of(
+      stamp_ns(message.header), sent_ns, wanted, [&]() -> RosStampCheck::Whose {
+        return {fmt::format("joint states from '{}'", writer.source.view()),
+                "'stamps: sent' of the robot"};
+      });
 }
 
 void RosJointStates::note_unused(const sensor_msgs_msg_dds__JointState_& message,
@@ -145,10 +128,9 @@ void RosJointStates::take_all(const std::function<void(const RosStates&)>& hand_
       if (!info.valid_data) continue;
       Writer& writer = writer_of(topic, info.publication_handle);
       note_unused(*message, topic, writer);
-      const std::int64_t sent_ns = info.source_timestamp > 0 ? info.source_timestamp : dds_time();
       hand_over({.message = *message,
                  .names = topic.names,
-                 .stamp_ns = stamp_of(*message, sent_ns, topic, writer),
+                 .stamp_ns = stamp_of(*message, sent_ns(info.source_timestamp), topic, writer),
                  .source = writer.source,
                  .number = ++writer.messages,
                  .writer = info.publication_handle,

@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/dds/present_topics.hpp"
+#include "monitor/dds/ros_stamps.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/wire/joint_names.hpp"
 
@@ -61,8 +62,7 @@ class RosJointStates {
   struct Writer {
     SourceName source;
     std::uint64_t messages = 0;
-    int other_clock =
-        0;  // messages in a row that are stamped by another clock; negative: it is said
+    RosStampCheck stamps = {};
     bool no_positions_said = false;
   };
   struct Topic {

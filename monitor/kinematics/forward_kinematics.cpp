@@ -8,6 +8,7 @@
 
 #include "config/chain_rounding.hpp"
 #include "core/convex_polyhedron.hpp"
+#include "monitor/kinematics/fixed_order.hpp"
 #include "monitor/kinematics/sine_cosine.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -19,34 +20,13 @@ constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::max();
 // No rotation moves a point farther than across the circle that it is on.
 constexpr double kAcross = 2.0;
 
-// Written out: Eigen's sums have another order on other processors.
-Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) noexcept {
-  return {((a.w() * b.w() - a.x() * b.x()) - a.y() * b.y()) - a.z() * b.z(),
-          ((a.w() * b.x() + a.x() * b.w()) + a.y() * b.z()) - a.z() * b.y(),
-          ((a.w() * b.y() + a.y() * b.w()) + a.z() * b.x()) - a.x() * b.z(),
-          ((a.w() * b.z() + a.z() * b.w()) + a.x() * b.y()) - a.y() * b.x()};
-}
-
 Eigen::Quaterniond sum(double a, const Eigen::Quaterniond& p, double b,
                        const Eigen::Quaterniond& q) noexcept {
   return {a * p.w() + b * q.w(), a * p.x() + b * q.x(), a * p.y() + b * q.y(),
           a * p.z() + b * q.z()};
 }
 
-Vec3 times(const Mat3& m, const Vec3& v) noexcept {
-  return {(m(0, 0) * v.x() + m(0, 1) * v.y()) + m(0, 2) * v.z(),
-          (m(1, 0) * v.x() + m(1, 1) * v.y()) + m(1, 2) * v.z(),
-          (m(2, 0) * v.x() + m(2, 1) * v.y()) + m(2, 2) * v.z()};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
-          a.x() * b.y() - a.y() * b.x()};
-}
-
-double length(const Vec3& v) noexcept {
-  return std::sqrt((v.x() * v.x() + v.y() * v.y()) + v.z() * v.z());
-}
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 }  // namespace
 

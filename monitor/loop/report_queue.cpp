@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "monitor/gradients/gradient_rows.hpp"
+
 namespace clearance {
 namespace {
 
@@ -24,9 +26,14 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
       keeps_inputs_(options.inputs > 0) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
+  const SeparatedCount separated = separated_count(scene);
+  const Gradients gradients = unknown_gradients(gradient_rows(scene));
   reports_.prepare([&](QueuedReport& slot) {
     slot.report.pairs.resize(static_cast<std::size_t>(published));
     slot.report.zones.resize(scene.zones.size());
+    slot.report.separated_zones.resize(separated.zones);
+    slot.report.separated_pairs.resize(separated.pairs);
+    slot.report.gradients = gradients;
   });
   statistics_.prepare([&](LoopStatistics& slot) {
     slot.rejected.resize(scene.objects.size());

@@ -47,6 +47,9 @@ class ReportQueue final : public ReportSink {
   // After the last tick, from any one thread: the consumer's wait ends, and closed() is true.
   void close() noexcept;
 
+  // Any thread: the consumer's wait ends, for something that comes another way.
+  void wake() noexcept { ready_.post(); }
+
   // The one consuming thread. Inputs that a report used are in the queue before the report is.
   void wait() noexcept { ready_.wait(); }
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }

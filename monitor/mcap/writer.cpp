@@ -15,6 +15,9 @@
 namespace clearance {
 namespace {
 
+// When an attachment was recorded and made: not known.
+constexpr std::uint64_t kAttachmentTime = 0;
+
 // Record 0x03: id, name, encoding, text.
 void put_schema(McapBytes& out, std::uint16_t id, const McapSchema& schema) {
   const std::size_t record = out.begin_record(McapKind::kSchema);
@@ -63,14 +66,12 @@ void put_chunk_index(McapBytes& out, const McapChunkIndex& index) {
 
 // Record 0x0b.
 void put_statistics(McapBytes& out, const McapStatistics& statistics, std::size_t schemas,
-                    std::size_t channels) {
-  // We write none.
-  constexpr std::uint32_t kAttachments = 0;
+                    std::size_t channels, std::size_t attachments) {
   const std::size_t record = out.begin_record(McapKind::kStatistics);
   out.put(statistics.messages);
   out.put(static_cast<std::uint16_t>(schemas));
   out.put(static_cast<std::uint32_t>(channels));
-  out.put(kAttachments);
+  out.put(static_cast<std::uint32_t>(attachments));
   out.put(statistics.metadata);
   out.put(statistics.chunks);
   out.put(statistics.start_ns);
@@ -208,6 +209,25 @@ void McapWriter::metadata(std::string_view name, const McapMap& values) {
   put_out(out_.view());
 }
 
+// As metadata. The checksum is of all fields before it.
+void McapWriter::attachment(std::string_view name, std::string_view media_type,
+                            std::span<const std::byte> bytes) {
+  out_.clear();
+  const std::size_t record = out_.begin_record(McapKind::kAttachment);
+  const std::size_t body = out_.size();
+  out_.put(kAttachmentTime);
+  out_.put(kAttachmentTime);
+  out_.put_text(name);
+  out_.put_text(media_type);
+  out_.put(std::uint64_t{bytes.size()});
+  out_.put_raw(bytes);
+  out_.put(mcap_crc(0, out_.view().subspan(body)));
+  out_.end_record(record);
+  attachment_indexes_.push_back(
+      {offset_, out_.size(), bytes.size(), std::string(name), std::string(media_type)});
+  put_out(out_.view());
+}
+
 // Writes the open chunk with the indexes of its messages. The checksum is of the records before
 // they are compressed.
 void McapWriter::flush() {
@@ -288,10 +308,25 @@ void McapWriter::write_summary() {
   group(McapKind::kChannel, [&] {
     for (const McapChannel& channel : channels_) put_channel(summary, channel);
   });
-  group(McapKind::kStatistics,
-        [&] { put_statistics(summary, statistics_, schemas_.size(), channels_.size()); });
+  group(McapKind::kStatistics, [&] {
+    put_statistics(summary, statistics_, schemas_.size(), channels_.size(),
+                   attachment_indexes_.size());
+  });
   group(McapKind::kChunkIndex, [&] {
     for (const McapChunkIndex& index : chunk_indexes_) put_chunk_index(summary, index);
+  });
+  group(McapKind::kAttachmentIndex, [&] {
+    for (const AttachmentIndex& index : attachment_indexes_) {
+      const std::size_t record = summary.begin_record(McapKind::kAttachmentIndex);
+      summary.put(index.offset);
+      summary.put(index.length);
+      summary.put(kAttachmentTime);  // log time
+      summary.put(kAttachmentTime);  // created
+      summary.put(index.size);
+      summary.put_text(index.name);
+      summary.put_text(index.media_type);
+      summary.end_record(record);
+    }
   });
   group(McapKind::kMetadataIndex, [&] {
     for (const MetadataIndex& index : metadata_indexes_) {

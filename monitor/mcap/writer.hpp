@@ -56,6 +56,10 @@ class McapWriter {
   // A named set of texts, outside the messages.
   void metadata(std::string_view name, const McapMap& values);
 
+  // A whole file beside the messages, with its name, media type and bytes.
+  void attachment(std::string_view name, std::string_view media_type,
+                  std::span<const std::byte> bytes);
+
   // Ends the chunk and hands it to the operating system.
   void flush();
 
@@ -77,6 +81,12 @@ class McapWriter {
   struct MetadataIndex {
     std::uint64_t offset, length;
     std::string name;
+  };
+
+  // Record 0x0a, written with the summary.
+  struct AttachmentIndex {
+    std::uint64_t offset, length, size;
+    std::string name, media_type;
   };
 
   void fail(const std::string& what);
@@ -105,6 +115,7 @@ class McapWriter {
   McapStatistics statistics_;
   std::vector<McapChunkIndex> chunk_indexes_;
   std::vector<MetadataIndex> metadata_indexes_;
+  std::vector<AttachmentIndex> attachment_indexes_;
 };
 
 }  // namespace clearance

@@ -22,6 +22,11 @@ class RobotInputs {
   [[nodiscard]] std::span<TrackedVariable> variables() noexcept { return variables_; }
   [[nodiscard]] std::span<const TrackedVariable> variables() const noexcept { return variables_; }
 
+  // As of the last place(): as Robot::links. Of a robot that was not heard nothing is known.
+  [[nodiscard]] std::span<const LinkState> links(std::uint32_t robot) const noexcept {
+    return kinematics_.links(robot);
+  }
+
   // The first object that is a link; the number of objects when none is.
   [[nodiscard]] std::uint32_t first_link() const noexcept { return first_link_; }
 

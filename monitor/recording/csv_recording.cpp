@@ -163,6 +163,7 @@ CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::files
   const Scene& named = scene == nullptr ? made : *scene;
   RecordingWriter writer(out, named.topics, options);
   result.begun = writer.ok();
+  static_cast<void>(writer.attach(named));  // a replay says that it lacks them
   writer.catalogue(*make_catalogue(named), result.first_ns);
   BatchWriter batches(writer, named.revision);
   CsvPoseLog log(csv);

@@ -43,6 +43,7 @@ LogRecordingResult record_log(const std::filesystem::path& log, const std::files
   RecordingWriter writer(out, scene.topics, options);
   result.begun = writer.ok();
   result.first_ns = batch.log_ns;
+  static_cast<void>(writer.attach(scene));  // a replay says that it lacks them
   writer.catalogue(*make_catalogue(scene), result.first_ns);
   Sample<clearance_msg_PoseBatch> poses = make_batch(clearance_msg_kMaxPoses);
   for (; more && writer.ok(); more = input->next(batch)) {

@@ -11,6 +11,9 @@ namespace clearance {
 struct RecordingOptions {
   bool overwrite = true;  // false: an existing file is an error
   bool compress = true;   // chunks, by zstd
+  // The files that the cell names go in as well when all of them, compressed, are no more than
+  // this; 0: none.
+  std::uint64_t attach_bytes = std::uint64_t{64} << 20;
   // Not the catalogue, which is needed to read the others. Without poses and joint states nothing
   // can be replayed, without reports no tick is compared.
   std::set<TopicKind> left_out = {};

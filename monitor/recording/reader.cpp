@@ -86,6 +86,7 @@ RecordingOutline outline(const std::filesystem::path& file) {
     if (std::exchange(first, false)) {
       found.first_ns = message.log_ns;
       found.build = reader.about("build");  // stands in front
+      found.cell_file = reader.about("cell_file");
       found.some_without_pairs = !reader.about("pairs_every").empty();
     }
     if (message.kind == TopicKind::kDistances) found.has_reports = true;

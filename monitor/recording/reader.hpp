@@ -1,4 +1,4 @@
-// The messages of our six topics in a recording, in file order.
+// The messages of our topics in a recording, in file order.
 #pragma once
 
 #include <cstdint>
@@ -66,6 +66,7 @@ struct RecordingOutline {
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one
   bool has_reports = false;
   std::string build;                // of the reports; empty: the recording does not say
+  std::string cell_file;            // where its cell stood; empty: it keeps no files of the cell
   bool some_without_pairs = false;  // of the reports: RecordingOptions::pairs_every
   std::int64_t first_ns = 0;        // log time of the first message
 };

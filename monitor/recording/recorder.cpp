@@ -28,8 +28,11 @@ Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::i
     : scene_(scene),
       options_(options),
       writer_(file, scene.topics, options),
+      without_files_(writer_.attach(scene)),
       batch_(make_batch(clearance_msg_kMaxPoses)),
       distances_(make_distances(scene)),
+      separation_(make_separation(scene)),
+      gradients_(scene),
       zones_(scene.zones.size()),
       last_ns_(now_ns) {
   writer_.catalogue(*make_catalogue(scene), now_ns, kBuild);
@@ -52,10 +55,15 @@ void Recorder::report(const Report& report, std::span<const SourceUse> sources,
                       std::int64_t publish_ns) {
   last_ns_ = report.now_ns;
   write_used(sources, report.now_ns);
+  if (!report.separated_zones.empty()) write_separation(report, publish_ns);
   if (writer_.holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *distances_);
     if (!keeps_pairs(options_, report.cycle)) distances_->pairs._length = 0;
     writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
+  }
+  if (scene_.gradients && keeps_pairs(options_, report.cycle)) {
+    writer_.write(TopicKind::kGradients, report.now_ns, report.now_ns,
+                  gradients_.of(report, publish_ns));
   }
   write_zones(report);
   if (writer_.roll(report.now_ns)) zones_ = WrittenZones(scene_.zones.size());
@@ -80,6 +88,14 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
                   std::span<const std::byte>(waiting_[i].cdr));
   }
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+// In front of the distances, so that who reads these has it already. Thinned out as they are.
+void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
+  if (!writer_.holds(TopicKind::kSeparation)) return;
+  to_wire(report, publish_ns, *separation_);
+  if (!keeps_pairs(options_, report.cycle)) separation_->pairs._length = 0;
+  writer_.write(TopicKind::kSeparation, report.now_ns, report.now_ns, *separation_);
 }
 
 // As the daemon does on DDS: each zone at the start, then its changes.

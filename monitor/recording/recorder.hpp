@@ -11,6 +11,7 @@
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/report.hpp"
+#include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
@@ -44,6 +45,8 @@ class Recorder {
   [[nodiscard]] const std::string& error() const noexcept { return writer_.error(); }
   [[nodiscard]] std::uint64_t messages() const noexcept { return writer_.messages(); }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return writer_.bytes(); }
+  // Why the files that the cell names are not in it; empty: they are, or there are none.
+  [[nodiscard]] const std::string& without_files() const noexcept { return without_files_; }
   // The file that is written, and how many there are by now.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return writer_.file(); }
   [[nodiscard]] std::uint64_t files() const noexcept { return writer_.part(); }
@@ -59,14 +62,18 @@ class Recorder {
 
   void write_used(std::span<const SourceUse> sources, std::int64_t log_ns);
   void write_waiting(std::size_t count, std::int64_t log_ns);
+  void write_separation(const Report& report, std::int64_t publish_ns);
   void write_zones(const Report& report);
 
   const Scene& scene_;
   RecordingOptions options_;
   RecordingWriter writer_;
+  std::string without_files_;
   std::vector<Waiting> waiting_;
   Sample<clearance_msg_PoseBatch> batch_;
   Sample<clearance_msg_Distances> distances_;
+  Sample<clearance_msg_Separation> separation_;
+  GradientMessage gradients_;
   CdrEncoder encoder_;
   WrittenZones zones_;
   std::int64_t last_ns_;

@@ -1,4 +1,4 @@
-// The six topics as a recording holds them: schema name and text, message encoding.
+// The topics as a recording holds them: schema name and text, message encoding.
 #pragma once
 
 #include <optional>

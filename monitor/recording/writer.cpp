@@ -1,8 +1,12 @@
-// Gives each of the six topics a channel at the start of a file, so that channel ids do not depend
+// Gives each topic a channel at the start of a file, so that channel ids do not depend
 // on what is written first.
 #include "monitor/recording/writer.hpp"
 
+#include <fmt/format.h>
+
+#include "config/mesh_file.hpp"
 #include "monitor/files/numbered_file.hpp"
+#include "monitor/recording/recorded_cell.hpp"
 
 namespace clearance {
 
@@ -33,6 +37,40 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
   return mcap_->add_channel(schema, topic, kCdrEncoding);
 }
 
+// By their absolute paths; compressed where that makes them smaller.
+std::string RecordingWriter::attach(const Scene& scene) {
+  if (scene.files.empty() || options_.attach_bytes == 0) return {};
+  std::vector<Attached> all;
+  std::uint64_t total = 0;
+  for (const std::filesystem::path& file : scene.files) {
+    const auto read = read_bytes(file.string());
+    if (const auto* fault = std::get_if<MeshFault>(&read)) return fault->reason;
+    const auto bytes = std::as_bytes(std::span(std::get<std::string>(read)));
+    Attached& one = all.emplace_back(file.string(), "application/octet-stream");
+    if (options_.compress) compress_zstd(bytes, one.bytes);
+    if (one.bytes.empty()) {
+      one.bytes.assign(bytes.begin(), bytes.end());
+    } else {
+      one.media_type = kZstdMediaType;
+    }
+    total += one.bytes.size();
+    if (total > options_.attach_bytes) {
+      return fmt::format("they are more than {:.1f} MB",
+                         1e-6 * static_cast<double>(options_.attach_bytes));
+    }
+  }
+  attached_ = std::move(all);
+  cell_file_ = scene.file.string();
+  write_attachments();
+  return {};
+}
+
+void RecordingWriter::write_attachments() {
+  const std::uint64_t before = mcap_->bytes();
+  for (const Attached& file : attached_) mcap_->attachment(file.name, file.media_type, file.bytes);
+  attached_bytes_ = mcap_->bytes() - before;
+}
+
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.
 void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
   about_ = {{"version", CLEARANCE_VERSION},
@@ -40,6 +78,7 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
             {"scene_revision", std::to_string(catalogue.scene_revision)},
             {"cell", catalogue.cell_yaml}};
   if (!build.empty()) about_["build"] = build;
+  if (!cell_file_.empty()) about_["cell_file"] = cell_file_;
   if (options_.pairs_every > 1) about_["pairs_every"] = std::to_string(options_.pairs_every);
   if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
   mcap_->metadata(kRecordingMetadata, about_);
@@ -65,7 +104,8 @@ void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t pu
 bool RecordingWriter::is_due(std::int64_t log_ns) const noexcept {
   const bool more_than_a_catalogue = mcap_->messages() > 1;
   if (!ok() || !more_than_a_catalogue) return false;
-  const bool large = options_.roll_bytes > 0 && mcap_->bytes() >= options_.roll_bytes;
+  const bool large =
+      options_.roll_bytes > 0 && mcap_->bytes() >= options_.roll_bytes + attached_bytes_;
   const bool long_enough = options_.roll_ns > 0 && log_ns - *began_ns_ >= options_.roll_ns;
   return large || long_enough;
 }
@@ -81,6 +121,7 @@ bool RecordingWriter::roll(std::int64_t log_ns) {
   began_ns_.reset();
   ++part_;
   open();
+  write_attachments();
   if (!about_.empty()) {
     about_["part"] = std::to_string(part_);
     mcap_->metadata(kRecordingMetadata, about_);

@@ -1,4 +1,4 @@
-// A recording: an MCAP file of our six topics, with the cell that it was made with; or several
+// A recording: an MCAP file of our topics, with the cell that it was made with; or several
 // files, one after the other.
 #pragma once
 
@@ -21,7 +21,8 @@ namespace clearance {
 
 // Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
 // build, the one that made the reports (monitor/build_info/build_info.hpp), where that is known; of
-// a recording of several files `part`, from 1; pairs_every, where it is not 1.
+// a recording of several files `part`, from 1; pairs_every, where it is not 1; cell_file, where the
+// cell stood, of a recording with the files that it names (recorded_cell.hpp).
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Errors are kept, as McapWriter does. Not for several threads at once.
@@ -29,6 +30,11 @@ class RecordingWriter {
  public:
   RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                   const RecordingOptions& options = {});
+
+  // Keeps the files that the scene was read from, in this file and every one after it; in front of
+  // what describes it. Returns why they are not in it, if so: they are too large (attach_bytes), or
+  // one cannot be read. A recording without them is whole, but replays need the files.
+  [[nodiscard]] std::string attach(const Scene& scene);
 
   // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
   // that makes the reports; empty: not known.
@@ -76,6 +82,7 @@ class RecordingWriter {
 
  private:
   void open();
+  void write_attachments();
   [[nodiscard]] bool is_due(std::int64_t log_ns) const noexcept;
 
   std::filesystem::path file_;
@@ -88,6 +95,13 @@ class RecordingWriter {
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file
   std::uint64_t messages_before_ = 0, bytes_before_ = 0;
+  struct Attached {
+    std::string name, media_type;
+    std::vector<std::byte> bytes;
+  };
+  std::vector<Attached> attached_;
+  std::uint64_t attached_bytes_ = 0;                 // of one file
+  std::string cell_file_;                            // where the cell stood; empty: not known
   McapMap about_;                                    // the last description
   std::optional<std::vector<std::byte>> catalogue_;  // the last one, as CDR
 };

@@ -14,6 +14,7 @@
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_difference.hpp"
+#include "monitor/replay/separation_difference.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/replay/zone_difference.hpp"
 #include "monitor/wire/convert.hpp"
@@ -63,6 +64,7 @@ class Replay {
         reference_(reference_of(scene, options)),
         zones_(scene),
         replayed_(make_distances(scene)),
+        separation_(make_separation(scene)),
         monitor_(std::make_unique<Monitor>(scene)) {}
 
   OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
@@ -75,6 +77,8 @@ class Replay {
   void end_tick(const TickInput& input, const Report& report,
                 const std::function<void(const ReplayedTick&)>& on_tick);
   void compare(const TickInput& input, const Report& report);
+  [[nodiscard]] std::optional<std::string> separation_differs(const TickInput& input,
+                                                              const Report& report);
   void compare_zones();
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
@@ -94,6 +98,7 @@ class Replay {
   std::optional<ReferenceCheck> reference_;
   ZoneDifference zones_;
   Sample<clearance_msg_Distances> replayed_;
+  Sample<clearance_msg_Separation> separation_;
   std::unique_ptr<Monitor> monitor_;
 
   OfflineReplay result_;
@@ -248,8 +253,9 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 void Replay::compare(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
   if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
-  const auto difference =
+  auto difference =
       report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
+  if (!difference) difference = separation_differs(input, report);
   ++result_.compared;
   if (!difference) return;
   differs_ = true;
@@ -260,6 +266,14 @@ void Replay::compare(const TickInput& input, const Report& report) {
            : fmt::format(
                  "poses that this tick used are not in the recording: it cannot be compared ({})",
                  what));
+}
+
+// Of other bounds, as where tracking began later, follow other figures.
+std::optional<std::string> Replay::separation_differs(const TickInput& input,
+                                                      const Report& report) {
+  if (input.separation == nullptr || *options_.compare != Comparison::kBits) return std::nullopt;
+  to_wire(report, 0, *separation_);
+  return separation_difference(scene_, *input.separation, *separation_);
 }
 
 // Zone changes come on a topic of their own and are compared when all are known; only where the

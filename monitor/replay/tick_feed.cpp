@@ -27,7 +27,8 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
       joint_names_(scene),
       sources_(scene),
       by_report_(outline.has_reports),
-      tick_hz_(tick_hz) {}
+      tick_hz_(tick_hz),
+      separated_(separated_count(scene).zones > 0) {}
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
@@ -35,7 +36,8 @@ TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tic
       joint_names_(scene),
       sources_(scene),
       by_report_(false),
-      tick_hz_(tick_hz) {}
+      tick_hz_(tick_hz),
+      separated_(false) {}
 
 // Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
@@ -43,6 +45,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.joints.clear();
   tick.sources.clear();
   tick.recorded = nullptr;
+  tick.separation = nullptr;
   tick.restart = false;
   tick.complete = true;
   if (by_report_) return next_by_report(tick);
@@ -75,6 +78,11 @@ void TickFeed::read_message(const RecordedMessage& message) {
     } else {
       ++undecodable_;
     }
+  }
+  if (message.kind == TopicKind::kSeparation && separated_) {
+    Sample<clearance_msg_Separation> separation;
+    if (decoder_.decode(message.cdr, separation))
+      separations_waiting_.push_back(std::move(separation));
   }
   if (message.kind == TopicKind::kZones) {
     Sample<clearance_msg_ZoneState> zone;
@@ -135,9 +143,27 @@ bool TickFeed::next_by_report(TickInput& tick) {
     if (!read_one()) break;
   }
   take_used(tick);
+  if (separated_) tick.separation = separation_of(report.now_ns);
   tick.complete = missing_.empty();
   forget_unused(current_.log_ns);
   return true;
+}
+
+// A tick's time is its own. Recorded over DDS, it may stand behind the report; a recording that has
+// none at all is not read ahead for it.
+const clearance_msg_Separation* TickFeed::separation_of(std::int64_t now_ns) {
+  const auto is_of_tick = [&] {
+    while (!separations_waiting_.empty() && separations_waiting_.front()->now_ns < now_ns)
+      separations_waiting_.pop_front();
+    return !separations_waiting_.empty();
+  };
+  const bool any = any_separation_ || !separations_waiting_.empty();
+  any_separation_ = any;
+  while (!is_of_tick() && any && read_to_ns_ < current_.log_ns + kReadAheadNs) {
+    if (!read_one()) break;
+  }
+  const bool found = is_of_tick() && separations_waiting_.front()->now_ns == now_ns;
+  return found ? &*separations_waiting_.front() : nullptr;
 }
 
 // The place among the waiting batches; their count when it is not there.

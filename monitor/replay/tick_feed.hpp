@@ -38,6 +38,8 @@ struct TickInput {
   std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
+  // Of the same tick; null: the cell has no zone with `separation`, or it is not in the recording.
+  const clearance_msg_Separation* separation = nullptr;
   bool restart = false;  // the daemon had been started anew: its monitor knew nothing
   bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
 };
@@ -92,6 +94,7 @@ class TickFeed {
   void read_batch(const RecordedMessage& message);
   void read_joints(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
+  [[nodiscard]] const clearance_msg_Separation* separation_of(std::int64_t now_ns);
   [[nodiscard]] bool next_by_time(TickInput& tick);
   [[nodiscard]] bool next_by_rate(TickInput& tick);
   void take_until_now(TickInput& tick);
@@ -119,6 +122,9 @@ class TickFeed {
   std::deque<Waiting> batches_waiting_;        // in file order
   std::deque<WaitingReport> reports_waiting_;  // in file order
   WaitingReport current_;
+  bool separated_;                                                    // zones of the scene
+  bool any_separation_ = false;                                       // has been read
+  std::deque<Sample<clearance_msg_Separation>> separations_waiting_;  // in file order
   std::map<std::string, std::uint64_t> consumed_;  // by source: the last sequence number
   std::set<std::string> missing_;                  // sources whose last batch is not in the file
   std::vector<clearance_msg_ZoneState> zones_;

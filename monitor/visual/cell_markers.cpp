@@ -7,7 +7,6 @@
 
 #include "monitor/report.hpp"
 #include "monitor/visual/body_mesh.hpp"
-#include "monitor/visual/ros_types.hpp"
 
 namespace clearance {
 namespace {
@@ -32,6 +31,17 @@ ros::Marker part_marker(const Object& object, const Part& part, std::int32_t id)
     for (const std::uint32_t corner : triangle) marker.points.push_back(mesh.positions[corner]);
   }
   return marker;
+}
+
+// Of all objects' parts, in the order of the scene.
+std::vector<ros::Marker> part_markers(const Scene& scene) {
+  std::vector<ros::Marker> markers;
+  for (const Object& object : scene.objects) {
+    for (const Part& part : object.parts) {
+      markers.push_back(part_marker(object, part, static_cast<std::int32_t>(markers.size())));
+    }
+  }
+  return markers;
 }
 
 Vec3 vector_of(const clearance_msg_Vector3& v) { return {v.x, v.y, v.z}; }
@@ -59,7 +69,8 @@ void add_pair(const clearance_msg_PairDistance& pair, const ros::Colour& colour,
   const Vec3 a = vector_of(pair.witness_a), b = vector_of(pair.witness_b);
   lines.points.insert(lines.points.end(), {a, b});
   lines.colours.insert(lines.colours.end(), {colour, colour});
-  ros::Marker text{.name_space = "distances",
+  ros::Marker text{.frame = lines.frame,
+                   .name_space = "distances",
                    .id = static_cast<std::int32_t>(markers.size()),
                    .type = ros::MarkerType::kText,
                    .pose = {0.5 * (a + b) + Vec3(0.0, 0.0, kTextHeight), {}},
@@ -77,25 +88,35 @@ std::vector<std::byte> transforms_message(const Scene& scene, const ObjectPoses&
   std::vector<ros::Transform> transforms;
   transforms.reserve(scene.objects.size());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-    if (poses.pose(i)) transforms.push_back({scene.objects[i].name, *poses.pose(i)});
+    const Pose* const pose = poses.pose(i);
+    if (pose != nullptr) transforms.push_back({scene.objects[i].name, *pose});
   }
   return ros::encode(stamp_ns, transforms);
 }
 
 std::vector<std::byte> bodies_message(const Scene& scene) {
-  std::vector<ros::Marker> markers;
+  return ros::encode(0, part_markers(scene));
+}
+
+std::vector<std::byte> bodies_message_for_tf(const Scene& scene, const std::string& world) {
+  std::vector<ros::Marker> markers = part_markers(scene);
+  auto marker = markers.begin();
   for (const Object& object : scene.objects) {
-    for (const Part& part : object.parts) {
-      markers.push_back(part_marker(object, part, static_cast<std::int32_t>(markers.size())));
+    for (std::size_t part = 0; part < object.parts.size(); ++part, ++marker) {
+      if (!object.frame.empty()) marker->frame = object.frame;
+      if (!object.fixed) continue;
+      marker->frame = world;
+      marker->pose = compose(object.world_from_object, marker->pose);
     }
   }
   return ros::encode(0, markers);
 }
 
 std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_Distances& report,
-                                       std::int64_t stamp_ns) {
+                                       std::int64_t stamp_ns, std::string_view world) {
   std::vector<ros::Marker> markers(1);
-  ros::Marker lines{.name_space = "lines",
+  ros::Marker lines{.frame = world,
+                    .name_space = "lines",
                     .type = ros::MarkerType::kLineList,
                     .scale = Vec3(kLineWidth, 0.0, 0.0),
                     .colour = kClosestColour};
@@ -118,7 +139,8 @@ std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_D
   lines.deleted = lines.points.empty();
   const std::size_t shown = markers.size();
   for (std::size_t id = shown; id <= kMostLines; ++id) {
-    markers.push_back({.name_space = "distances",
+    markers.push_back({.frame = world,
+                       .name_space = "distances",
                        .id = static_cast<std::int32_t>(id),
                        .type = ros::MarkerType::kText,
                        .deleted = true});

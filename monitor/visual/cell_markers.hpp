@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "clearance.h"
 #include "config/scene.hpp"
 #include "monitor/visual/object_poses.hpp"
+#include "monitor/visual/ros_types.hpp"
 
 namespace clearance {
 
@@ -25,11 +28,17 @@ inline constexpr const char* kClosestTopic = "/clearance/closest";
 // slabs' faces.
 [[nodiscard]] std::vector<std::byte> bodies_message(const Scene& scene);
 
+// The same for a system of ROS 2, whose tf has the frames that objects follow and those of robots'
+// links, but none of fixed objects: these are in the frame `world`.
+[[nodiscard]] std::vector<std::byte> bodies_message_for_tf(const Scene& scene,
+                                                           const std::string& world);
+
 // A MarkerArray of the closest pair of the report and of those pairs that lie in one of the cell's
 // zones: a line between witness points and the distance beside it. What is stale or unknown has no
-// line.
+// line. `world`: the frame of all of it.
 [[nodiscard]] std::vector<std::byte> closest_message(const Scene& scene,
                                                      const clearance_msg_Distances& report,
-                                                     std::int64_t stamp_ns);
+                                                     std::int64_t stamp_ns,
+                                                     std::string_view world = ros::kWorldFrame);
 
 }  // namespace clearance

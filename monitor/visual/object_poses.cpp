@@ -1,88 +1,105 @@
 #include "monitor/visual/object_poses.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <span>
+#include <utility>
+
+#include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/geometry/posed_part.hpp"
+#include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
 
-// Of a source: more than a reader of the poses topic keeps.
-constexpr std::size_t kMostWaiting = 64;
-// A source that has sent nothing of an object for this long gives it to another (idl/README.md).
-constexpr std::int64_t kSourceLeftNs = 1'000'000'000;
+// Of a source, poses and joints: two seconds of thirty objects at 1 kHz. The oldest give way, so
+// that a daemon that has ended costs no more memory.
+constexpr std::size_t kMostWaiting = 1 << 16;
+// No batch has this number or a later one.
+constexpr std::uint64_t kNeverNamed = std::numeric_limits<std::uint64_t>::max();
 
-Pose pose_of(const clearance_msg_ObjectPose& wire) {
-  const auto& p = wire.position;
-  const auto& q = wire.orientation;
-  return {Vec3(p.x, p.y, p.z), Eigen::Quaterniond(q.w, q.x, q.y, q.z)};
+std::int64_t newest_stamp(const PoseBatch& batch) {
+  std::int64_t newest = std::numeric_limits<std::int64_t>::min();
+  for (const PoseSample& sample : batch.samples) newest = std::max(newest, sample.stamp_ns);
+  for (const JointSample& sample : batch.joints) newest = std::max(newest, sample.stamp_ns);
+  return newest;
 }
 
-bool is_usable(const Pose& pose) {
-  return pose.position.allFinite() && std::abs(pose.orientation.squaredNorm() - 1.0) < 1e-2;
+// As a monitor begins.
+Inputs inputs_of(const Scene& scene) {
+  Inputs inputs = initial_inputs(scene);
+  const std::vector<BoundingSphere> spheres =
+      bounding_spheres(scene.objects.size(), parts_of(scene));
+  for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
+  return inputs;
 }
 
 }  // namespace
 
-ObjectPoses::ObjectPoses(const Scene& scene) : scene_(scene), objects_(scene.objects.size()) {
-  forget();
-}
+ObjectPoses::ObjectPoses(const Scene& scene)
+    : scene_(scene),
+      joint_names_(scene),
+      numbers_(scene),
+      nothing_known_(inputs_of(scene)),
+      inputs_(nothing_known_) {}
 
 void ObjectPoses::forget() {
   waiting_.clear();
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    objects_[i] = {};
-    if (scene_.objects[i].fixed) objects_[i].pose = scene_.objects[i].world_from_object;
+  numbers_ = SourceNumbers(scene_);
+  inputs_.emplace(nothing_known_);
+}
+
+void ObjectPoses::take(const clearance_msg_PoseBatch& wire) {
+  PoseBatch batch;
+  from_wire(wire, batch);
+  if (made_for(batch, scene_.revision)) wait(std::move(batch), wire.sequence_number);
+}
+
+void ObjectPoses::take(const clearance_msg_JointStates& wire) {
+  PoseBatch batch;
+  from_wire(wire, joint_names_, batch);
+  wait(std::move(batch), wire.sequence_number);
+}
+
+void ObjectPoses::take_joints(PoseBatch batch) { wait(std::move(batch), kNeverNamed); }
+
+void ObjectPoses::wait(PoseBatch batch, std::uint64_t sequence_number) {
+  Waiting& waiting = waiting_[std::string(batch.source.view())];
+  waiting.samples += batch.size();
+  waiting.batches.push_back({sequence_number, newest_stamp(batch), std::move(batch)});
+  while (waiting.samples > kMostWaiting) {
+    waiting.samples -= waiting.batches.front().content.size();
+    waiting.batches.pop_front();
   }
 }
 
-void ObjectPoses::take(const clearance_msg_PoseBatch& batch) {
-  if (batch.scene_revision != 0 && batch.scene_revision != scene_.revision) return;
-  Batch taken{batch.sequence_number, 0, {}};
-  for (const auto& wire : std::span(batch.poses._buffer, batch.poses._length)) {
-    taken.stamp_ns = std::max(taken.stamp_ns, wire.stamp_ns);
-    if (wire.object >= objects_.size() || scene_.objects[wire.object].fixed) continue;
-    const Pose pose = pose_of(wire);
-    if (is_usable(pose)) taken.poses.push_back({wire.object, wire.stamp_ns, pose});
-  }
-  auto& queue = waiting_[batch.source];
-  queue.push_back(std::move(taken));
-  if (queue.size() <= kMostWaiting) return;
-  apply(batch.source, queue.front());
-  queue.pop_front();
-}
-
-bool ObjectPoses::use(const clearance_msg_Distances& report) {
-  moved_ = false;
+// What follows joints is placed once, by the last of them.
+void ObjectPoses::use(const clearance_msg_Distances& report) {
   const std::int64_t newest_ns = report.newest_pose_ns + report.clock_offset_ns;
-  for (const auto& [source, queue] : waiting_) apply_up_to(0, newest_ns, source);
+  for (auto& [source, waiting] : waiting_) take_up_to(0, newest_ns, waiting);
   for (const auto& used : std::span(report.sources._buffer, report.sources._length)) {
-    apply_up_to(used.sequence_number, newest_ns, used.source);
+    const auto found = waiting_.find(std::string_view(used.source));
+    if (found != waiting_.end()) take_up_to(used.sequence_number, newest_ns, found->second);
   }
-  return moved_;
+  const TickTime time{report.now_ns, report.clock_offset_ns};
+  ingest(due_.samples, due_.joints, time, scene_, *inputs_);
+  inputs_->robots.place(time.now_ns, inputs_->objects);
+  due_.samples.clear();
+  due_.joints.clear();
 }
 
-// Batches of a source from the front on, as long as one of the two says that they have been used.
-void ObjectPoses::apply_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns,
-                              const std::string& source) {
-  const auto found = waiting_.find(source);
-  if (found == waiting_.end()) return;
-  auto& queue = found->second;
-  while (!queue.empty() &&
-         (queue.front().sequence_number <= sequence_number || queue.front().stamp_ns <= stamp_ns)) {
-    apply(source, queue.front());
-    queue.pop_front();
-  }
-}
-
-void ObjectPoses::apply(const std::string& source, const Batch& batch) {
-  for (const Moved& moved : batch.poses) {
-    Known& known = objects_[moved.object];
-    const std::string& named = scene_.objects[moved.object].source;
-    if (!named.empty() && named != source) continue;
-    const bool other = known.pose && known.source != source;
-    if (other && moved.stamp_ns - known.stamp_ns < kSourceLeftNs) continue;
-    known = {moved.pose, moved.stamp_ns, source};
-    moved_ = true;
+void ObjectPoses::take_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns,
+                             Waiting& waiting) {
+  while (!waiting.batches.empty()) {
+    Batch& batch = waiting.batches.front();
+    if (batch.sequence_number > sequence_number && batch.stamp_ns > stamp_ns) return;
+    const std::uint32_t source = numbers_.of(batch.content.source);
+    for (PoseSample& sample : batch.content.samples)
+      due_.samples.emplace_back(sample).source = source;
+    for (JointSample& sample : batch.content.joints)
+      due_.joints.emplace_back(sample).source = source;
+    waiting.samples -= batch.content.size();
+    waiting.batches.pop_front();
   }
 }
 

@@ -1,12 +1,14 @@
 // Where the objects of a cell are, as a client can know it: the poses that the latest report used,
-// taken from the batches of the poses topic.
+// from the batches of the topics of poses and joint states.
 //
 // The report names the last batch of each source that its tick took in, and where it took in none,
-// the stamp of the newest pose in use. Poses of later batches wait for the report that uses them,
-// so that bodies, witness points and distances belong together. Not judged here: a pose that the
-// daemon refuses as implausible is shown all the same.
+// the stamp of the newest pose in use. Later batches wait for the report that uses them, so that
+// bodies, witness points and distances belong together. What is used goes through the stage of the
+// tick that takes poses and joints in (objects/ingest.hpp) and through its kinematics: what the
+// daemon refuses is not shown either.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -16,6 +18,10 @@
 
 #include "clearance.h"
 #include "config/scene.hpp"
+#include "monitor/objects/ingest.hpp"
+#include "monitor/pose_batch.hpp"
+#include "monitor/source_numbers.hpp"
+#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -24,42 +30,45 @@ class ObjectPoses {
   // Fixed objects have their poses from the start; `scene` must outlive this.
   explicit ObjectPoses(const Scene& scene);
 
-  // Batches of another scene and poses that the scene has no place for are passed over.
+  // Batches of another scene are passed over.
   void take(const clearance_msg_PoseBatch& batch);
+  void take(const clearance_msg_JointStates& states);
+  // Joints from elsewhere than our own topic; only their stamps say which report has used them.
+  void take_joints(PoseBatch batch);
 
-  // Moves the objects to where they were for this report. True: some object has moved.
-  bool use(const clearance_msg_Distances& report);
+  // Moves the objects to where they were for this report.
+  void use(const clearance_msg_Distances& report);
 
-  // World from object; none until the first pose.
-  [[nodiscard]] const std::optional<Pose>& pose(std::size_t object) const {
-    return objects_[object].pose;
+  // World from object; null until the first pose.
+  [[nodiscard]] const Pose* pose(std::size_t object) const {
+    const TrackedObject& state = inputs_->objects[object];
+    return state.seen ? &state.pose : nullptr;
   }
   void forget();  // all but the fixed ones
 
  private:
-  struct Moved {
-    std::uint32_t object;
-    std::int64_t stamp_ns;
-    Pose pose;
-  };
   struct Batch {
     std::uint64_t sequence_number;
-    std::int64_t stamp_ns;  // the newest of its poses
-    std::vector<Moved> poses;
+    std::int64_t stamp_ns;  // the newest in it
+    PoseBatch content;
   };
-  struct Known {
-    std::optional<Pose> pose;
-    std::int64_t stamp_ns = 0;
-    std::string source;
+  // Of one source, in order.
+  struct Waiting {
+    std::deque<Batch> batches;
+    std::size_t samples = 0;
   };
 
-  void apply(const std::string& source, const Batch& batch);
-  void apply_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns, const std::string& source);
+  void wait(PoseBatch batch, std::uint64_t sequence_number);
+  // Moves batches into `due_` as long as one of the two says that they have been used.
+  void take_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns, Waiting& waiting);
 
   const Scene& scene_;
-  std::vector<Known> objects_;
-  std::map<std::string, std::deque<Batch>> waiting_;  // by source, in order
-  bool moved_ = false;
+  JointNames joint_names_;
+  SourceNumbers numbers_;
+  const Inputs nothing_known_;
+  std::optional<Inputs> inputs_;                         // made anew to forget
+  std::map<std::string, Waiting, std::less<>> waiting_;  // by source
+  PoseBatch due_;                                        // of any sources, until they are taken in
 };
 
 }  // namespace clearance

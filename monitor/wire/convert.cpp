@@ -45,6 +45,33 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
   out.leave_above = zone.leave_above;
 }
 
+void fill(const ZoneSeparation& zone, clearance_msg_ZoneSeparation& out) noexcept {
+  out.zone = zone.zone;
+  out.validity = static_cast<std::uint8_t>(zone.validity);
+  out.pair = zone.pair;
+  out.remaining = zone.remaining;
+  out.speed_limit = zone.speed_limit;
+  out.scaling = zone.scaling;
+}
+
+void fill(const PairSeparation& pair, clearance_msg_PairSeparation& out) noexcept {
+  out.zone = pair.zone;
+  out.pair = pair.pair;
+  out.validity = static_cast<std::uint8_t>(pair.validity);
+  out.clearance = pair.clearance;
+  out.human_speed = pair.human_speed;
+  out.robot_speed = pair.robot_speed;
+  out.human_term = pair.human_term;
+  out.robot_term = pair.robot_term;
+  out.stopping_term = pair.stopping_term;
+  out.protective_distance = pair.protective_distance;
+  out.remaining = pair.remaining;
+  out.speed_limit = pair.speed_limit;
+  out.scaling = pair.scaling;
+  out.age_human_ns = pair.age_human_ns;
+  out.age_robot_ns = pair.age_robot_ns;
+}
+
 }  // namespace
 
 // Sequences get all the room that any report of this scene needs.
@@ -130,6 +157,30 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
   out.now_ns = report.now_ns;
 }
 
+Sample<clearance_msg_Separation> make_separation(const Scene& scene) {
+  const SeparatedCount count = separated_count(scene);
+  Sample<clearance_msg_Separation> sample;
+  reserve_sequence(sample->zones, count.zones);
+  reserve_sequence(sample->pairs, count.pairs);
+  return sample;
+}
+
+void to_wire(const Report& report, std::int64_t publish_ns,
+             clearance_msg_Separation& out) noexcept {
+  out.cycle = report.cycle;
+  out.now_ns = report.now_ns;
+  out.publish_ns = publish_ns;
+  out.scene_revision = report.scene_revision;
+  out.zones._length = static_cast<std::uint32_t>(
+      std::min<std::size_t>(report.separated_zones.size(), out.zones._maximum));
+  for (std::uint32_t i = 0; i < out.zones._length; ++i)
+    fill(report.separated_zones[i], out.zones._buffer[i]);
+  out.pairs._length = static_cast<std::uint32_t>(
+      std::min<std::size_t>(report.separated_pairs.size(), out.pairs._maximum));
+  for (std::uint32_t i = 0; i < out.pairs._length; ++i)
+    fill(report.separated_pairs[i], out.pairs._buffer[i]);
+}
+
 // Ids are places in the lists, as in the scene.
 Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
   Sample<clearance_msg_Catalogue> sample;
@@ -149,6 +200,10 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
   reserve_sequence(sample->zones, scene.zones.size());
   for (std::uint32_t i = 0; i < scene.zones.size(); ++i) {
     fill(scene.zones[i], i, sample->zones._buffer[sample->zones._length++]);
+  }
+  reserve_sequence(sample->joints, scene.variables.size());
+  for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
+    sample->joints._buffer[sample->joints._length++] = {i, duplicate(scene.variables[i].name)};
   }
   return sample;
 }
@@ -244,6 +299,17 @@ Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses) {
   return sample;
 }
 
+void to_wire(const PoseSample& sample, clearance_msg_ObjectPose& out) noexcept {
+  const Eigen::Quaterniond& q = sample.world_from_object.orientation;
+  out.object = sample.object;
+  out.stamp_ns = sample.stamp_ns;
+  out.position = to_wire(sample.world_from_object.position);
+  out.orientation = {q.x(), q.y(), q.z(), q.w()};
+  out.has_twist = sample.has_twist;
+  out.linear = to_wire(sample.twist.linear);
+  out.angular = to_wire(sample.twist.angular);
+}
+
 bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept {
   copy_text(batch.source.view(), out.source);
   out.sequence_number = batch.sequence_number;
@@ -251,16 +317,7 @@ bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept {
   out.poses._length =
       static_cast<std::uint32_t>(std::min<std::size_t>(batch.samples.size(), out.poses._maximum));
   for (std::uint32_t i = 0; i < out.poses._length; ++i) {
-    const PoseSample& sample = batch.samples[i];
-    const Eigen::Quaterniond& q = sample.world_from_object.orientation;
-    clearance_msg_ObjectPose& pose = out.poses._buffer[i];
-    pose.object = sample.object;
-    pose.stamp_ns = sample.stamp_ns;
-    pose.position = to_wire(sample.world_from_object.position);
-    pose.orientation = {q.x(), q.y(), q.z(), q.w()};
-    pose.has_twist = sample.has_twist;
-    pose.linear = to_wire(sample.twist.linear);
-    pose.angular = to_wire(sample.twist.angular);
+    to_wire(batch.samples[i], out.poses._buffer[i]);
   }
   return out.poses._length == batch.samples.size();
 }

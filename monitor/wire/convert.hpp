@@ -32,7 +32,11 @@ void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept;
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
              clearance_msg_ZoneState& out) noexcept;
 
-// Allocates. Names, pairs, zones and the text of the cell.
+// A sample for what every report of this scene says of zones with `separation`, and filling it.
+[[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
+void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
+
+// Allocates. Names, pairs, zones, joints and the text of the cell.
 [[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene);
 
 // The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
@@ -58,6 +62,9 @@ void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames&
 
 // A batch with room for `poses` poses, for writing.
 [[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses);
+
+// One pose of a batch.
+void to_wire(const PoseSample& sample, clearance_msg_ObjectPose& out) noexcept;
 
 // Fills `out`, made by make_batch. False: more poses than it has room for; the first ones are in.
 bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept;

@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// The Cyclone descriptor of a topic type; exists for the six topics' types only.
+// The Cyclone descriptor of a topic type; exists for the types of our topics only.
 template <class T>
 [[nodiscard]] const dds_topic_descriptor_t& topic_descriptor() noexcept = delete;
 template <>
@@ -44,6 +44,16 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_JointStates>() noexcept {
   return clearance_msg_JointStates_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_Separation>() noexcept {
+  return clearance_msg_Separation_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_Gradients>() noexcept {
+  return clearance_msg_Gradients_desc;
 }
 
 // One sample of a topic type, all zero at first. Everything it points to is from dds_alloc and is

@@ -31,7 +31,9 @@ class ReportChecker {
 
   // To be called with every report, in the order in which they are taken; `realtime_ns` is
   // CLOCK_REALTIME when it was taken.
-  ReportCheck check(const clearance_msg_Distances& report, std::int64_t realtime_ns) noexcept {
+  // Gradients are checked alike, by a checker of their own.
+  template <class Message>
+  ReportCheck check(const Message& report, std::int64_t realtime_ns) noexcept {
     ReportCheck found;
     if (report.publish_ns != 0) found.age_ns = realtime_ns - report.publish_ns;  // 0: a replay
     found.is_old = found.age_ns > limit_ns_;

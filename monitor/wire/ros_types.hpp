@@ -1,7 +1,9 @@
-// The types of ROS 2 that we read: their descriptors, and the hashes by which its tools know them.
+// The types of ROS 2 that we read and write: their descriptors, and the hashes by which its tools
+// know them.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "monitor/wire/dds_sample.hpp"
 #include "ros2.h"
@@ -22,6 +24,21 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<tf2_msgs_msg_dds__TFMessage_>() noexcept {
   return tf2_msgs_msg_dds__TFMessage__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<visualization_msgs_msg_dds__MarkerArray_>() noexcept {
+  return visualization_msgs_msg_dds__MarkerArray__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<std_msgs_msg_dds__Float64_>() noexcept {
+  return std_msgs_msg_dds__Float64__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<diagnostic_msgs_msg_dds__DiagnosticArray_>() noexcept {
+  return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
 }
 
 // How ROS 2 delivers a topic, and what its endpoints say of its type in their USER_DATA (since
@@ -45,5 +62,17 @@ inline constexpr RosType kRosTf{
     "typehash=RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087;", false,
     128};
 inline constexpr RosType kRosTfStatic{kRosTf.descriptor, kRosTf.user_data, true, 128};
+inline constexpr RosType kRosMarkers{
+    &visualization_msgs_msg_dds__MarkerArray__desc,
+    "typehash=RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf;", false, 10};
+inline constexpr RosType kRosDiagnostics{
+    &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+    "typehash=RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e;", false, 10};
+inline constexpr RosType kRosFloat64{
+    &std_msgs_msg_dds__Float64__desc,
+    "typehash=RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a;", false, 10};
+
+// What ROS 2's topics are called in DDS: "rt/joint_states" is /joint_states.
+[[nodiscard]] inline std::string ros_dds_name(const std::string& topic) { return "rt" + topic; }
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// The six topics of Clearance in one table: cell key, name, type, quality of service, history
+// The topics of Clearance in one table: cell key, name, type, quality of service, history
 // depths.
 //
 // DDS endpoints, recordings and tools take everything about a topic from here; a test holds the
@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -22,6 +22,8 @@ enum class TopicKind : std::uint8_t {
   kDistances,
   kZones,
   kHealth,
+  kSeparation,
+  kGradients,
 };
 
 // How a topic is delivered. Both are reliable with keep-last history.
@@ -44,7 +46,7 @@ struct Topic {
 // that used them. A distances writer keeps 64 reports for a client that is held up for a moment;
 // the daemon may be 16 batches of a source (16 ms at 1 kHz) late in taking poses without losing
 // any.
-inline constexpr std::array<Topic, 6> kTopics = {{
+inline constexpr std::array<Topic, 8> kTopics = {{
     {TopicKind::kCatalogue, &Topics::catalogue, &clearance_msg_Catalogue_desc, Delivery::kLatched,
      1, 1},
     {TopicKind::kPoses, &Topics::poses, &clearance_msg_PoseBatch_desc, Delivery::kStream, 64, 16},
@@ -54,6 +56,10 @@ inline constexpr std::array<Topic, 6> kTopics = {{
      64, 64},
     {TopicKind::kZones, &Topics::zones, &clearance_msg_ZoneState_desc, Delivery::kLatched, 1, 1},
     {TopicKind::kHealth, &Topics::health, &clearance_msg_Health_desc, Delivery::kLatched, 1, 1},
+    {TopicKind::kSeparation, &Topics::separation, &clearance_msg_Separation_desc, Delivery::kStream,
+     64, 64},
+    {TopicKind::kGradients, &Topics::gradients, &clearance_msg_Gradients_desc, Delivery::kStream,
+     64, 64},
 }};
 
 [[nodiscard]] constexpr std::size_t index(TopicKind kind) noexcept {

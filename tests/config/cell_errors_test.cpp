@@ -29,6 +29,17 @@ std::string boxes_with_marked_rules() {
   return text.insert(text.find("- {between"), 1, '@');
 }
 
+// A zone between 'left' and 'right' with a separation of these terms.
+std::string with_separation_of(const std::string& terms) {
+  return kBoxes +
+         "  - {between: [left, right]}\n"
+         "zones: [{name: z, between: [left, right], enter_below: 1, leave_above: 2,\n"
+         "         separation: " +
+         terms + "}]\n";
+}
+const std::string kTerms =
+    "reaction_time_ms: 1, stopping_time_ms: 1, stopping_distance: 1, intrusion_distance: 1";
+
 class CellMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(CellMistake, IsRefusedWhereItStands) {
@@ -50,6 +61,31 @@ TEST_P(CellMistake, IsRefusedWhereItStands) {
 }
 
 const Mistake kMistakes[] = {
+    {"SeparationWithoutTheHumanSide", with_separation_of("@{" + kTerms + "}"),
+     "found no key 'human'; expected it in the separation of a zone"},
+    {"SeparationOfAThirdSide", with_separation_of("{human: @floor, " + kTerms + "}"),
+     "found human: 'floor'; expected one of the two sides of the zone, 'left' or 'right'"},
+    {"SeparationOfOneSide",
+     kBoxes +
+         "  - {between: [arm, arm]}\n"
+         "zones: [{name: z, between: [arm, arm], enter_below: 1, leave_above: 2,\n"
+         "         separation: @{human: arm, " +
+         kTerms + "}}]\n",
+     "found 'left' on both sides of the zone"},
+    {"SeparationWithoutReactionTime",
+     with_separation_of("@{human: left, stopping_time_ms: 1, stopping_distance: 1, "
+                        "intrusion_distance: 1}"),
+     "found no key 'reaction_time_ms'; expected it in the separation of a zone"},
+    {"SeparationThatStopsBeforeItBrakes",
+     with_separation_of("{human: left, reaction_time_ms: @-1, stopping_time_ms: 1, "
+                        "stopping_distance: 1, intrusion_distance: 1}"),
+     "found the number -1; expected the time until the robot brakes in ms"},
+    {"SeparationOfAMeasuredPersonWhoStandsForEver",
+     with_separation_of("{human: left, human_speed_measured: @true, " + kTerms + "}"),
+     "found human_speed_measured without human_acceleration"},
+    {"SeparationOfAnAccelerationFromNothing",
+     with_separation_of("{human: left, human_acceleration: @1, " + kTerms + "}"),
+     "found human_acceleration without human_speed_measured: true"},
     {"UnknownKey", with_shape("@spere: {radius: 1}"), "found the unknown key 'spere' in an object"},
     {"UnknownKeySuggestion", with_shape("sphere: {@raduis: 1}"),
      "found the unknown key 'raduis' in a sphere; expected 'radius' or 'centre'; did you "

@@ -84,6 +84,53 @@ TEST(CellFile, EverySettingArrives) {
   EXPECT_EQ(scene.zones[0].pairs, std::vector<std::uint32_t>{1});
 }
 
+// kBoxes in mm with a zone of people over 'right' and a robot, 'left'.
+std::string with_separation(const std::string& terms) {
+  return "name: test\nunits: {length: mm, angle: deg}\n" + kBoxes +
+         "  - {between: [left, right], publish: false}\n"
+         "zones:\n"
+         "  - {name: people, between: [left, right], enter_below: 1, leave_above: 1,\n"
+         "     separation: {human: right, " +
+         terms + "}}\n";
+}
+
+TEST(CellFile, EveryTermOfASeparationArrives) {
+  const Scene scene = scene_of(
+      with_separation("human_speed: 2000, human_speed_measured: true, human_acceleration: 3000,\n"
+                      "robot_speed: 250, robot_acceleration: 4000, reaction_time_ms: 100, "
+                      "stopping_time_ms: 250.5,\n"
+                      "stopping_distance: 125, stopping_speed: 1000, intrusion_distance: 850,\n"
+                      "human_uncertainty: 40, robot_uncertainty: 5"));
+  ASSERT_TRUE(scene.zones.at(0).separation);
+  const Separation& terms = *scene.zones[0].separation;
+  EXPECT_EQ(terms.human_speed, 2.0);
+  EXPECT_TRUE(terms.human_speed_is_measured);
+  EXPECT_EQ(terms.human_acceleration, 3.0);
+  EXPECT_EQ(terms.robot_speed, 0.25);
+  EXPECT_EQ(terms.robot_acceleration, 4.0);
+  EXPECT_EQ(terms.reaction_time_ns, 100'000'000);
+  EXPECT_EQ(terms.stopping_time_ns, 250'500'000);
+  EXPECT_EQ(terms.stopping_distance, 0.125);
+  EXPECT_EQ(terms.stopping_speed, 1.0);
+  EXPECT_EQ(terms.intrusion_distance, 0.85);
+  EXPECT_EQ(terms.human_uncertainty, 0.04);
+  EXPECT_EQ(terms.robot_uncertainty, 0.005);
+  EXPECT_EQ(terms.human_is_first, std::vector<std::uint8_t>{0});
+}
+
+TEST(CellFile, ASeparationHasDefaultsOfTheStandardAndItsPairsArePublished) {
+  const Scene scene = scene_of(
+      with_separation("reaction_time_ms: 100, stopping_time_ms: 250, stopping_distance: 125, "
+                      "intrusion_distance: 0"));
+  const Separation& terms = *scene.zones.at(0).separation;
+  EXPECT_EQ(terms.human_speed, 1.6);
+  EXPECT_FALSE(terms.human_speed_is_measured);
+  EXPECT_EQ(terms.robot_speed, kInfinity);
+  EXPECT_EQ(terms.stopping_speed, 0.0);
+  EXPECT_EQ(terms.human_uncertainty + terms.robot_uncertainty + terms.robot_acceleration, 0.0);
+  for (const std::uint32_t pair : scene.zones[0].pairs) EXPECT_TRUE(scene.pairs[pair].publish);
+}
+
 TEST(CellFile, CurvedAndRoundedShapesAreWhatTheNumbersSay) {
   const Scene scene = scene_of(
       cell_text("objects:\n"

@@ -65,7 +65,8 @@ const std::string kTetrahedronObj =
 
 TEST_F(MeshFile, ItsHullIsThePart) {
   write("cube.stl", binary_stl());
-  const ConvexPolyhedron shape = scene("file: cube.stl").objects.at(0).parts.at(0).shape;
+  const ConvexPolyhedron shape =
+      scene("file: cube.stl, max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_EQ(shape.vertices.size(), 8u);
   EXPECT_EQ(shape.facets.size(), 6u);
   EXPECT_NEAR(shape.bounding_radius, std::sqrt(3.0), 1e-14);
@@ -73,10 +74,11 @@ TEST_F(MeshFile, ItsHullIsThePart) {
 
 TEST_F(MeshFile, UnitAndScaleApply) {
   write("cube.stl", binary_stl());
-  const ConvexPolyhedron mm = scene("file: cube.stl, unit: mm").objects.at(0).parts.at(0).shape;
+  const ConvexPolyhedron mm =
+      scene("file: cube.stl, unit: mm, max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_NEAR(mm.bounding_radius, std::sqrt(3.0) / 1000.0, 1e-15);
   const ConvexPolyhedron scaled =
-      scene("file: cube.stl, scale: [2, 1, -3]").objects.at(0).parts.at(0).shape;
+      scene("file: cube.stl, scale: [2, 1, -3], max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_NEAR(scaled.bounding_radius, std::sqrt(4.0 + 1.0 + 9.0), 1e-12);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -181,14 +182,15 @@ TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
         "<robot name=\"little\">\n  <enable_collisions/>\n  <disable_collisions link1=\"foot\"/>\n"
         "</robot>\n");
   const std::string urdf = options_.urdf.string(), srdf = options_.srdf.string();
-  EXPECT_EQ(
-      urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers above 0\n" +  //
-          urdf + ":7: found radius=\"wide\"; expected 1 number above 0\n" + urdf +
-          ":9: found a geometry of an unknown kind; expected mesh, box, cylinder or sphere\n" +
-          urdf + ":15: found a joint of the link 'farm', which does not exist\n" + srdf +
-          ":2: found <enable_collisions>; expected <disable_collisions> only\n" + srdf +
-          ":3: found <disable_collisions> without 'link2'\n",
-      fault());
+  EXPECT_EQ(urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers above 0\n" +  //
+                urdf + ":7: found radius=\"wide\"; expected 1 number above 0\n" + urdf +
+                ":9: found a geometry of an unknown kind; expected mesh, box, cylinder, sphere or "
+                "capsule\n" +
+                urdf + ":15: found a joint of the link 'farm', which does not exist\n" + srdf +
+                ":2: found <enable_collisions> without 'link1'\n" + srdf +
+                ":2: found <enable_collisions> without 'link2'\n" + srdf +
+                ":3: found <disable_collisions> without 'link2'\n",
+            fault());
 }
 
 TEST_F(RobotCellFile, EveryMeshThatIsMissingIsReportedWithItsLine) {
@@ -250,10 +252,66 @@ TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   EXPECT_THAT(cell().notes.back(), HasSubstr("watched: foot - mast, mast - head"));
 }
 
-TEST_F(RobotCellFile, NewerSrdfIsRefusedRatherThanMisread) {
+// As MoveIt: disabled by default, less what is enabled, and what is disabled one by one.
+TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   write("little_description/urdf/little.srdf",
-        "<robot name=\"little\">\n  <disable_default_collisions link=\"foot\"/>\n</robot>\n");
-  EXPECT_THAT(fault(), HasSubstr("little.srdf:2: found <disable_default_collisions>"));
+        "<robot name=\"little\">\n"
+        "  <disable_default_collisions link=\"foot\"/>\n"
+        "  <enable_collisions link1=\"foot\" link2=\"mast\"/>\n"
+        "</robot>\n");
+  const Scene scene = this->scene();
+  ASSERT_EQ(scene.pairs.size(), 2u);
+  EXPECT_EQ(scene.pairs[0].second, 1u);  // foot - mast is enabled, foot - head is not
+  EXPECT_EQ(scene.pairs[1].first, 1u);
+  EXPECT_THAT(scene.yaml, HasSubstr("reason: \"disabled by default in the SRDF\""));
+  EXPECT_THAT(cell().notes, testing::Contains(HasSubstr("1 pairs are disabled by default")));
+  // What is disabled one by one stays so.
+  write("little_description/urdf/little.srdf",
+        "<robot name=\"little\">\n"
+        "  <disable_default_collisions link=\"head\"/>\n"
+        "  <enable_collisions link1=\"foot\" link2=\"mast\"/>\n"
+        "  <disable_collisions link1=\"mast\" link2=\"foot\"/>\n"
+        "  <enable_collisions link1=\"head\" link2=\"foot\"/>\n"
+        "</robot>\n");
+  EXPECT_EQ(this->scene().pairs.size(), 1u);
+}
+
+TEST_F(RobotCellFile, LinksThatDefaultsNameMustExist) {
+  write("little_description/urdf/little.srdf",
+        "<robot name=\"little\">\n  <disable_default_collisions link=\"fot\"/>\n</robot>\n");
+  EXPECT_THAT(fault(), HasSubstr("little.srdf:2: found the link 'fot'"));
+}
+
+TEST_F(RobotCellFile, ACapsuleIsOneWithItsEndsAlongZ) {
+  std::string text = kUrdf;
+  const std::string sphere = "<sphere radius=\"0.12\"/>";
+  text.replace(text.find(sphere), sphere.size(), "<capsule radius=\"0.12\" length=\"1\"/>");
+  write("little_description/urdf/little.urdf", text);
+  const Scene scene = this->scene();
+  const ConvexPolyhedron& capsule = scene.objects.at(1).parts.at(1).shape;
+  EXPECT_EQ(capsule.radius, 0.12);
+  ASSERT_EQ(capsule.anchors.size(), 2u);
+  EXPECT_EQ((capsule.anchors[0] - capsule.anchors[1]).cwiseAbs(), Vec3(0, 0, 1));
+  EXPECT_THAT(scene.yaml,
+              HasSubstr("capsule: {from: [0, 0, -0.5], to: [0, 0, 0.5], radius: 0.12}"));
+}
+
+TEST_F(RobotCellFile, APlanningSceneIsWatchedAgainstTheRobot) {
+  write("shelf.scene",
+        "shelf\n* board\n0 0 1\n0 0 0 1\n1\nbox\n2 1 0.1\n0 0 0\n0 0 0 1\n"
+        "0 0 0 0\n0\n.\n");
+  options_.scenes = {root_ / "shelf.scene"};
+  const Scene scene = this->scene();
+  ASSERT_EQ(scene.objects.size(), 4u);
+  const auto board = std::ranges::find(scene.objects, "board", &Object::name);
+  ASSERT_NE(board, scene.objects.end());
+  EXPECT_EQ(board->groups, std::vector<std::string>{"shelf"});
+  EXPECT_EQ(std::ranges::count_if(scene.pairs,
+                                  [&](const ObjectPair& pair) {
+                                    return &scene.objects[pair.first] == &*board ||
+                                           &scene.objects[pair.second] == &*board;
+                                  }),
+            3);
 }
 
 }  // namespace

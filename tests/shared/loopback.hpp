@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance::test {
 

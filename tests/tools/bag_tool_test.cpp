@@ -33,7 +33,7 @@ std::vector<RosMessage> folding(double most) {
   return messages;
 }
 
-class BagTool : public testing::Test {
+class BagTool : public RunsPrograms {
  protected:
   BagTool() {
     write_text(folder / "R.urdf", kScaraUrdf);
@@ -41,21 +41,11 @@ class BagTool : public testing::Test {
     std::filesystem::create_directory(folder / "bag");
     write_sqlite_bag(folder / "bag/bag_0.db3", folding(1.5));
   }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-  int run(const std::string& program, const std::vector<std::string>& arguments) {
-    ChildProcess child(program, arguments);
-    const int status = child.wait();
-    output = child.output();
-    return status;
-  }
   int replay(const std::string& bag, const std::vector<std::string>& more) {
     return run(
         kReplay,
         with({"--offline", "--urdf", path("R.urdf"), "--srdf", path("R.srdf"), path(bag)}, more));
   }
-
-  ScratchFolder folder;
-  std::string output;
 };
 
 TEST_F(BagTool, OneLineIsARegressionTestOfARobotProgram) {
@@ -161,7 +151,7 @@ TEST_F(BagTool, DaemonRecordsWhatItIsToldAndTheFilesCompareAsOne) {
 TEST_F(BagTool, RecorderTakesTheSameOptions) {
   EXPECT_EQ(2, run(kRecord, {"-o", path("a.mcap"), "--without", "catalogue"}));
   EXPECT_THAT(output, HasSubstr("found 'catalogue'; expected 'poses', 'joint_states', "
-                                "'distances', 'zones' or 'health'"));
+                                "'distances', 'zones', 'health', 'separation' or 'gradients'"));
   const Scene scene = bench_cell();
   record_run(scene, folder / "run.mcap", {.ticks = 60});
   const auto where = dds_arguments(own_dds());

@@ -2,17 +2,14 @@
 // the log says.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 #include <thread>
 
-#include "tests/monitor/scara_cell.hpp"
 #include "tests/shared/ros_joints.hpp"
-#include "tests/shared/scratch_folder.hpp"
-#include "tests/tools/running_cell.hpp"
+#include "tests/tools/watched_daemon.hpp"
 
 namespace clearance::test {
 namespace {
@@ -20,72 +17,20 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> kNames = {"shoulder", "elbow", "push"};
 
-class DaemonJoints : public testing::Test {
+class DaemonJoints : public WatchedDaemon {
  protected:
   // `keys`: more keys of the robot.
   void start(const std::string& keys = ", age_limit_ms: 200") {
-    write_text(folder / "scara.urdf", kScaraUrdf);
-    cell = folder / "cell.yaml";
-    write_text(cell,
-               "name: joints\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
-               "robots: [{name: arm, urdf: scara.urdf" +
-                   keys +
-                   "}]\n"
-                   "objects:\n"
-                   "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
-                   "pairs:\n  - {between: [arm, wall], publish: true}\n"
-                   "  - {between: [arm, arm], publish: false}\n");
-    scene = std::get<Scene>(read_cell(cell));
-    distances.emplace(client, scene);
-    daemon.emplace(kDaemon, with({cell}, dds_arguments(dds)));
-    distances->settle();
+    watch(
+        "name: joints\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+        "robots: [{name: arm, urdf: scara.urdf" +
+        keys +
+        "}]\n"
+        "objects:\n"
+        "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
+        "pairs:\n  - {between: [arm, wall], publish: true}\n"
+        "  - {between: [arm, arm], publish: false}\n");
   }
-
-  // Every `period_ms` until `is_so`, or the time is over.
-  template <class Step, class IsSo>
-  bool step_until(int period_ms, const Step& step, const IsSo& is_so, int seconds = 20) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-    while (std::chrono::steady_clock::now() < end) {
-      step();
-      std::this_thread::sleep_for(std::chrono::milliseconds(period_ms));
-      take();
-      if (is_so()) return true;
-    }
-    return false;
-  }
-  auto logged(const std::string& text) {
-    return [this, text] { return daemon->wrote(text); };
-  }
-  void take() {
-    void* pointer = &*report;
-    dds_sample_info_t info{};
-    while (dds_take(distances->reader(), &pointer, &info, 1, 1) == 1) {
-    }
-  }
-  // As of the last report.
-  const clearance_msg_PairDistance& pair(const std::string& link) const {
-    std::uint32_t place = 0;  // in the report, which has the published ones only
-    for (const ObjectPair& of : scene.pairs) {
-      if (!of.publish) continue;
-      if (scene.objects[of.first].name == link || scene.objects[of.second].name == link)
-        return report->pairs._buffer[place];
-      ++place;
-    }
-    ADD_FAILURE() << "no pair of " << link;
-    return report->minimum;
-  }
-  bool is(const std::string& link, PairStatus status) const {
-    return report->pairs._length > 0 && pair(link).status == static_cast<std::uint8_t>(status);
-  }
-
-  ScratchFolder folder;
-  std::filesystem::path cell;
-  Scene scene;
-  DdsOptions dds = own_dds();
-  Participant client{dds};
-  std::optional<Distances> distances;
-  Sample<clearance_msg_Distances> report;
-  std::optional<ChildProcess> daemon;
 };
 
 // Wall at x = 5. Of the upper link, at the angle 0, the end is at 0.9 m.

@@ -1,4 +1,5 @@
-// Reports above 20 kB between two machines, on a network that loses one packet in ten.
+// Two machines: reports above 20 kB on a network that loses one packet in ten, and programs that
+// know nothing of our configuration.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -83,6 +84,67 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   EXPECT_EQ(wire.ip_fragments(), 0u);
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+// A participant of Cyclone as it comes, on another machine, with nothing that we configure.
+bool hears_health_by_default(std::uint32_t domain) {
+  const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
+  EXPECT_GT(participant, 0);
+  const dds_entity_t of = dds_create_topic(participant, &clearance_msg_Health_desc,
+                                           "clearance/health", nullptr, nullptr);
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  const dds_entity_t reader = dds_create_reader(participant, of, qos, nullptr);
+  dds_delete_qos(qos);
+  Sample<clearance_msg_Health> health;
+  void* pointer = &*health;
+  dds_sample_info_t info{};
+  const bool came =
+      eventually([&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+  dds_delete(participant);
+  return came;
+}
+
+TEST(Network, OfEveryProgramWithoutAConfigurationIsTheDefaultInterface) {
+  test::NetworkNamespace robot(1), panel(2);
+  for (const auto* machine : {&robot, &panel}) {
+    if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
+  }
+  test::LossyWire wire(robot.frames(), panel.frames());
+  const test::CellFile cell(test::small_cell("default"));
+  constexpr std::uint32_t kDomain = 117;  // that nothing in this process has configured
+  std::optional<ChildProcess> daemon;
+  robot.run([&] {
+    daemon.emplace(test::kDaemon, std::vector<std::string>{cell.path(), "--interface", "default",
+                                                           "--domain", std::to_string(kDomain)});
+  });
+  bool came = false;
+  panel.run([&] { came = hears_health_by_default(kDomain); });
+  EXPECT_TRUE(came) << daemon->output();
+  EXPECT_TRUE(daemon->wrote("every program without a configuration reaches it"))
+      << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+// Here a tag, which only programs share that were given it.
+TEST(Network, OfCyclonesOwnVariableIsJoined) {
+  const test::CellFile cell(test::small_cell("variable"));
+  const auto arguments = test::dds_arguments(test::own_dds());
+  const test::ChildOptions tagged{
+      .environment = {{"CYCLONEDDS_URI", "<CycloneDDS><Domain><Discovery><Tag>clearance-test-" +
+                                             std::to_string(getpid()) +
+                                             "</Tag></Discovery></Domain></CycloneDDS>"}}};
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, arguments), tagged);
+  ChildProcess stranger(test::kWatch, test::with({"--plain"}, arguments));
+  ChildProcess friendly(test::kWatch, test::with({"--plain"}, arguments), tagged);
+  EXPECT_TRUE(eventually([&] { return friendly.wrote("cycle "); }))
+      << daemon.output() << friendly.output();
+  EXPECT_FALSE(stranger.wrote("cycle ")) << stranger.output();
+  EXPECT_TRUE(daemon.wrote(", then CYCLONEDDS_URI")) << daemon.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/monitor/bags/ros_bags.hpp"
 #include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/base64.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -81,24 +82,8 @@ class OfficialWriter : public testing::Test {
 };
 
 TEST_F(OfficialWriter, MakesTheMessagesThatOurTestsMake) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string expected;
-  for (const RosMessage& message : both.ours) {
-    for (std::size_t i = 0; i < message.cdr.size(); i += 3) {
-      std::uint32_t bits = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto byte =
-            i + k < message.cdr.size() ? std::to_integer<std::uint32_t>(message.cdr[i + k]) : 0u;
-        bits = bits << 8 | byte;
-      }
-      for (std::size_t k = 0; k < 4; ++k) {
-        const bool pad = i + k > message.cdr.size();
-        expected += pad ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
-      }
-    }
-    expected += '\n';
-  }
+  for (const RosMessage& message : both.ours) expected += base64(message.cdr) + '\n';
   EXPECT_EQ(expected, write(both.spec, ""));
 }
 

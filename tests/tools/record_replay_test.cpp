@@ -43,22 +43,13 @@ std::string text_of(const Kept& message) {
   return {reinterpret_cast<const char*>(message.cdr.data()), message.cdr.size()};
 }
 
-class RecordReplay : public testing::Test {
+class RecordReplay : public RunsPrograms {
  protected:
   RecordReplay() {
     write_text(folder / "cell.yaml", kCell);
     write_text(folder / "log.csv", descending_log());
   }
-  std::string path(const std::string& name) const { return (folder / name).string(); }
-
-  // Exit code; what it wrote goes to `output`.
-  int run(const std::string& program, const std::vector<std::string>& arguments) {
-    ChildProcess child(program, arguments);
-    const int status = child.wait();
-    output = child.output();
-    return status;
-  }
-  // The same with a signal that waits for the program before it has begun.
+  // run() with a signal that waits for the program before it has begun.
   int run_stopped(int signal, const std::string& program,
                   const std::vector<std::string>& arguments) {
     sigset_t both, before;
@@ -91,9 +82,6 @@ class RecordReplay : public testing::Test {
     recorder_output = recorder.output();
     ASSERT_EQ(0, status) << recorder_output;
   }
-
-  ScratchFolder folder;
-  std::string output;
 };
 
 TEST_F(RecordReplay, PoseLogBecomesARecordingThatReplaysIntoATable) {

@@ -15,6 +15,7 @@
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 
@@ -41,6 +42,22 @@ class CellFile {
 
  private:
   std::string path_;
+};
+
+// Runs programs on files in a folder of its own.
+class RunsPrograms : public testing::Test {
+ protected:
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
+  // Exit code; what it wrote goes to `output`.
+  int run(const std::string& program, const std::vector<std::string>& arguments) {
+    ChildProcess child(program, arguments);
+    const int status = child.wait();
+    output = child.output();
+    return status;
+  }
+
+  ScratchFolder folder;
+  std::string output;
 };
 
 // Two boxes that swing over a floor; slow enough for any machine and sanitizer.

@@ -143,6 +143,29 @@ TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   EXPECT_NE(output_.find("2 objects, 1 with a hull"), std::string::npos) << output_;
 }
 
+TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
+  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
+                                            "v 0.9 0.5 1\nv 1.1 0.5 1\n"
+                                            "f 1 2 3\nf 1 3 4\nf 1 2 6\nf 1 6 5\nf 3 4 5\nf 3 5 6\n"
+                                            "f 2 3 6\nf 1 4 5\n";
+  ASSERT_EQ(run({"--reduce", file("tent.obj"), "--tolerance", "10", "--json"}), 0) << output_;
+  const auto body = nlohmann::json::parse(output_).at(0);
+  EXPECT_EQ(body["body"], "tent");
+  int chosen = 0;
+  for (const auto& model : body["models"]) {
+    chosen += model["chosen"].get<bool>() ? 1 : 0;
+    EXPECT_GE(model["error"].get<double>(), 0.0);
+  }
+  EXPECT_EQ(chosen, 1);
+  EXPECT_TRUE(body["models"][0]["chosen"]);  // the sphere is cheapest
+}
+
+TEST_F(SceneProgram, ReducesNothingThatIsMissing) {
+  EXPECT_EQ(run({"--reduce", file("none.obj")}), 2);
+  EXPECT_EQ(run({"--reduce", file("robot.urdf"), "-o", file("cell.yaml")}), 2);
+  EXPECT_EQ(run({"--reduce", file("robot.urdf"), "--tolerance", "1", "--facets", "8"}), 2);
+}
+
 TEST_F(SceneProgram, ReportsTheErrorsOfACellThatIsNoGood) {
   std::ofstream(directory_ / "cell.yaml") << "name: empty\n";
   EXPECT_EQ(run({"--report", file("cell.yaml")}), 3);
@@ -155,6 +178,74 @@ TEST_F(SceneProgram, WrongUsageEndsWithTwo) {
   EXPECT_EQ(run({"--warehouse", "10", "-o", file("cell.yaml")}), 2);
   EXPECT_EQ(run({"--report", "x.yaml", "--warehouse", "100"}), 2);
   EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--package", "x"}), 2);
+}
+
+// A post, a slide beside it, a tip that the slide moves through the post, and what is far from all
+// of them.
+std::string crane_urdf() {
+  const auto link = [](const std::string& name, const std::string& at, const std::string& radius) {
+    return "<link name=\"" + name + "\"><collision><origin xyz=\"" + at +
+           "\"/><geometry><sphere radius=\"" + radius + "\"/></geometry></collision></link>\n";
+  };
+  const auto joint = [](const std::string& name, const std::string& parent,
+                        const std::string& child, const std::string& limits) {
+    return "<joint name=\"" + name + "\" type=\"prismatic\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/><axis xyz=\"1 0 0\"/><limit " + limits +
+           " velocity=\"1\"/></joint>\n";
+  };
+  return "<robot name=\"crane\">\n" + link("post", "0 0 0", "0.5") + link("slide", "0 3 0", "0.1") +
+         link("tip", "0 0 0", "0.1") + link("far", "0 9 0", "0.1") +
+         joint("a", "post", "slide", "lower=\"0\" upper=\"0.1\"") +
+         joint("b", "slide", "tip", "lower=\"-2\" upper=\"2\"") +
+         joint("c", "tip", "far", "lower=\"0\" upper=\"1\"") + "</robot>\n";
+}
+
+TEST_F(SceneProgram, ProposesPairsThatMayTouchBySampling) {
+  std::ofstream(directory_ / "crane.urdf") << crane_urdf();
+  const std::vector<std::string> arguments = {"--from-urdf", file("crane.urdf"), "--allow",
+                                              "--samples", "2000"};
+  ASSERT_EQ(run(arguments), 0) << output_;
+  const std::string proposed = output_;
+  for (const char* pair : {"link1=\"post\" link2=\"slide\" reason=\"Adjacent\"",
+                           "link1=\"slide\" link2=\"tip\" reason=\"Adjacent\"",
+                           "link1=\"tip\" link2=\"far\" reason=\"Adjacent\"",
+                           "link1=\"post\" link2=\"tip\" reason=\"Default\"",
+                           "link1=\"post\" link2=\"far\" reason=\"Never\"",
+                           "link1=\"slide\" link2=\"far\" reason=\"Never\""}) {
+    EXPECT_NE(proposed.find(pair), std::string::npos) << pair << " in\n" << proposed;
+  }
+  // The tip's joint is within 0.6 m of the post in 0.3 of its range.
+  const std::size_t at =
+      proposed.find("in contact in", proposed.find("link2=\"tip\" reason=\"Def"));
+  EXPECT_NEAR(std::stod(proposed.substr(at + 14)), 600.0, 60.0) << proposed;
+  ASSERT_EQ(run(arguments), 0);
+  EXPECT_EQ(output_, proposed);  // the same seed
+}
+
+TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
+  std::ofstream(directory_ / "crane.urdf") << crane_urdf();
+  std::ofstream(directory_ / "crane.srdf")
+      << "<robot name=\"crane\">\n"
+         "<disable_collisions link1=\"post\" link2=\"slide\" reason=\"Adjacent\"/>\n"
+         "<disable_collisions link1=\"slide\" link2=\"tip\" reason=\"Adjacent\"/>\n"
+         "<disable_collisions link1=\"tip\" link2=\"far\" reason=\"Adjacent\"/>\n"
+         "<disable_collisions link1=\"post\" link2=\"far\" reason=\"Never\"/>\n"
+         "<disable_collisions link1=\"slide\" link2=\"far\" reason=\"Never\"/>\n</robot>\n";
+  ASSERT_EQ(run({"--from-urdf", file("crane.urdf"), "--allow", "--srdf", file("crane.srdf"), "--as",
+                 "cell", "--samples", "500", "-o", file("allowed.yaml")}),
+            0)
+      << output_;
+  EXPECT_NE(output_.find("5 of 6 pairs as in the SRDF: 5 left out by both, 0 watched by both"),
+            std::string::npos)
+      << output_;
+  EXPECT_NE(output_.find("post - tip: watched by the SRDF, Default here; in contact in "),
+            std::string::npos)
+      << output_;
+  std::ifstream written(directory_ / "allowed.yaml");
+  const std::string text((std::istreambuf_iterator<char>(written)), {});
+  EXPECT_NE(text.find("- {between: [\"post\", \"far\"], reason: \"Never: in contact in 0 of 500 "),
+            std::string::npos)
+      << text;
 }
 
 }  // namespace

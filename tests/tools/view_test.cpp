@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -195,6 +196,64 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
   EXPECT_EQ(first["cycle"], second["cycle"]);
   EXPECT_EQ(first["minimum"], second["minimum"]);
   EXPECT_EQ(first["pairs"], second["pairs"]);
+}
+
+// What the reports and zones of the recording say up to this time, s after the first report.
+struct Before {
+  std::uint64_t cycle = 0;
+  bool zone_active = false;
+  double least = kInfinity;          // m
+  double least_of_pair = kInfinity;  // of pair 2
+};
+Before before(const std::string& file, double time_s) {
+  RecordingReader reader(file);
+  RecordedMessage message;
+  CdrDecoder decoder;
+  Sample<clearance_msg_Distances> report;
+  Sample<clearance_msg_ZoneState> zone;
+  Before found;
+  std::int64_t begin_ns = 0;
+  while (reader.next(message)) {
+    if (begin_ns != 0 && message.log_ns > begin_ns + std::llround(1e9 * time_s)) break;
+    if (message.kind == TopicKind::kZones && decoder.decode(message.cdr, zone)) {
+      found.zone_active = zone->active;
+    } else if (message.kind == TopicKind::kDistances && decoder.decode(message.cdr, report)) {
+      if (begin_ns == 0) begin_ns = message.log_ns;
+      found.cycle = report->cycle;
+      if (!report->minimum_known || report->minimum.status >= 5) continue;
+      found.least = std::min(found.least, report->minimum.distance);
+      found.least_of_pair = std::min(found.least_of_pair, report->pairs._buffer[2].distance);
+    }
+  }
+  return found;
+}
+
+double least_in(const json& curve) {
+  double least = kInfinity;
+  for (const json& value : curve) {
+    if (!value.is_null()) least = std::min(least, value.get<double>());
+  }
+  return least;
+}
+
+TEST_F(ViewOfARecording, AJumpBringsTheZonesAndTheHistoryOfItsMoment) {
+  View view({cell.path(), "--replay", file});
+  ChildProcess client("/usr/bin/env",
+                      {"node", kScripts + "/jump.mjs", view.socket(), "1.1", "0.3", "0.9", "0.5"});
+  EXPECT_EQ(client.wait(), 0) << client.output();
+  const std::vector<json> said = lines_of(client);
+  ASSERT_EQ(said.size(), 4u) << client.output();
+  for (const json& each : said) {
+    SCOPED_TRACE(each["time"].dump());
+    const Before truth = before(file, each["time"]);
+    EXPECT_EQ(each["cycle"], truth.cycle);
+    EXPECT_EQ(each["zone"]["active"], truth.zone_active);
+    const json& history = each["history"];
+    ASSERT_GT(history["s"].size(), 20u);
+    EXPECT_LE(history["s"].back(), each["time"].get<double>() + 0.02);
+    EXPECT_EQ(least_in(history["distance"]), truth.least);
+    EXPECT_NEAR(least_in(history["pairs"]["2"]), truth.least_of_pair, 1e-6);
+  }
 }
 
 TEST_F(ViewOfARecording, WritesPicturesOfTheTimesThatAreAskedFor) {

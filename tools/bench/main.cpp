@@ -1,8 +1,10 @@
 // clearance-bench: how fast, and how exact, on this machine. Google Benchmark's own options apply.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,7 +15,7 @@
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
-#include "tools/bench/ellipsoids.hpp"
+#include "tools/bench/chapter5/rows.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
@@ -30,11 +32,20 @@ constexpr const char* kHelp =
     "  tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order;\n"
     "                     also boxes, parallel-boxes and links\n"
     "  cold/f2 ... links  the same without what the last query left\n"
-    "  curved/tracked/A-B one query of two bodies of these kinds: ellipsoid, cylinder or cone "
-    "with\n"
-    "                     one of these, box, link, capsule or sphere; curved/cold/A-B\n"
-    "  ellipsoids/HOW/D   the thesis's crossed ellipsoids D m apart: ours, cold; alternating, "
-    "§5.2\n"
+    "  curved/tracked/A-B one query of two bodies of these kinds, of which one is curved: "
+    "ellipsoid,\n"
+    "                     cylinder, cone, truncated_cone with one of these, box, link, capsule,\n"
+    "                     sphere or rounded_box; pair/tracked/A-B of two that are not; "
+    ".../cold/...\n"
+    "  ellipsoids/HOW/D   the thesis's crossed ellipsoids D m apart: ours, ours-tracked, its "
+    "methods\n"
+    "                     (alternating, facet-balls, refinement-4, refinement-7, hybrid,\n"
+    "                     polyhedron-ellipsoid), free-margin, gjk, fcl, bullet ...;\n"
+    "                     ellipsoids/HOW/to-1e-4/D the same up to that error of both points\n"
+    "  facet-ball/HOW/15  DQP3 on facet-balls around them: cold, tracked, neighbours-...\n"
+    "  point/HOW/FAMILY   the nearest point of an ellipsoid: dominant, as-printed, newton; errors "
+    "are\n"
+    "                     shares of the size\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
@@ -82,9 +93,12 @@ constexpr const char* kHelp =
     "                     facet-balls and variant/moved/cold, in two to four minutes,\n"
     "                     and writes\n"
     "                     DIR/report.md, the tables, and DIR/pareto.svg, error against time\n"
+    "  --curved           runs curved/, pair/, ellipsoids/, facet-ball/, point/ and their peers\n"
     "  --tick --report DIR  runs ticks and sweeps, which takes as long, and writes DIR/ticks.md "
     "and\n"
     "                     DIR/ticks.svg, cost against the number of pairs, speed and density\n"
+    "  --curved --report DIR  runs these and writes DIR/curved.md, every pair of shapes and the\n"
+    "                     thesis's chapter 5, and DIR/curved.svg, error against time\n"
     "\n"
     "example: clearance-bench --benchmark_filter='^tracked/(f|v)' --benchmark_repetitions=5\n"
     "         clearance-bench --report build/report\n"
@@ -97,25 +111,41 @@ void register_all() {
   register_batches();
   register_variants();
   register_adjacency();
-  register_ellipsoids();
+  register_chapter5();
   register_peers();
   register_cells(CLEARANCE_CELLS);
   register_ticks();
 }
 
-// What --report asks of Google Benchmark, unless the caller asks for something else.
-std::vector<std::string> report_options(bool ticks) {
-  if (ticks) return {std::string("--benchmark_filter=") + clearance::bench::kTickRows};
-  return {std::string("--benchmark_filter=") + clearance::bench::kReportRows,
-          "--benchmark_min_time=0.02", "--benchmark_repetitions=3",
-          "--benchmark_enable_random_interleaving=true"};
+// What can be measured and reported as one.
+struct Part {
+  const char* option;
+  const char* rows;  // of the report
+  bool (*write)(const std::filesystem::path& folder, const clearance::bench::Figures& figures);
+};
+constexpr Part kQueries{"", clearance::bench::kReportRows, clearance::bench::write_report};
+constexpr Part kParts[] = {
+    {"--tick", clearance::bench::kTickRows, clearance::bench::write_tick_report},
+    {"--curved", clearance::bench::kCurvedRows, clearance::bench::write_curved_report},
+};
+
+// What a part asks of Google Benchmark, unless the caller asks for something else.
+std::vector<std::string> options_of(const Part& part, bool report) {
+  const bool ticks = part.write == clearance::bench::write_tick_report;
+  if (ticks && !report) return {"--benchmark_filter=^tick/"};
+  std::vector<std::string> options{std::string("--benchmark_filter=") + part.rows};
+  if (report && !ticks) {
+    options.insert(options.end(), {"--benchmark_min_time=0.02", "--benchmark_repetitions=3",
+                                   "--benchmark_enable_random_interleaving=true"});
+  }
+  return options;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   std::optional<std::filesystem::path> report;
-  bool ticks = false;
+  const Part* part = nullptr;
   std::vector<std::string> options, others;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -124,8 +154,11 @@ int main(int argc, char** argv) {
       return 0;
     }
     if (word == "--help" || word == "-h") std::fputs(kHelp, stdout);
-    if (word == "--tick") {
-      ticks = true;
+    const Part* const named =
+        std::find_if(std::begin(kParts), std::end(kParts),
+                     [&](const Part& candidate) { return word == candidate.option; });
+    if (named != std::end(kParts)) {
+      part = named;
     } else if (word != "--report") {
       others.emplace_back(word);
     } else if (i + 1 < argc) {
@@ -135,11 +168,8 @@ int main(int argc, char** argv) {
       return 2;
     }
   }
-  if (report) {
-    options = report_options(ticks);
-  } else if (ticks) {
-    options = {"--benchmark_filter=^tick/"};
-  }
+  if (report && part == nullptr) part = &kQueries;
+  if (part != nullptr) options = options_of(*part, report.has_value());
   options.insert(options.end(), others.begin(), others.end());
   std::vector<char*> words{argv[0]};
   for (std::string& option : options) words.push_back(option.data());
@@ -150,8 +180,7 @@ int main(int argc, char** argv) {
   if (report) {
     clearance::bench::Collector collector;
     if (benchmark::RunSpecifiedBenchmarks(&collector) == 0) return 1;
-    const auto write = ticks ? clearance::bench::write_tick_report : clearance::bench::write_report;
-    if (!write(*report, collector.figures())) return 1;
+    if (!part->write(*report, collector.figures())) return 1;
   } else if (benchmark::RunSpecifiedBenchmarks() == 0) {
     return 1;
   }

@@ -14,13 +14,17 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "tools/bench/chapter5/crossed_ellipsoids.hpp"
 #include "tools/bench/workload.hpp"
 
 namespace clearance::bench {
@@ -155,12 +159,28 @@ void register_rows(const std::string& prefix) {
   }
 }
 
-// PREFIXcurved/tracked/NAME and PREFIXcurved/cold/NAME for every workload of curved bodies.
+// PREFIXcurved/tracked/A-B, PREFIXpair/cold/A-B ... for every pair of kinds but `lacking` ones, of
+// which the solver has no shape.
 template <class Solver>
-void register_curved_rows(const std::string& prefix) {
-  for (const std::string& name : curved_workload_names()) {
-    register_row<Solver>(fmt::format("{}curved/tracked/{}", prefix, name), name, kTracked);
-    register_row<Solver>(fmt::format("{}curved/cold/{}", prefix, name), name, kCold);
+void register_kind_rows(const std::string& prefix,
+                        std::initializer_list<std::string_view> lacking = {}) {
+  for (const KindPair& pair : kind_pairs()) {
+    const auto lacks = [&](const std::string& kind) {
+      return std::find(lacking.begin(), lacking.end(), kind) != lacking.end();
+    };
+    if (lacks(pair.a) || lacks(pair.b)) continue;
+    const std::string group = prefix + pair.group();
+    register_row<Solver>(fmt::format("{}/tracked/{}", group, pair.load()), pair.load(), kTracked);
+    register_row<Solver>(fmt::format("{}/cold/{}", group, pair.load()), pair.load(), kCold);
+  }
+}
+
+// ellipsoids/WHO/D: the crossed ellipsoids of chapter 5, cold.
+template <class Solver>
+void register_crossed_rows(const std::string& who) {
+  for (const double separation : kSeparations) {
+    register_row<Solver>(fmt::format("ellipsoids/{}/{}", who, separation),
+                         fmt::format("crossed/{}", separation), kCold);
   }
 }
 

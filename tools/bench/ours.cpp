@@ -33,7 +33,7 @@ class Ours {
 
 void register_ours() {
   register_rows<Ours>("");
-  register_curved_rows<Ours>("");
+  register_kind_rows<Ours>("");
   register_intervals<Ours>("");
   for (const std::string& load : overlap_names()) {
     register_row<Ours>(fmt::format("overlap/tracked/{}", load), load, kTracked);

@@ -8,6 +8,7 @@
 
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
+#include "tools/bench/chapter5/crossed_ellipsoids.hpp"
 #include "tools/bench/overlaps.hpp"
 
 namespace clearance::bench {
@@ -105,8 +106,7 @@ std::vector<Trajectory> sliding_boxes() {
   return all;
 }
 
-constexpr const char* kCurvedKinds[] = {"ellipsoid", "cylinder", "cone"};
-constexpr const char* kOtherKinds[] = {"box", "link", "capsule", "sphere"};
+constexpr int kCurvedKinds = 4;  // of kKinds, the first ones
 
 ConvexPolyhedron body_of_kind(const std::string& kind, Random& random) {
   const auto length = [&] { return random.uniform(0.05, 0.25); };
@@ -117,6 +117,9 @@ ConvexPolyhedron body_of_kind(const std::string& kind, Random& random) {
   if (kind == "ellipsoid") return made(ellipsoid({x, y, z}));
   if (kind == "cylinder") return made(cylinder(x, y));
   if (kind == "cone") return made(cone(x, y));
+  if (kind == "truncated_cone") return made(truncated_cone(x, z, y));
+  if (kind == "rounded_box")
+    return made(rounded_by(0.5 * x, made(box({0.5 * x, 0.5 * y, 0.5 * z}))));
   if (kind == "capsule") return made(segment({0, 0, -y}, {0, 0, y}, x));
   if (kind == "sphere") return made(point(Vec3::Zero(), x));
   throw std::invalid_argument(fmt::format("there is no kind of body named '{}'", kind));
@@ -134,7 +137,16 @@ std::vector<Trajectory> passing_kinds(const std::string& kind_a, const std::stri
   return all;
 }
 
+std::vector<Trajectory> crossed(double separation) {
+  const EllipsoidPair pair = crossed_pair(separation);
+  const auto made = [](const Vec3& axes) {
+    return std::make_shared<const ConvexPolyhedron>(std::get<ConvexPolyhedron>(ellipsoid(axes)));
+  };
+  return {{made(pair.axes_a), made(pair.axes_b), {{Pose{}, Pose{pair.apart}}}}};
+}
+
 std::vector<Trajectory> trajectories(const std::string& name) {
+  if (name.starts_with("crossed/")) return crossed(std::stod(name.substr(8)));
   if (const std::size_t dash = name.find('-');
       dash != std::string::npos && !name.ends_with("boxes")) {
     return passing_kinds(name.substr(0, dash), name.substr(dash + 1));
@@ -183,15 +195,18 @@ std::vector<std::string> workload_names() {
   return names;
 }
 
-std::vector<std::string> curved_workload_names() {
-  std::vector<std::string> names;
-  for (const auto* a = std::begin(kCurvedKinds); a != std::end(kCurvedKinds); ++a) {
-    for (const auto* b = a; b != std::end(kCurvedKinds); ++b) {
-      names.push_back(fmt::format("{}-{}", *a, *b));
-    }
-    for (const char* b : kOtherKinds) names.push_back(fmt::format("{}-{}", *a, b));
+std::string KindPair::group() const {
+  const auto* const end = std::begin(kKinds) + kCurvedKinds;
+  const bool curved = std::find(std::begin(kKinds), end, a) != end;  // B's come no earlier
+  return curved ? "curved" : "pair";
+}
+
+std::vector<KindPair> kind_pairs() {
+  std::vector<KindPair> pairs;
+  for (const auto* a = std::begin(kKinds); a != std::end(kKinds); ++a) {
+    for (const auto* b = a; b != std::end(kKinds); ++b) pairs.push_back({*a, *b});
   }
-  return names;
+  return pairs;
 }
 
 }  // namespace clearance::bench

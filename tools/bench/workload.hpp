@@ -36,9 +36,8 @@ struct Workload {
 //   each
 //                   other face to face
 //   links           hulls like those of robot links, 2 mm and 5 mrad a step
-//   A-B             of ellipsoid, cylinder, cone, capsule, sphere, box and link (a hull), one each
-//   of
-//                   0.1 to 0.5 m, on the trajectories of links
+//   A-B             of the kinds below, one each of 0.1 to 0.5 m, on the trajectories of links
+//   crossed/D       the standard test of chapter 5, one pose (chapter5/crossed_ellipsoids.hpp)
 // Made at first use and kept. Throws std::invalid_argument for any other name.
 [[nodiscard]] const Workload& workload(const std::string& name);
 
@@ -47,9 +46,21 @@ inline constexpr int kTrajectorySteps = 100;
 // The orders of §3.5.
 inline constexpr int kOrders[] = {2, 4, 6, 8, 10, 15, 20, 30, 40};
 
-// Every name but those of curved bodies and of overlaps.hpp, in the order of the tables.
+// Every name but those of pairs of kinds, crossed ellipsoids and overlaps.hpp, in the order of the
+// tables.
 [[nodiscard]] std::vector<std::string> workload_names();
-// Those of curved bodies: "ellipsoid-ellipsoid", ...
-[[nodiscard]] std::vector<std::string> curved_workload_names();
+
+// Kinds of bodies, the curved ones first. `link` is a hull, `rounded_box` a box of half the size
+// with a radius around it.
+inline constexpr const char* kKinds[] = {"ellipsoid", "cylinder", "cone",   "truncated_cone", "box",
+                                         "link",      "capsule",  "sphere", "rounded_box"};
+struct KindPair {
+  std::string a, b;
+  [[nodiscard]] std::string load() const { return a + "-" + b; }
+  // "curved" if one of them is, else "pair": rows are curved/tracked/A-B, pair/cold/A-B ...
+  [[nodiscard]] std::string group() const;
+};
+// Each with each.
+[[nodiscard]] std::vector<KindPair> kind_pairs();
 
 }  // namespace clearance::bench

@@ -28,6 +28,7 @@ class SceneChannels {
   void write_bodies(std::int64_t now_ns) { writer_.write(bodies_, now_ns, bodies_message(scene_)); }
 
   void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
+  void take(const clearance_msg_JointStates& states) { poses_.take(states); }
 
   // Written 60 times a second: more is not seen.
   void take(const clearance_msg_Distances& report, std::int64_t now_ns) {

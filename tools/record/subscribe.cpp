@@ -14,7 +14,7 @@
 
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
@@ -29,7 +29,7 @@ constexpr std::int32_t kDepth = 2048;
 constexpr std::size_t kAtOnce = 64;         // samples for each call
 constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other topics are checked
 
-// Readers of all six topics; what they take goes into the recording byte for byte.
+// Readers of all topics; what they take goes into the recording byte for byte.
 class Subscription {
  public:
   // `scene`: channels for 3D viewers, or null.
@@ -104,7 +104,11 @@ class Subscription {
     bytes_.resize(ddsi_serdata_size(taken.sample));
     ddsi_serdata_to_ser(taken.sample, 0, bytes_.size(), bytes_.data());
     ++counts_[index(kind)];
-    const bool is_report = look_into(kind) && kind == TopicKind::kDistances;
+    const bool decoded = look_into(kind);
+    const bool is_report = decoded && kind == TopicKind::kDistances;
+    if (decoded && kind == TopicKind::kGradients && !keeps_pairs(options_, gradients_->cycle)) {
+      return;
+    }
     if (is_report && !keeps_pairs(options_, report_->cycle)) {
       write_without_pairs(now_ns, taken.source_ns);
     } else {
@@ -112,6 +116,7 @@ class Subscription {
     }
     if (scene_ == nullptr) return;
     if (kind == TopicKind::kPoses) scene_->take(*batch_);
+    if (kind == TopicKind::kJointStates) scene_->take(*joints_);
     if (kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
   }
 
@@ -133,7 +138,7 @@ class Subscription {
     } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
     } else {
-      return false;
+      return kind == TopicKind::kGradients && decoder_.decode(bytes_, gradients_);
     }
     return true;
   }
@@ -150,6 +155,7 @@ class Subscription {
   Sample<clearance_msg_PoseBatch> batch_;
   Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_Gradients> gradients_;
   StreamGaps gaps_;
 };
 
@@ -191,7 +197,15 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   const RecordingOptions options = arguments.recording.options(arguments.force);
   RecordingWriter writer(arguments.out, topics, options);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
-  if (scene != nullptr) writer.catalogue(*make_catalogue(*scene), dds_time());
+  if (scene != nullptr) {
+    if (const std::string why = writer.attach(*scene); !why.empty()) {
+      print(stderr,
+            "clearance-record: the files that the cell names are not in the recording: {}. A "
+            "replay needs --cell\n",
+            why);
+    }
+    writer.catalogue(*make_catalogue(*scene), dds_time());
+  }
   std::optional<SceneChannels> channels;
   if (arguments.scene && scene != nullptr) channels.emplace(*scene, writer, dds_time());
   SceneChannels* const drawn = channels ? &*channels : nullptr;

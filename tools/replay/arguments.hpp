@@ -43,6 +43,7 @@ struct ReplayArguments {
   bool force = false;
   bool published = false;
   bool evaluate_all = false;
+  bool gradients = false;
   bool compare = false;
   std::string reference;            // a table of distances; empty: none
   std::optional<double> tolerance;  // m; of the reference

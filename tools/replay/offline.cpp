@@ -16,6 +16,7 @@
 #include "monitor/dds/robot_description.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
+#include "monitor/recording/recorded_cell.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_csv.hpp"
@@ -54,9 +55,9 @@ std::optional<CellResult> read_robot(const ReplayArguments& arguments) {
   return read_single_robot(robot);
 }
 
-// The cell given, or the one in the recording; its meshes are looked for beside that file.
+// The cell given, or the one in the recording.
 std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
-  if (!arguments.cell.empty()) return read_cell(arguments.cell);
+  if (!arguments.cell.empty()) return read_cell(arguments.cell, told_on_stderr());
   if (!arguments.robot.urdf.empty() || is_input_log(arguments.recording())) {
     return read_robot(arguments);
   }
@@ -65,12 +66,9 @@ std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
     say(found.error);
     return std::nullopt;
   }
-  const char* const yaml = found.catalogue ? (*found.catalogue)->cell_yaml : nullptr;
-  if (yaml == nullptr || *yaml == '\0') {
-    say("the recording holds no cell: give one with --cell");
-    return std::nullopt;
-  }
-  return parse_cell(yaml, arguments.recording());
+  std::optional<CellResult> cell = recorded_cell(arguments.recording(), found, told_on_stderr());
+  if (!cell) say("the recording holds no cell: give one with --cell");
+  return cell;
 }
 
 // NAME=POSITION, each once. False, after saying why, where one is not.
@@ -257,6 +255,7 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
           "with --cell");
     return kBadCell;
   }
+  scene->gradients = scene->gradients || arguments.gradients;
   return replay_in(*scene, arguments, stop);
 }
 

@@ -11,9 +11,9 @@
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/bags/input_log.hpp"
-#include "monitor/dds/participant.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/replay/arguments.hpp"
@@ -86,6 +86,10 @@ class Sender {
         return send(message, writer, zone_);
       case TopicKind::kHealth:
         return send(message, writer, health_);
+      case TopicKind::kSeparation:
+        return send(message, writer, separation_);
+      case TopicKind::kGradients:
+        return send(message, writer, gradients_);
     }
     return false;
   }
@@ -134,6 +138,8 @@ class Sender {
   Sample<clearance_msg_Distances> distances_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Health> health_;
+  Sample<clearance_msg_Separation> separation_;
+  Sample<clearance_msg_Gradients> gradients_;
 };
 
 // Sleeps until a time, but reacts to a signal within 20 ms. False: it was stopped.
@@ -302,7 +308,7 @@ int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
   }
   DdsOptions dds = arguments.dds.resolve();
   if (!arguments.cell.empty()) {
-    const auto scene = scene_or_errors(read_cell(arguments.cell));
+    const auto scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
     if (!scene) return kBadCell;
     dds = arguments.dds.resolve(*scene);
   }

@@ -2,31 +2,28 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <mutex>
 #include <string>
 #include <thread>
 
 #include "monitor/app/print.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/client/client.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
-#include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 
 // Measures the age of the newest pose when the first report that used it arrived here.
 class LatencyMeter {
  public:
-  LatencyMeter(Participant& participant, const std::string& topic)
-      : reader_(participant.reader(TopicKind::kDistances, topic)),
-        wait_(participant, {reader_}),
-        thread_([this] { run(); }) {}
+  explicit LatencyMeter(client::Connection& connection)
+      : reports_(connection), thread_([this] { run(); }) {}
   ~LatencyMeter() {
     stop_ = true;
-    wait_.wake();
     thread_.join();
   }
 
@@ -48,28 +45,21 @@ class LatencyMeter {
   void run() {
     name_thread("latency");
     while (!stop_) {
-      if (wait_.wait(DDS_INFINITY)) take_all();
+      if (reports_.next(std::chrono::milliseconds(50))) note(clock_.realtime_ns());
     }
   }
 
-  void take_all() {
-    dds_sample_info_t info;
-    void* sample = &*sample_;
-    while (dds_take(reader_, &sample, &info, 1, 1) > 0) {
-      const std::int64_t now = clock_.realtime_ns();
-      if (!info.valid_data || sample_->newest_pose_ns <= newest_) continue;
-      newest_ = sample_->newest_pose_ns;
-      const std::lock_guard lock(mutex_);
-      all_.add(now - newest_);
-      to_tick_.add(sample_->now_ns - newest_);
-      from_tick_.add(now - sample_->now_ns);
-    }
+  void note(std::int64_t now) {
+    if (reports_->newest_pose_ns <= newest_) return;
+    newest_ = reports_->newest_pose_ns;
+    const std::lock_guard lock(mutex_);
+    all_.add(now - newest_);
+    to_tick_.add(reports_->now_ns - newest_);
+    from_tick_.add(now - reports_->now_ns);
   }
 
   SystemClock clock_;
-  dds_entity_t reader_;
-  DataWait wait_;
-  Sample<clearance_msg_Distances> sample_;
+  client::Reports reports_;
   std::int64_t newest_ = 0;
   std::mutex mutex_;
   Histogram all_, to_tick_, from_tick_;

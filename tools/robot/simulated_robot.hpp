@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/simulation.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/client/client.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -25,10 +27,10 @@ struct SimulatedRobotOptions {
 
 class SimulatedRobot {
  public:
-  // The scene and the participant must outlive this. `joints` is not called in a cell without
+  // The scene and the connection must outlive this. `joints` is not called in a cell without
   // robots.
-  SimulatedRobot(const Scene& scene, Participant& participant, const SimulatedRobotOptions& options,
-                 JointMotion joints);
+  SimulatedRobot(const Scene& scene, client::Connection& connection,
+                 const SimulatedRobotOptions& options, JointMotion joints);
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
   SimulatedRobot& operator=(const SimulatedRobot&) = delete;
@@ -47,16 +49,18 @@ class SimulatedRobot {
   void send_poses(double t_s, std::int64_t stamp_ns);
   void send_joints(double t_s, std::int64_t stamp_ns);
   void send_joints_to_ros(std::int64_t stamp_ns);
-  void write(dds_entity_t writer, const void* sample);
 
   const Scene& scene_;
   JointMotion motion_;
   SystemClock clock_;
   std::vector<PoseAt> poses_;
-  PoseBatch batch_, joint_batch_;
-  Sample<clearance_msg_PoseBatch> sample_;
+  std::vector<clearance_msg_ObjectPose> sent_poses_;
+  std::vector<JointSample> joint_samples_;
+  std::vector<double> positions_, velocities_;  // of these
+  std::optional<client::PoseWriter> pose_writer_;
+  std::optional<client::JointWriter> joint_writer_;
   Sample<sensor_msgs_msg_dds__JointState_> ros_message_;
-  dds_entity_t pose_writer_ = 0, joint_writer_ = 0, ros_writer_ = 0;  // 0: none
+  dds_entity_t ros_writer_ = 0;  // 0: none
   std::uint64_t sent_ = 0, failed_ = 0;
 };
 

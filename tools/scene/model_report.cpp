@@ -36,6 +36,7 @@ struct Models {
   Size full;
   std::size_t curved = 0;   // parts that are no polyhedra
   double full_error = 0.0;  // rounding of its numbers, m
+  std::optional<double> mesh_error;
 };
 
 // Objects with the same parts share their hull, so its error is computed once.
@@ -81,10 +82,14 @@ class Judge {
   std::vector<std::pair<const ConvexPolyhedron*, double>> errors_;
 };
 
-std::vector<Models> all_models(const Scene& scene) {
+std::vector<Models> all_models(const Scene& scene, const MeshErrors& mesh_errors) {
   Judge judge(scene);
   std::vector<Models> all;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) all.push_back(judge.models(scene, i));
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    all.push_back(judge.models(scene, i));
+    const auto error = mesh_errors.find(scene.objects[i].name);
+    if (error != mesh_errors.end()) all.back().mesh_error = error->second;
+  }
   return all;
 }
 
@@ -104,25 +109,26 @@ std::string line(const Models& m, std::size_t width) {
     hull = fmt::format("{:>6} {:>6} {:>8} {:>6}", m.hull->size.facets, m.hull->size.vertices,
                        metres(m.hull->error), kib(m.hull->size.bytes));
   }
-  return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>6} {:>8.1e} {:>6}\n",
+  return fmt::format("{:<{}} | {:>8} {:>8} | {} | {:>5} {:>6} {:>6} {:>6} {:>8.1e} {:>8} {:>6}\n",
                      m.object->name, width, metres(m.sphere_radius), metres(m.sphere_error), hull,
                      m.object->parts.size(), m.curved, m.full.facets, m.full.vertices, m.full_error,
-                     kib(m.full.bytes));
+                     m.mesh_error ? metres(*m.mesh_error) : "-", kib(m.full.bytes));
 }
 
 }  // namespace
 
-std::string model_table(const Scene& scene) {
+std::string model_table(const Scene& scene, const MeshErrors& mesh_errors) {
   std::size_t width = 6;
   for (const Object& object : scene.objects) width = std::max(width, object.name.size());
   std::string text =
-      fmt::format("{:<{}} | {:^17} | {:^29} | {:^42}\n", "", width, "sphere", "hull", "full") +
+      fmt::format("{:<{}} | {:^17} | {:^29} | {:^51}\n", "", width, "sphere", "hull", "full") +
       fmt::format(
-          "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>6} {:>8} {:>6}\n",
+          "{:<{}} | {:>8} {:>8} | {:>6} {:>6} {:>8} {:>6} | {:>5} {:>6} {:>6} {:>6} {:>8} {:>8} "
+          "{:>6}\n",
           "object", width, "radius m", "error m", "facets", "verts", "error m", "KiB", "parts",
-          "curved", "facets", "verts", "error m", "KiB");
+          "curved", "facets", "verts", "error m", "mesh m", "KiB");
   std::size_t hull_bytes = 0, full_bytes = 0, hulls = 0;
-  for (const Models& m : all_models(scene)) {
+  for (const Models& m : all_models(scene, mesh_errors)) {
     text += line(m, width);
     full_bytes += m.full.bytes;
     if (!m.hull) continue;
@@ -136,17 +142,19 @@ std::string model_table(const Scene& scene) {
              "error: no point of a model is farther than this from the object's nearest "
              "part; of full ones, the rounding of their numbers\n"
              "curved: parts that are ellipsoids, cylinders or cones, without facets\n"
-             "-: unbounded, or one simple part, which is evaluated without a coarser model\n",
+             "mesh: no point of the parts' surface is farther than this from the meshes that they "
+             "contain\n"
+             "-: unbounded; one simple part, which is evaluated without a coarser model; no mesh\n",
              scene.objects.size(), hulls, kib(hull_bytes), kib(full_bytes));
 }
 
-std::string model_json(const Scene& scene) {
+std::string model_json(const Scene& scene, const MeshErrors& mesh_errors) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   const auto size = [](const Size& s) {
     return nlohmann::ordered_json{
         {"facets", s.facets}, {"vertices", s.vertices}, {"bytes", s.bytes}};
   };
-  for (const Models& m : all_models(scene)) {
+  for (const Models& m : all_models(scene, mesh_errors)) {
     nlohmann::ordered_json object{{"object", m.object->name}};
     if (m.sphere_radius < kInfinity) {
       object["sphere"] = {{"radius", m.sphere_radius}, {"error", m.sphere_error}};
@@ -159,6 +167,7 @@ std::string model_json(const Scene& scene) {
     object["full"]["parts"] = m.object->parts.size();
     object["full"]["curved"] = m.curved;
     object["full"]["error"] = m.full_error;
+    if (m.mesh_error) object["full"]["mesh_error"] = *m.mesh_error;
     all.push_back(std::move(object));
   }
   return fmt::format("{}\n", all.dump(1));

@@ -21,13 +21,23 @@ void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte
   }
 }
 
-// What must not replace each other: zones by id, batches by source. Poses are taken along the way.
+// What must not replace each other: zones by id, batches by source. Poses and joints are taken
+// along the way.
 std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
+  const auto of_source = [this,
+                          next = static_cast<std::uint32_t>(sources_.size())](const char* source) {
+    return sources_.try_emplace(source, next).first->second;
+  };
   if (kind == TopicKind::kZones && decoder_.decode(cdr, zone_)) return zone_->zone;
-  if (kind != TopicKind::kPoses || !decoder_.decode(cdr, batch_)) return 0;
-  poses_.take(*batch_);
-  const auto next = static_cast<std::uint32_t>(sources_.size());
-  return sources_.try_emplace(batch_->source, next).first->second;
+  if (kind == TopicKind::kPoses && decoder_.decode(cdr, batch_)) {
+    poses_.take(*batch_);
+    return of_source(batch_->source);
+  }
+  if (kind == TopicKind::kJointStates && decoder_.decode(cdr, joints_)) {
+    poses_.take(*joints_);
+    return of_source(joints_->source);
+  }
+  return 0;
 }
 
 void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
@@ -36,22 +46,36 @@ void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
                         Message{channel, key, time_ns, shared({cdr.begin(), cdr.end()})});
 }
 
+// Transforms before the report, so that a viewer has moved the bodies when its lines come.
 void Frame::publish(Server& server) {
-  if (!std::exchange(bodies_sent_, true)) keep(kBodies, 0, 0, bodies_message(scene_));
-  publish_scene(server);
+  use_report();
+  publish_if_wanted(server, kBodies, 0, [this] { return bodies_message(scene_); });
+  if (report_time_ns_ != 0) {
+    publish_if_wanted(server, kTransforms, report_time_ns_,
+                      [this] { return transforms_message(scene_, poses_, report_time_ns_); });
+    publish_if_wanted(server, kClosest, report_time_ns_,
+                      [this] { return closest_message(scene_, *report_, report_time_ns_); });
+  }
   for (const auto& [place, message] : new_) server.publish(message);
   new_.clear();
 }
 
-// Transforms before the report, so that a viewer has moved the bodies when its lines come.
-void Frame::publish_scene(Server& server) {
+void Frame::use_report() {
   const auto report = new_.find({channel(TopicKind::kDistances), 0});
   if (report == new_.end() || !decoder_.decode(*report->second.payload, report_)) return;
-  const std::int64_t time_ns = report_time_ns_ = report->second.time_ns;
+  report_time_ns_ = report->second.time_ns;
   revision_ = report_->scene_revision;
   poses_.use(*report_);
-  server.publish({kTransforms, 0, time_ns, shared(transforms_message(scene_, poses_, time_ns))});
-  server.publish({kClosest, 0, time_ns, shared(closest_message(scene_, *report_, time_ns))});
+  sent_.reset(kTransforms);
+  sent_.reset(kClosest);
+}
+
+template <class Make>
+void Frame::publish_if_wanted(Server& server, ChannelId channel, std::int64_t time_ns,
+                              const Make& make) {
+  if (sent_.test(channel) || !server.is_wanted(channel)) return;
+  sent_.set(channel);
+  server.publish({channel, 0, time_ns, shared(make())});
 }
 
 }  // namespace clearance::view

@@ -1,12 +1,15 @@
-// The newest of every topic, on its way to the viewers: what is published at once, and the
-// transforms and markers that follow from poses and report.
+// The newest of every topic, on its way to the viewers: what is passed on as it came, and the
+// transforms and markers that follow from poses, joints and report, which are made only while
+// somebody subscribes to them.
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/wire/cdr.hpp"
@@ -19,10 +22,12 @@ class Frame {
   explicit Frame(const Scene& scene) : scene_(scene), poses_(scene) {}
 
   // Takes one message of our topics. Of a report nothing more is done than to keep its bytes, of
-  // poses their numbers are kept: what is cheap for every message of a fast stream.
+  // poses and joints their numbers are kept: what is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
+  // Joints from elsewhere than our own topic.
+  void take_joints(PoseBatch batch) { poses_.take_joints(std::move(batch)); }
 
-  // Sends what has come since the last call. With the first, the bodies.
+  // Sends what has come since the last call.
   void publish(Server& server);
 
   // Of the latest report, by the catalogue or the report itself: 0 until one has come.
@@ -35,12 +40,16 @@ class Frame {
   void keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
             std::span<const std::byte> cdr);
   std::uint32_t key_of(TopicKind kind, std::span<const std::byte> cdr);
-  void publish_scene(Server& server);
+  void use_report();
+  // Once a report; bodies once at all.
+  template <class Make>
+  void publish_if_wanted(Server& server, ChannelId channel, std::int64_t time_ns, const Make& make);
 
   const Scene& scene_;
   ObjectPoses poses_;
   CdrDecoder decoder_;
   Sample<clearance_msg_PoseBatch> batch_;
+  Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;
@@ -48,7 +57,7 @@ class Frame {
   std::map<std::pair<ChannelId, std::uint32_t>, Message> new_;
   std::uint64_t revision_ = 0;
   std::int64_t report_time_ns_ = 0;
-  bool bodies_sent_ = false;
+  std::bitset<kChannels> sent_;  // of the scene's channels: what need not be made again
 };
 
 }  // namespace clearance::view

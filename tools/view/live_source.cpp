@@ -5,6 +5,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include "monitor/loop/ports.hpp"
+#include "monitor/wire/convert.hpp"
 
 namespace clearance::view {
 namespace {
@@ -14,24 +15,19 @@ constexpr std::int64_t kSilentNs = 1'000'000'000;
 
 // A reader of reports needs no more than the newest of each 1/60 s; of poses as many as a source
 // sends meanwhile, since the report names the batch that it used.
-std::int32_t depth_of(TopicKind kind) { return kind == TopicKind::kPoses ? 32 : 1; }
-
-std::uint32_t writers_alive(dds_entity_t reader) {
-  dds_liveliness_changed_status_t status{};
-  dds_get_liveliness_changed_status(reader, &status);
-  return status.alive_count;
-}
-
-std::uint32_t writers_there(dds_entity_t reader) {
-  dds_subscription_matched_status_t status{};
-  dds_get_subscription_matched_status(reader, &status);
-  return status.current_count;
+std::int32_t depth_of(TopicKind kind) {
+  return kind == TopicKind::kPoses || kind == TopicKind::kJointStates ? 32 : 1;
 }
 
 }  // namespace
 
 LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
-    : scene_(scene), participant_(dds), frame_(scene) {
+    : scene_(scene),
+      participant_(dds),
+      present_(participant_),
+      ros_joints_(scene, participant_),
+      wait_(participant_, {}),
+      frame_(scene) {
   for (const Topic& topic : kTopics) {
     readers_[index(topic.kind)] =
         participant_.reader(topic.kind, scene.topics.*topic.name, depth_of(topic.kind));
@@ -40,15 +36,19 @@ LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
 
 void LiveSource::advance(Server& server) {
   if (server.viewers() == 0) return;
-  for (const Topic& topic : kTopics) take(topic.kind);
+  for (const Topic& topic : kTopics) {
+    while (take(topic.kind)) {
+    }
+  }
+  if (!scene_.robots.empty()) take_from_ros();
   const std::int64_t now_ns = SystemClock().realtime_ns();
   tell_of_the_daemon(server, now_ns);
   server.set_time(now_ns);
   frame_.publish(server);
 }
 
-// The bytes as they came: nothing is decoded that is only passed on.
-void LiveSource::take(TopicKind kind) {
+// The bytes as they came: nothing is decoded that is only passed on. True: there may be more.
+bool LiveSource::take(TopicKind kind) {
   constexpr std::size_t kAtOnce = 64;
   std::array<ddsi_serdata*, kAtOnce> samples{};
   std::array<dds_sample_info_t, kAtOnce> infos;
@@ -63,6 +63,18 @@ void LiveSource::take(TopicKind kind) {
     }
     ddsi_serdata_unref(samples[i]);
   }
+  return count == kAtOnce;
+}
+
+// As the daemon does (dds/pose_reader.cpp).
+void LiveSource::take_from_ros() {
+  if (present_.look()) ros_joints_.look(present_, wait_);
+  ros_joints_.take_all([this](const RosStates& states) {
+    PoseBatch batch;
+    from_wire(states.message, states.names, states.stamp_ns, batch);
+    batch.source = states.source;
+    frame_.take_joints(std::move(batch));
+  });
 }
 
 // The same states as clearance-watch tells apart.

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "monitor/dds/participant.hpp"
+#include "monitor/dds/present_topics.hpp"
+#include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/participant/participant.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
 
@@ -21,12 +23,16 @@ class LiveSource final : public Source {
   void advance(Server& server) override;
 
  private:
-  void take(TopicKind kind);
+  bool take(TopicKind kind);
+  void take_from_ros();
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   const Scene& scene_;
   Participant participant_;
   std::array<dds_entity_t, kTopics.size()> readers_{};
+  PresentTopics present_;
+  RosJointStates ros_joints_;
+  DataWait wait_;  // for whoever makes readers of topics that appear: nothing waits here
   std::vector<std::byte> bytes_;
   Frame frame_;
 };

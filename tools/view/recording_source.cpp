@@ -8,8 +8,9 @@
 namespace clearance::view {
 namespace {
 
-// Read before a place that is jumped to, so that objects that move seldom are there as well.
-constexpr std::int64_t kLookBackNs = 1'000'000'000;
+// Read before a place that is jumped to, so that objects that move seldom are there as well, and
+// the health, which is told once a second.
+constexpr std::int64_t kLookBackNs = 1'200'000'000;
 constexpr double kSlowest = 0.01, kFastest = 100.0;
 
 }  // namespace
@@ -84,17 +85,25 @@ void RecordingSource::go_on(std::int64_t steady_ns) {
 // Reads on, or, to go back or far ahead, begins anew a little before.
 void RecordingSource::read_up_to(std::int64_t time_ns) {
   if (!reader_ || time_ns < read_ns_ || time_ns > read_ns_ + 2 * kLookBackNs) {
-    const auto from = static_cast<std::uint64_t>(
-        std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
-    reader_ = std::make_unique<RecordingReader>(file_, McapWindow{.start_ns = from});
-    frame_.jump();
-    has_next_ = reader_->next(next_);
+    begin_reading_at(std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
   }
   while (has_next_ && next_.log_ns <= time_ns) {
     frame_.take(next_.kind, next_.log_ns, next_.cdr);
     has_next_ = reader_->next(next_);
   }
   read_ns_ = time_ns;
+}
+
+// Zones are told when they change: what was said of each last holds there.
+void RecordingSource::begin_reading_at(std::int64_t time_ns) {
+  reader_ = std::make_unique<RecordingReader>(
+      file_, McapWindow{.start_ns = static_cast<std::uint64_t>(time_ns)});
+  frame_.jump();
+  for (const ZoneMessage& message : timeline_.zone_messages) {
+    if (message.log_ns >= time_ns) break;
+    frame_.take(TopicKind::kZones, message.log_ns, message.cdr);
+  }
+  has_next_ = reader_->next(next_);
 }
 
 }  // namespace clearance::view

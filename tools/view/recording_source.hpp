@@ -27,12 +27,17 @@ class RecordingSource final : public Source {
   [[nodiscard]] nlohmann::json parameters() const override;
   void set(const std::string& name, const nlohmann::json& value) override;
   [[nodiscard]] std::string timeline() const override { return timeline_.json(); }
+  [[nodiscard]] std::string history(double end_s,
+                                    std::span<const std::uint32_t> pairs) const override {
+    return timeline_.history.window(at(end_s), pairs);
+  }
 
  private:
   void go_on(std::int64_t steady_ns);
   void go_to(std::int64_t time_ns);
   void step(std::int64_t reports);
   void read_up_to(std::int64_t time_ns);
+  void begin_reading_at(std::int64_t time_ns);
   [[nodiscard]] std::int64_t at(double seconds) const;
 
   const Scene& scene_;

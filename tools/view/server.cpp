@@ -75,12 +75,12 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
   [[nodiscard]] bool wants_parameters() const noexcept { return wants_parameters_; }
-
- private:
   [[nodiscard]] bool subscribed(ChannelId channel) const {
     return std::ranges::any_of(subscriptions_,
                                [=](const auto& entry) { return entry.second == channel; });
   }
+
+ private:
   void greet();
   void read();
   void answer(const Request& request);
@@ -261,7 +261,9 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     const std::string target(request.target());
     Resource found;
     if (request.method() == http::verb::get) {
-      found = server_.content.get(target.substr(0, target.find('?')));
+      const std::size_t end = std::min(target.find('?'), target.size());
+      found = server_.content.get(target.substr(0, end),
+                                  target.substr(std::min(end + 1, target.size())));
     }
     response_ = {found.body ? http::status::ok : http::status::not_found, request.version()};
     response_.set(http::field::content_type, found.body ? found.type : "text/plain");
@@ -318,6 +320,10 @@ void ServerState::accept() {
 
 const std::string& Server::address() const noexcept { return state_->address; }
 std::size_t Server::viewers() const noexcept { return state_->viewers.size(); }
+bool Server::is_wanted(ChannelId channel) const {
+  return std::ranges::any_of(state_->viewers,
+                             [=](const Viewer* viewer) { return viewer->subscribed(channel); });
+}
 
 void Server::publish(const Message& message) {
   state_->latest[{message.channel, message.key}] = message;

@@ -15,7 +15,7 @@
 
 namespace clearance::view {
 
-// What a GET finds; `type` is the Content-Type.
+// What a GET of a path, with what stands behind its "?", finds; `type` is the Content-Type.
 struct Resource {
   std::string type;
   std::shared_ptr<const std::string> body;  // null: there is none
@@ -25,7 +25,7 @@ struct Resource {
 struct Content {
   std::string name;  // of the cell
   std::vector<Channel> channels;
-  std::function<Resource(const std::string& path)> get;
+  std::function<Resource(const std::string& path, const std::string& query)> get;
   std::function<nlohmann::json()> parameters;  // an array of {name, value}
   std::function<void(const std::string& name, const nlohmann::json& value)> set_parameter;
 };
@@ -45,6 +45,9 @@ class Server {
   [[nodiscard]] const std::string& address() const noexcept;
   // Those that are connected by WebSocket.
   [[nodiscard]] std::size_t viewers() const noexcept;
+
+  // Whether any of them has subscribed to this channel.
+  [[nodiscard]] bool is_wanted(ChannelId channel) const;
 
   // Keeps the message for viewers that come later, and sends it to all that have subscribed.
   void publish(const Message& message);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "tools/view/server.hpp"
@@ -24,6 +25,11 @@ class Source {
   [[nodiscard]] virtual nlohmann::json parameters() const { return nlohmann::json::array(); }
   virtual void set(const std::string& /*name*/, const nlohmann::json& /*value*/) {}
 
+  // Of a recording, what was before this moment (RunHistory::window); "null" where there is none.
+  [[nodiscard]] virtual std::string history(double /*end_s*/,
+                                            std::span<const std::uint32_t> /*pairs*/) const {
+    return "null";
+  }
   // The time line of a recording as JSON; "null" where there is none.
   [[nodiscard]] virtual std::string timeline() const { return "null"; }
 };

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,22 +16,17 @@
 namespace clearance::view {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-struct Least {
-  std::int64_t time_ns;
-  double distance, lower;
-  std::uint32_t pair;
-};
-
 class Scan {
  public:
-  explicit Scan(const Scene& scene) : scene_(scene) {}
+  explicit Scan(const Scene& scene) : scene_(scene), found_(scene) {}
 
   void take(const RecordedMessage& message) {
     if (message.kind == TopicKind::kDistances && decoder_.decode(message.cdr, report_)) {
-      take_report(message.log_ns);
+      found_.reports.push_back(message.log_ns);
+      found_.history.take(*report_, message.log_ns);
     } else if (message.kind == TopicKind::kZones && decoder_.decode(message.cdr, zone_)) {
+      found_.zone_messages.push_back(
+          {zone_->zone, message.log_ns, {message.cdr.begin(), message.cdr.end()}});
       take_zone(message.log_ns);
     } else if (message.kind == TopicKind::kHealth && decoder_.decode(message.cdr, health_)) {
       take_health(message.log_ns);
@@ -41,7 +35,6 @@ class Scan {
   [[nodiscard]] Timeline result();
 
  private:
-  void take_report(std::int64_t log_ns);
   void take_zone(std::int64_t log_ns);
   void take_health(std::int64_t log_ns);
   void add(std::int64_t time_ns, const char* kind, std::string text) {
@@ -49,7 +42,7 @@ class Scan {
       found_.moments.push_back({time_ns, kind, std::move(text)});
     }
   }
-  void gather_stretches();
+  void add_least();
 
   const Scene& scene_;
   CdrDecoder decoder_;
@@ -57,19 +50,9 @@ class Scan {
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Health> health_;
   Timeline found_;
-  std::vector<Least> least_;                      // one a report
   std::map<std::uint32_t, std::int64_t> active_;  // zones, since when
   std::optional<std::uint64_t> overruns_;
 };
-
-void Scan::take_report(std::int64_t log_ns) {
-  const clearance_msg_PairDistance& minimum = report_->minimum;
-  const bool known =
-      report_->minimum_known && minimum.status < static_cast<std::uint8_t>(PairStatus::kStale);
-  found_.reports.push_back(log_ns);
-  least_.push_back(
-      {log_ns, known ? minimum.distance : kNaN, known ? minimum.lower : kNaN, minimum.pair});
-}
 
 void Scan::take_zone(std::int64_t log_ns) {
   const auto since = active_.find(zone_->zone);
@@ -95,23 +78,12 @@ void Scan::take_health(std::int64_t log_ns) {
   overruns_ = health_->overruns;
 }
 
-// The reports in equal stretches of time, of each the least.
-void Scan::gather_stretches() {
-  const auto span = static_cast<double>(found_.end_ns - found_.begin_ns) + 1.0;
-  std::size_t last = kMostStretches;
-  for (const Least& least : least_) {
-    const auto stretch = static_cast<std::size_t>(
-        static_cast<double>(least.time_ns - found_.begin_ns) / span * kMostStretches);
-    if (stretch != last) {
-      found_.stretches.push_back({least.time_ns, least.distance, least.lower});
-      last = stretch;
-      continue;
-    }
-    Stretch& known = found_.stretches.back();
-    if (std::isnan(known.distance) || least.distance < known.distance) {
-      known = {least.time_ns, least.distance, least.lower};
-    }
-  }
+void Scan::add_least() {
+  const RunHistory::Piece least = found_.history.least();
+  if (std::isnan(least.distance)) return;
+  found_.moments.push_back({least.time_ns, "closest",
+                            fmt::format("least distance: {:.2f} mm, {}", 1e3 * least.distance,
+                                        pair_name(scene_, least.pair))});
 }
 
 Timeline Scan::result() {
@@ -119,15 +91,7 @@ Timeline Scan::result() {
   found_.begin_ns = found_.reports.front();
   found_.end_ns = found_.reports.back();
   for (const auto& [zone, since] : active_) found_.zones.push_back({zone, since, found_.end_ns});
-  gather_stretches();
-  const auto least = std::ranges::min_element(least_, {}, [](const Least& each) {
-    return std::isnan(each.distance) ? std::numeric_limits<double>::infinity() : each.distance;
-  });
-  if (!std::isnan(least->distance)) {
-    found_.moments.push_back({least->time_ns, "closest",
-                              fmt::format("least distance: {:.2f} mm, {}", 1e3 * least->distance,
-                                          pair_name(scene_, least->pair))});
-  }
+  add_least();
   std::ranges::stable_sort(found_.moments, {}, &Moment::time_ns);
   return std::move(found_);
 }
@@ -165,7 +129,7 @@ std::string Timeline::json() const {
                         {"stretches", nlohmann::json::array()},
                         {"zones", nlohmann::json::array()},
                         {"moments", nlohmann::json::array()}};
-  for (const Stretch& each : stretches) {
+  for (const RunHistory::Piece& each : history.pieces(kMostStretches)) {
     all["stretches"].push_back({after(each.time_ns), number(each.distance), number(each.lower)});
   }
   for (const ZoneSpan& each : zones) {

@@ -1,5 +1,5 @@
 // What a person wants to see of a recording at a glance: the least distance over time, when zones
-// were active, and the moments that are worth a look.
+// were active, and the moments that are worth a look; and what is needed to jump to any of them.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "tools/view/run_history.hpp"
 
 namespace clearance::view {
 
@@ -23,19 +24,23 @@ struct ZoneSpan {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
-// The least over a stretch of time; NaN where no minimum was known in it.
-struct Stretch {
-  std::int64_t time_ns = 0;            // of the least, or of the stretch's begin
-  double distance = 0.0, lower = 0.0;  // m
+// What was said of a zone: it holds until the next is said.
+struct ZoneMessage {
+  std::uint32_t zone = 0;
+  std::int64_t log_ns = 0;
+  std::vector<std::byte> cdr = {};
 };
 
 struct Timeline {
+  explicit Timeline(const Scene& scene) : history(scene) {}
+
   std::string error;  // not empty: the file cannot be read, or holds no report
   std::int64_t begin_ns = 0, end_ns = 0;
   std::vector<std::int64_t> reports;  // log times
-  std::vector<Stretch> stretches;     // at most kMostStretches, in order
+  RunHistory history;
   std::vector<ZoneSpan> zones;
-  std::vector<Moment> moments;  // in order of time; "closest" is the least of all
+  std::vector<ZoneMessage> zone_messages;  // in order of time
+  std::vector<Moment> moments;             // in order of time; "closest" is the least of all
 
   [[nodiscard]] std::string json() const;
 };

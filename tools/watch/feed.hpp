@@ -2,20 +2,18 @@
 // missed.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <set>
 #include <string>
 
-#include "config/scene.hpp"
-#include "monitor/dds/participant.hpp"
-#include "monitor/wire/dds_sample.hpp"
-#include "monitor/wire/report_check.hpp"
+#include "monitor/client/client.hpp"
 
 namespace clearance::watch {
 
 // Reports that are older than this when they are taken are called old: five frames of the screen.
-inline constexpr std::int64_t kOldReportNs = 500'000'000;
+inline constexpr std::chrono::milliseconds kOldReport(500);
 
 // The smallest distance that any report has shown; stale ones do not count.
 struct Smallest {
@@ -34,58 +32,59 @@ struct OldReports {
 // What is shown stays as it was last while no daemon publishes.
 class Feed {
  public:
-  Feed(Participant& participant, const Topics& topics);
+  explicit Feed(client::Connection& connection);
 
   // Takes all samples that have arrived; `now_ns` is CLOCK_REALTIME.
   void take(std::int64_t now_ns);
 
   // Whether a report ever came, and when the last one did.
-  [[nodiscard]] bool any() const noexcept { return reports_ > 0; }
+  [[nodiscard]] bool any() const noexcept { return count_ > 0; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
-  [[nodiscard]] const clearance_msg_Distances& distances() const noexcept { return *distances_; }
+  [[nodiscard]] const clearance_msg_Distances& distances() const noexcept { return *reports_; }
   // Null until a catalogue for the scene of the latest report has arrived.
   [[nodiscard]] const clearance_msg_Catalogue* catalogue() const noexcept;
   [[nodiscard]] const clearance_msg_Health* health() const noexcept;
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
-    return zones_;
+    return zones_.states();
+  }
+  // Null: no zone has one, or it has not come.
+  [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
+    return separation_->cycle != 0 && separation_->daemon == reports_->daemon ? &*separation_
+                                                                              : nullptr;
   }
   [[nodiscard]] const Smallest& smallest() const noexcept { return smallest_; }
 
   // What is to be known of the latest report itself.
-  [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
+  [[nodiscard]] const ReportCheck& check() const noexcept { return reports_.check(); }
   [[nodiscard]] const OldReports& old_reports() const noexcept { return old_; }
-  [[nodiscard]] std::uint64_t reports() const noexcept { return reports_; }
+  [[nodiscard]] std::uint64_t reports() const noexcept { return count_; }
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }  // gaps in the cycles
   [[nodiscard]] std::uint64_t restarts() const noexcept {
     return restarts_;
   }  // cycles that began again
   // Writers of distances that are alive: they have written within their leases. More than one is a
   // mistake.
-  [[nodiscard]] std::uint32_t publishers() const;
+  [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
   // None is there any longer, not even one that stands still.
-  [[nodiscard]] bool has_ended() const;
+  [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }
 
   // Names from the catalogue, or ids as long as there is none.
   [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
+  [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
+  [[nodiscard]] std::string zone_name(std::uint32_t zone) const;
   [[nodiscard]] std::string object_name(std::uint32_t object) const;
 
  private:
-  void take_distances(std::int64_t now_ns);
   void note_report(std::int64_t now_ns);
   void begin_again();
-  [[nodiscard]] std::string part_name(std::uint32_t object, std::uint32_t part) const;
 
-  dds_entity_t distances_reader_, catalogue_reader_, health_reader_, zones_reader_;
-  // The latest, and what the next is taken into: Cyclone clears a sample when a writer leaves.
-  Sample<clearance_msg_Distances> distances_, next_distances_;
-  Sample<clearance_msg_Catalogue> catalogue_, next_catalogue_;
-  Sample<clearance_msg_Health> health_, next_health_;
-  bool has_catalogue_ = false, has_health_ = false;
-  std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
+  client::Reports reports_;
+  client::Catalogue catalogue_;
+  client::Health health_;
+  client::Zones zones_;
+  client::Separation separation_;
   Smallest smallest_;
-  std::uint64_t reports_ = 0, missed_ = 0, restarts_ = 0;
-  ReportChecker checker_{kOldReportNs};
-  ReportCheck check_;
+  std::uint64_t count_ = 0, missed_ = 0, restarts_ = 0;
   OldReports old_;
   std::set<std::uint64_t> daemons_;  // whose reports have come
   std::int64_t last_ns_ = 0;

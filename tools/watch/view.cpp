@@ -151,7 +151,8 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
   return line.add("live", Style::kGood).add(fmt::format("  cycle {}", feed.distances().cycle));
 }
 
-void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+void add_minimum(std::vector<Line>& lines, const Feed& feed, std::int64_t now_ns,
+                 std::size_t width) {
   const clearance_msg_Distances& report = feed.distances();
   Line& line = lines.emplace_back(width);
   line.add("minimum   ", Style::kDim);
@@ -166,6 +167,7 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::size_t width) 
              Style::kWarning);
     return;
   }
+  if (!frozen(feed, now_ns).empty()) line.add("was ", Style::kAlarm);
   line.add(fmt::format("{:.4f} m  ", pair.distance), Style::kBold)
       .add(feed.pair_name(pair), Style::kBold);
   lines.emplace_back(width)
@@ -206,6 +208,29 @@ void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
         .add("  ");
   }
   if (feed.zones().empty()) line.add("none");
+}
+
+// "people: scaling 0.43, up to 0.51 m/s, 0.120 m above S_p, person - hand".
+std::string separation_text(const Feed& feed, const clearance_msg_ZoneSeparation& zone) {
+  const std::string name = feed.zone_name(zone.zone), pair = feed.pair_name(zone.pair);
+  const auto validity = static_cast<SeparationValidity>(zone.validity);
+  if (validity == SeparationValidity::kUnknown)
+    return fmt::format("{}: not known, scaling 0, {}", name, pair);
+  return fmt::format("{}: scaling {:.2f}, robot up to {:.2f} m/s, {:.3f} m {} S_p, {}{}", name,
+                     zone.scaling, zone.speed_limit, std::abs(zone.remaining),
+                     zone.remaining < 0.0 ? "below" : "above", pair,
+                     validity == SeparationValidity::kAssumed ? ", by stated speeds" : "");
+}
+
+void add_separation(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  const clearance_msg_Separation* separation = feed.separation();
+  if (separation == nullptr) return;
+  for (std::uint32_t i = 0; i < separation->zones._length; ++i) {
+    const clearance_msg_ZoneSeparation& zone = separation->zones._buffer[i];
+    lines.emplace_back(width)
+        .add("keep off  ", Style::kDim)
+        .add(separation_text(feed, zone), zone.scaling < 1.0 ? Style::kAlarm : Style::kGood);
+  }
 }
 
 void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& context,
@@ -320,8 +345,9 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
     if (const std::string why = trouble(feed, context.now_ns); !why.empty()) {
       lines.emplace_back(size.columns).add(why, Style::kAlarm);
     }
-    add_minimum(lines, feed, size.columns);
+    add_minimum(lines, feed, context.now_ns, size.columns);
     add_zones(lines, feed, size.columns);
+    add_separation(lines, feed, size.columns);
     add_counts(lines, feed, size.columns);
     add_health(lines, feed, context, size.columns);
     add_inputs(lines, feed, size.columns);
@@ -352,6 +378,10 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   }
   for (const auto& [id, zone] : feed.zones()) {
     if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
+  }
+  if (const auto* separation = feed.separation()) {
+    for (std::uint32_t i = 0; i < separation->zones._length; ++i)
+      text += fmt::format("  {}", separation_text(feed, separation->zones._buffer[i]));
   }
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",

@@ -209,6 +209,34 @@ TEST(CurvedBodies, MeetEveryOtherKindByPosesAndByRelativePoseAlike) {
   }
 }
 
+TEST(CurvedBodies, HaveTheSameBitsWithEveryVectorWidth) {
+  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const auto answers = [&](std::int64_t width) {
+    const OnlyWith only(width);
+    Random random(36);
+    std::vector<DistanceResult> all;
+    for (const ConvexPolyhedron& a : bodies) {
+      for (const ConvexPolyhedron& b : bodies) {
+        if (!a.is_curved() && !b.is_curved()) continue;
+        TrackingState state;
+        Pose pose = random.pose(0.6);
+        pose.position += random.direction();
+        for (int step = 0; step < 6; ++step) {
+          pose.position += 0.02 * random.direction();
+          all.push_back(distance(a, b, relative_pose(Pose{}, pose), state));
+        }
+      }
+    }
+    return all;
+  };
+  const std::vector<std::int64_t> widths = vector_widths();
+  const std::vector<DistanceResult> first = answers(widths.front());
+  for (const std::int64_t width : widths) {
+    const std::vector<DistanceResult> others = answers(width);
+    for (std::size_t i = 0; i < first.size(); ++i) EXPECT_TRUE(same_bits(first[i], others[i])) << i;
+  }
+}
+
 TEST(CurvedBodies, HaveTheSameBitsInABatch) {
   const std::vector<ConvexPolyhedron> bodies = every_kind();
   std::vector<const ConvexPolyhedron*> shapes;

@@ -10,6 +10,7 @@
 
 #include "core/numerics/error_constants.hpp"
 #include "core/shapes.hpp"
+#include "tests/shared/exact_body.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
 

@@ -160,6 +160,34 @@ TEST_F(BagLogTest, FramesHangOnTheRobotsRootOrOnAWorldOfAnotherName) {
   EXPECT_THAT(on_map.notes, Contains(HasSubstr("frame 'map' is taken to be the cell's world")));
 }
 
+// The same keys of the cell as live.
+TEST_F(BagLogTest, FramesThatTheCellNamesMoveObjectsAndBases) {
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  scene = scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: map}\n"
+      "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir, pose: {xyz: [0, 0, 1]}}}]\n"
+      "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
+      "pairs: [{between: [arm, box]}]\n",
+      folder / "cell.yaml");
+  const ReadLog log = read(
+      {transforms(kT, kT, {{"mir", "box_link", {0, 0, 2}}}, "/tf_static"),
+       transforms(kT + kMs, kT - kMs, {{"earth", "map", {9, 9, 9}}, {"map", "mir", {1, 0, 0}}})});
+  ASSERT_EQ(2u, log.batches.size());
+  const PoseBatch& base = log.batches[0].batch;
+  EXPECT_EQ("/tf:bases", base.source.view());
+  ASSERT_EQ(7u, base.joints.size());
+  EXPECT_EQ("arm_base/trans_x", scene.variables[base.joints[0].variable].name);
+  EXPECT_EQ(1.0, base.joints[0].position);
+  EXPECT_EQ(1.0, base.joints[2].position);
+  EXPECT_EQ(1.0, base.joints[6].position);
+  EXPECT_EQ(kT - kMs, base.joints[6].stamp_ns);
+  const PoseBatch& box = log.batches[1].batch;
+  EXPECT_EQ("/tf", box.source.view());
+  ASSERT_EQ(1u, box.samples.size());
+  EXPECT_EQ(Vec3(1, 0, 2), box.samples[0].world_from_object.position);
+  EXPECT_EQ(kT - kMs, box.samples[0].stamp_ns);
+}
+
 TEST_F(BagLogTest, FramesThatGoRoundInACircleMoveNothing) {
   const ReadLog log = read({transforms(kT, kT, {{"cart", "table"}, {"table", "cart"}})});
   EXPECT_THAT(log.batches, IsEmpty());

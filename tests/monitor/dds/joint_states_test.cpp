@@ -10,29 +10,40 @@
 namespace clearance {
 namespace {
 
-void write(dds_entity_t writer, const PoseBatch& batch, const Scene& scene) {
-  const Sample<clearance_msg_JointStates> sample = make_joint_states(batch, scene);
-  ASSERT_EQ(dds_write(writer, &*sample), DDS_RETCODE_OK);
-}
+// A robot that sends joints and poses to the reader of a daemon.
+class JointStatesReader : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(test::eventually(
+        [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
+  }
+  void send_joints(const PoseBatch& batch) const {
+    const Sample<clearance_msg_JointStates> sample = make_joint_states(batch, scene);
+    ASSERT_EQ(dds_write(joints, &*sample), DDS_RETCODE_OK);
+  }
+  // The pose of the object that no joint moves.
+  void send_pose(const char* source) const {
+    PoseBatch batch{SourceName(source), 1, scene.revision, {}};
+    batch.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
+    Sample<clearance_msg_PoseBatch> sample = make_batch(1);
+    to_wire(batch, *sample);
+    ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
+  }
 
-TEST(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
   const Scene scene = test::scara_cell();
   const DdsOptions dds = test::own_dds();
-  Participant daemon(dds), robot(dds);
-  PoseReader inputs(scene, daemon);
+  Participant daemon{dds}, robot{dds};
+  PoseReader inputs{scene, daemon};
   const dds_entity_t joints = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
   const dds_entity_t poses = robot.writer(TopicKind::kPoses, scene.topics.poses);
-  ASSERT_TRUE(test::eventually(
-      [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
+};
+
+TEST_F(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
   const auto states = test::joints(0.1, 0.2, 0.15, test::kStart);
   PoseBatch batch{SourceName("arm"), 1, 0, {}};
   batch.joints.assign(states.begin(), states.end());
-  write(joints, batch, scene);
-  PoseBatch cart{SourceName("cart"), 1, scene.revision, {}};
-  cart.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
-  Sample<clearance_msg_PoseBatch> sample = make_batch(1);
-  to_wire(cart, *sample);
-  ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
+  send_joints(batch);
+  send_pose("cart");
 
   int batches = 0;
   EXPECT_TRUE(test::eventually([&] {
@@ -56,24 +67,12 @@ TEST(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
 }
 
 // One name is one writer's, of either topic: batches are found again by name and number.
-TEST(JointStatesReader, ANameThatSendsPosesCannotSendJointsAsWell) {
-  const Scene scene = test::scara_cell();
-  const DdsOptions dds = test::own_dds();
-  Participant daemon(dds), robot(dds);
-  PoseReader inputs(scene, daemon);
-  const dds_entity_t joints = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
-  const dds_entity_t poses = robot.writer(TopicKind::kPoses, scene.topics.poses);
-  ASSERT_TRUE(test::eventually(
-      [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
+TEST_F(JointStatesReader, ANameThatSendsPosesCannotSendJointsAsWell) {
   PoseBatch batch{SourceName("arm"), 1, 0, {}};
   batch.joints.push_back(test::joint(0, 0.1, test::kStart));
-  write(joints, batch, scene);
+  send_joints(batch);
   ASSERT_TRUE(test::eventually([&] { return inputs.next() != nullptr; }));
-  PoseBatch pose{SourceName("arm"), 1, scene.revision, {}};
-  pose.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
-  Sample<clearance_msg_PoseBatch> sample = make_batch(1);
-  to_wire(pose, *sample);
-  ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
+  send_pose("arm");
   EXPECT_TRUE(test::eventually([&] { return inputs.refused_sources().size() == 1; }));
   EXPECT_EQ(inputs.next(), nullptr);
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 // A joint of 2 rad/s between -1 and 1 rad, late after 20 ms.
 class Variable : public testing::Test {
@@ -85,12 +85,12 @@ TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
   EXPECT_NEAR(state_.may_have_moved, 0.06, 1e-12);
   advance(joint_, 10'000 * kMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
-  joint_.max_speed = kNone;
+  joint_.max_speed = kUnlimited;
   advance(joint_, 10'000 * kMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
-  joint_.lower = -kNone;
+  joint_.lower = -kUnlimited;
   advance(joint_, 10'000 * kMs, state_);
-  EXPECT_EQ(state_.may_have_moved, kNone);
+  EXPECT_EQ(state_.may_have_moved, kUnlimited);
 }
 
 TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
@@ -122,9 +122,9 @@ TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnow
   // Where they stay there, they are taken when the joint can have got there.
   EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
   EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
-  joint_.upper = kNone;
+  joint_.upper = kUnlimited;
   EXPECT_EQ(take(at(421 * kMs, 0.9)), Reject::kTooFast);
-  EXPECT_EQ(state_.may_have_moved, kNone);
+  EXPECT_EQ(state_.may_have_moved, kUnlimited);
 }
 
 // Velocity limits of many descriptions are wrong.

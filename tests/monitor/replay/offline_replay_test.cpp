@@ -90,6 +90,51 @@ TEST_F(OfflineReplayTest, AZoneThatDiffersNamesTheBuildsToo) {
               HasSubstr("recorded by another build (0.0.1)"));
 }
 
+// The hand is a person's, the tool a robot's.
+void separate(Scene& scene) {
+  Zone& zone = scene.zones[0];
+  zone.pairs = {0};
+  zone.separation.emplace();
+  zone.separation->human_is_first = {1};
+  zone.separation->reaction_time_ns = 100'000'000;
+}
+
+TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffers) {
+  separate(scene);
+  record_run(scene, run);
+  EXPECT_EQ("", replay({.compare = Comparison::kBits}).text());
+  std::vector<Kept> messages = messages_of(run);
+  EXPECT_EQ(200, std::ranges::count(messages, TopicKind::kSeparation, &Kept::kind));
+  // In front of the report of tick 5.
+  Kept& separation = messages[report_of(messages, 5) - 1];
+  ASSERT_EQ(separation.kind, TopicKind::kSeparation);
+  separation = altered<clearance_msg_Separation>(separation, [](clearance_msg_Separation& content) {
+    content.pairs._buffer[0].scaling += 1e-9;
+  });
+  write_messages(run, messages);
+  EXPECT_THAT(replay({.compare = Comparison::kBits}).text(),
+              AllOf(HasSubstr("tick 5 "),
+                    HasSubstr("differs in separation of zone 'stop', hand - tool, scaling: ")));
+}
+
+// Recorded over DDS, a topic may come after another.
+TEST_F(OfflineReplayTest, FindsASeparationBehindItsReport) {
+  separate(scene);
+  record_run(scene, run);
+  std::vector<Kept> messages = messages_of(run);
+  for (std::size_t i = 0; i + 1 < messages.size(); ++i) {
+    if (messages[i].kind == TopicKind::kSeparation) std::swap(messages[i], messages[i + 1]), ++i;
+  }
+  Kept& separation = messages[report_of(messages, 7) + 1];
+  ASSERT_EQ(separation.kind, TopicKind::kSeparation);
+  separation = altered<clearance_msg_Separation>(separation, [](clearance_msg_Separation& content) {
+    content.zones._buffer[0].remaining -= 1e-9;
+  });
+  write_messages(run, messages);
+  EXPECT_THAT(replay({.compare = Comparison::kBits}).text(),
+              AllOf(HasSubstr("tick 7 "), HasSubstr("separation of zone 'stop', remaining: ")));
+}
+
 TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {
   record_run(scene, run);
   int ticks = 0;

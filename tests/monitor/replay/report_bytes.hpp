@@ -47,6 +47,20 @@ inline void append(std::vector<unsigned char>& bytes, const PairReport& pair) {
     append(bytes, zone.swept_clearance);
     append(bytes, zone.pair);
   }
+  for (const ZoneSeparation& zone : report.separated_zones) {
+    append(bytes, zone.validity);
+    append(bytes, zone.pair);
+    for (const double figure : {zone.remaining, zone.speed_limit, zone.scaling})
+      append(bytes, figure);
+  }
+  for (const PairSeparation& pair : report.separated_pairs) {
+    append(bytes, pair.validity);
+    for (const double figure : {pair.clearance, pair.human_speed, pair.robot_speed, pair.human_term,
+                                pair.robot_term, pair.stopping_term, pair.protective_distance,
+                                pair.remaining, pair.speed_limit, pair.scaling}) {
+      append(bytes, figure);
+    }
+  }
   append(bytes, report.rejected);
   return bytes;
 }

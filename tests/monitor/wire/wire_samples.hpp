@@ -135,6 +135,28 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_ZoneState>& zone)
   zone->now_ns = static_cast<std::int64_t>(random());
 }
 
+inline void fill(std::mt19937_64& random, Sample<clearance_msg_Separation>& separation) {
+  separation->daemon = random();
+  separation->cycle = random();
+  separation->now_ns = static_cast<std::int64_t>(random());
+  reserve_sequence(separation->zones, random() % 6);
+  for (std::uint32_t i = 0; i < separation->zones._maximum; ++i) {
+    separation->zones._buffer[separation->zones._length++] = {
+        i, 1, i + 1, any_double(random), any_double(random), any_double(random)};
+  }
+  reserve_sequence(separation->pairs, random() % 20);
+  for (std::uint32_t i = 0; i < separation->pairs._maximum; ++i) {
+    clearance_msg_PairSeparation& pair = separation->pairs._buffer[separation->pairs._length++];
+    pair = {};
+    pair.zone = static_cast<std::uint32_t>(random());
+    pair.validity = static_cast<std::uint8_t>(random() % 3);
+    pair.clearance = any_double(random);
+    pair.protective_distance = any_double(random);
+    pair.scaling = any_double(random);
+    pair.age_robot_ns = static_cast<std::int64_t>(random());
+  }
+}
+
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) {
   health->daemon = random();
   health->cycle = random();

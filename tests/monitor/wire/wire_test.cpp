@@ -69,7 +69,7 @@ template <class T>
 class EveryTopic : public testing::Test {};
 using Topics =
     testing::Types<clearance_msg_PoseBatch, clearance_msg_Distances, clearance_msg_Catalogue,
-                   clearance_msg_ZoneState, clearance_msg_Health>;
+                   clearance_msg_ZoneState, clearance_msg_Health, clearance_msg_Separation>;
 TYPED_TEST_SUITE(EveryTopic, Topics);
 
 TYPED_TEST(EveryTopic, EncodesToTheBytesThatDdsCarries) {

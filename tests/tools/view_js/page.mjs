@@ -61,8 +61,11 @@ async function recording() {
   await settled(closest.time);
   const worst = await minimum();
   await picture("worst-moment");
-  await page.keyboard.press("ArrowRight");
-  await page.waitForFunction((cycle) => Number(document.getElementById("minimum").dataset.cycle) === cycle + 1, worst.cycle);
+  // A report further; back, where the worst is the last.
+  const further = closest.time < timeline.duration - 1e-6 ? 1 : -1;
+  await page.keyboard.press(further > 0 ? "ArrowRight" : "ArrowLeft");
+  // Not always the next cycle: a busy machine leaves reports out of a recording.
+  await page.waitForFunction(([cycle, by]) => (Number(document.getElementById("minimum").dataset.cycle) - cycle) * by > 0, [worst.cycle, further]);
   await page.click("#pair-table tbody tr:first-child");
   const before = await shownTime();
   const box = await (await page.$("#track")).boundingBox();
@@ -88,7 +91,8 @@ async function recording() {
 try {
   await (what === "live" ? page.goto(url).then(live) : page.goto(`${url}?t=0`).then(recording));
 } catch (error) {
-  say({ failed: error.stack, errors });
+  const stands = await page.evaluate(() => ({ ...window.clearance?.stands(), shown: { ...document.getElementById("minimum").dataset } })).catch(({ message }) => message);
+  say({ failed: error.stack, errors, stands });
   await picture("failed").catch(() => {});
   process.exitCode = 1;
 }

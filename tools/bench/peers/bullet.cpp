@@ -5,6 +5,9 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
 
+#include <array>
+#include <cmath>
+
 #include "tools/bench/intervals.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -22,28 +25,47 @@ btTransform transform_of(const Pose& pose) {
   return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), vector(pose.position));
 }
 
-// Bullet has no ellipsoid: this is what its other shapes are, a support function.
-class Ellipsoid : public btConvexInternalShape {
+// Bullet has neither ellipsoids nor truncated cones: these are what its other shapes are, support
+// functions.
+struct EllipsoidSupport {
+  btVector3 semi_axes;
+  btVector3 operator()(const btVector3& along) const {
+    const btVector3 scaled = semi_axes * along;
+    return semi_axes * scaled / scaled.length();
+  }
+};
+struct TruncatedConeSupport {
+  std::array<Disc, 2> discs;
+  btVector3 operator()(const btVector3& along) const {
+    const double across = std::hypot(along.x(), along.y());
+    const auto height = [&](const Disc& d) { return d.height * along.z() + d.radius * across; };
+    const Disc& disc = height(discs[0]) > height(discs[1]) ? discs[0] : discs[1];
+    const double scale = across > 0.0 ? disc.radius / across : 0.0;
+    return {scale * along.x(), scale * along.y(), disc.height};
+  }
+};
+
+template <class Support>
+class BySupport : public btConvexInternalShape {
  public:
-  explicit Ellipsoid(const Vec3& semi_axes) : semi_axes_(vector(semi_axes)) {
+  explicit BySupport(const Support& support) : support_(support) {
     m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
   }
   btVector3 localGetSupportingVertexWithoutMargin(const btVector3& along) const override {
-    const btVector3 scaled = semi_axes_ * along;
-    return semi_axes_ * scaled / scaled.length();
+    return support_(along);
   }
   btVector3 localGetSupportingVertex(const btVector3& along) const override {
-    return localGetSupportingVertexWithoutMargin(along);
+    return support_(along);
   }
   void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* along, btVector3* found,
                                                          int count) const override {
-    for (int i = 0; i < count; ++i) found[i] = localGetSupportingVertexWithoutMargin(along[i]);
+    for (int i = 0; i < count; ++i) found[i] = support_(along[i]);
   }
   void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }
-  const char* getName() const override { return "Ellipsoid"; }
+  const char* getName() const override { return "BySupport"; }
 
  private:
-  btVector3 semi_axes_;
+  Support support_;
 };
 
 class Bullet {
@@ -51,11 +73,15 @@ class Bullet {
   using Shape = std::shared_ptr<btConvexShape>;
   static Shape curved(const CurvedShape& shape) {
     if (shape.kind == CurvedShape::Kind::kEllipsoid) {
-      return std::make_shared<Ellipsoid>(shape.semi_axes);
+      return std::make_shared<BySupport<EllipsoidSupport>>(
+          EllipsoidSupport{vector(shape.semi_axes)});
     }
     const auto& [low, high] = shape.discs;
     const double length = high.height - low.height;
     if (high.radius == 0.0) return std::make_shared<btConeShapeZ>(low.radius, length);
+    if (high.radius != low.radius) {
+      return std::make_shared<BySupport<TruncatedConeSupport>>(TruncatedConeSupport{shape.discs});
+    }
     return std::make_shared<btCylinderShapeZ>(btVector3(low.radius, low.radius, 0.5 * length));
   }
   static Shape shape(const ConvexPolyhedron& body) {
@@ -72,7 +98,7 @@ class Bullet {
     const auto hull = std::make_shared<btConvexHullShape>();
     for (const Vec3& p : welded(body).points) hull->addPoint(vector(p), false);
     hull->recalcLocalAabb();
-    hull->setMargin(0.0);
+    hull->setMargin(body.radius);
     return hull;
   }
 
@@ -104,7 +130,8 @@ class Bullet {
 void register_bullet() {
   register_rows<Bullet>("peer/bullet/");
   register_intervals<Bullet>("peer/bullet/");
-  register_curved_rows<Bullet>("peer/bullet/");
+  register_kind_rows<Bullet>("peer/bullet/");
+  register_crossed_rows<Bullet>("bullet");
 }
 
 }  // namespace clearance::bench

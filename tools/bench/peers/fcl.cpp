@@ -80,9 +80,13 @@ void register_fcl() {
   register_rows<WithLibccd<12>>("peer/fcl-tight/");
   register_rows<WithOwnGjk>("peer/fcl-gjk/");
   register_intervals<WithOwnGjk>("peer/fcl-gjk/");
-  register_curved_rows<WithLibccd<6>>("peer/fcl/");
-  register_curved_rows<WithLibccd<12>>("peer/fcl-tight/");
-  register_curved_rows<WithOwnGjk>("peer/fcl-gjk/");
+  const std::initializer_list<std::string_view> lacking = {"truncated_cone", "rounded_box"};
+  register_kind_rows<WithLibccd<6>>("peer/fcl/", lacking);
+  register_kind_rows<WithLibccd<12>>("peer/fcl-tight/", lacking);
+  register_kind_rows<WithOwnGjk>("peer/fcl-gjk/", lacking);
+  register_crossed_rows<WithLibccd<6>>("fcl");
+  register_crossed_rows<WithLibccd<12>>("fcl-tight");
+  register_crossed_rows<WithOwnGjk>("fcl-gjk");
 }
 
 }  // namespace clearance::bench

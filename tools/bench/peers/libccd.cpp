@@ -1,5 +1,7 @@
 #include <ccd/ccd.h>
 
+#include <cmath>
+
 #include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
@@ -7,15 +9,26 @@
 namespace clearance::bench {
 namespace {
 
-// Points, and of each the points at the other ends of its edges.
+// Points, and of each the points at the other ends of its edges; or a curved shape; and the radius
+// around either.
 struct Mesh {
   std::vector<Vec3> points;
   std::vector<std::vector<int>> neighbours;
+  CurvedShape curved;
+  double radius = 0.0;
 };
 
 std::shared_ptr<const Mesh> mesh_of(const ConvexPolyhedron& body) {
-  const Welded welds = welded(body);
   const auto mesh = std::make_shared<Mesh>();
+  mesh->curved = body.curved;
+  mesh->radius = body.radius;
+  if (body.is_curved()) return mesh;
+  if (body.vertices.size() <= 2) {  // a sphere's centre, a capsule's ends
+    for (const Vertex& v : body.vertices) mesh->points.push_back(v.position);
+    mesh->neighbours = {{static_cast<int>(mesh->points.size()) - 1}, {0}};
+    return mesh;
+  }
+  const Welded welds = welded(body);
   mesh->points = welds.points;
   mesh->neighbours.resize(welds.points.size());
   // Every edge once in each direction: two faces pass it, one each way.
@@ -52,12 +65,36 @@ std::size_t climb(const Mesh& mesh, std::size_t from, const Vec3& towards) {
   return from;
 }
 
+// As libccd's own examples write them: of an ellipsoid its scaled direction, of a cylinder or a
+// cone the higher one of its discs.
+Vec3 curved_support(const CurvedShape& shape, const Vec3& d) {
+  if (shape.kind == CurvedShape::Kind::kEllipsoid) {
+    const Vec3 scaled = shape.semi_axes.cwiseProduct(d);
+    return shape.semi_axes.cwiseProduct(scaled) / scaled.norm();
+  }
+  const double across = std::hypot(d.x(), d.y());
+  const auto height = [&](const Disc& disc) { return disc.height * d.z() + disc.radius * across; };
+  const Disc& disc =
+      height(shape.discs[0]) > height(shape.discs[1]) ? shape.discs[0] : shape.discs[1];
+  const double scale = across > 0.0 ? disc.radius / across : 0.0;
+  return {scale * d.x(), scale * d.y(), disc.height};
+}
+
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* farthest) {
   // The callback's object is const, but the one registered is not: it is Libccd's own member.
   auto& placed = *static_cast<Placed*>(const_cast<void*>(object));
-  const Vec3 d(direction->v[0], direction->v[1], direction->v[2]);
-  placed.last = climb(*placed.mesh, placed.last, placed.rotation.transpose() * d);
-  const Vec3 p = placed.rotation * placed.mesh->points[placed.last] + placed.position;
+  const Vec3 d =
+      placed.rotation.transpose() * Vec3(direction->v[0], direction->v[1], direction->v[2]);
+  const Mesh& mesh = *placed.mesh;
+  Vec3 own;
+  if (mesh.points.empty()) {
+    own = curved_support(mesh.curved, d);
+  } else {
+    placed.last = climb(mesh, placed.last, d);
+    own = mesh.points[placed.last];
+  }
+  if (mesh.radius > 0.0) own += mesh.radius / d.norm() * d;
+  const Vec3 p = placed.rotation * own + placed.position;
   ccdVec3Set(farthest, p.x(), p.y(), p.z());
 }
 
@@ -90,6 +127,9 @@ class Libccd {
 
 }  // namespace
 
-void register_libccd() { register_rows<Libccd>("peer/libccd/"); }
+void register_libccd() {
+  register_rows<Libccd>("peer/libccd/");
+  register_kind_rows<Libccd>("peer/libccd/");
+}
 
 }  // namespace clearance::bench

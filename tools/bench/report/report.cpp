@@ -7,6 +7,7 @@
 
 #include "monitor/app/print.hpp"
 #include "monitor/build_info/build_info.hpp"
+#include "tools/plot/gnuplot.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -22,7 +23,7 @@ bool write(const std::filesystem::path& file, const std::string& text) {
 
 // Two files of the folder, which is made if it is not there.
 bool write_both(const std::filesystem::path& folder, const char* table_file,
-                const std::string& table, const char* picture_file, const std::string& picture) {
+                const std::string& table, const char* picture_file, const Picture& picture) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -32,7 +33,12 @@ bool write_both(const std::filesystem::path& folder, const char* table_file,
   if (!write(folder / table_file, fmt::format("{}Made by clearance-bench {}.\n", table, kBuild))) {
     return false;
   }
-  if (!write(folder / picture_file, picture)) return false;
+  const std::string wrong =
+      plot_svg(folder / picture_file, picture.width, picture.height, picture.script);
+  if (!wrong.empty()) {
+    print(stderr, "{} is not written: {}\n", (folder / picture_file).string(), wrong);
+    return false;
+  }
   print(stderr, "\r\033[Kwritten: {} and {}\n", (folder / table_file).string(),
         (folder / picture_file).string());
   return true;
@@ -46,6 +52,11 @@ bool write_report(const std::filesystem::path& folder, const Figures& figures) {
 
 bool write_tick_report(const std::filesystem::path& folder, const Figures& figures) {
   return write_both(folder, "ticks.md", tick_tables(figures), "ticks.svg", tick_curves(figures));
+}
+
+bool write_curved_report(const std::filesystem::path& folder, const Figures& figures) {
+  return write_both(folder, "curved.md", pair_tables(figures) + chapter5_tables(figures),
+                    "curved.svg", curved_picture(figures));
 }
 
 }  // namespace clearance::bench

@@ -42,39 +42,6 @@ std::string peers(const Figures& figures, const std::string& mode) {
   return table.text();
 }
 
-// Who has shapes of these kinds.
-const char* const kCurvedPeers[] = {"fcl", "fcl-tight", "fcl-gjk", "bullet"};
-
-std::string curved(const Figures& figures) {
-  Cells head{"", "tracked", "cold", "error", "bounds apart by", "supports"};
-  for (const char* who : kCurvedPeers) {
-    head.push_back(fmt::format("{}, tracked", who));
-    head.push_back(fmt::format("{}, cold", who));
-  }
-  Table table(head);
-  for (const std::string& load : curved_workload_names()) {
-    const Figure* tracked = figures.at("curved/tracked/" + load);
-    const Figure* cold = figures.at("curved/cold/" + load);
-    if (!tracked || !cold) continue;
-    Cells cells{load,
-                ns(tracked),
-                ns(cold),
-                fmt::format("{:.0e}", std::max(tracked->max_error, cold->max_error)),
-                fmt::format("{:.0e}",
-                            std::max(tracked->counted("widest_gap"), cold->counted("widest_gap"))),
-                fmt::format("{:.1f}", tracked->iterations)};
-    for (const char* who : kCurvedPeers) {
-      const auto of = [&](const char* mode) {
-        return figures.at(fmt::format("peer/{}/curved/{}/{}", who, mode, load));
-      };
-      cells.push_back(against(of("tracked"), tracked));
-      cells.push_back(against(of("cold"), cold));
-    }
-    table.row(cells);
-  }
-  return table.text();
-}
-
 // A column for each instruction set that this machine has.
 std::string batches(const Figures& figures) {
   std::vector<std::string> sets;
@@ -143,13 +110,6 @@ std::string tables(const Figures& figures) {
       << "## Tracked, against peers\n\nA peer's cell: ns = times ours, largest error, failures.\n\n"
       << peers(figures, "tracked") << "## Cold, against peers\n\n"
       << peers(figures, "cold")
-      << "## Curved bodies\n\nEllipsoids, cylinders and cones of 0.05 to 0.25 m, passing each "
-         "other at "
-         "least 1 cm apart, "
-         "2 mm and 5 mrad a step. A peer's cell as above: its shapes are exact, its answers are "
-         "not. "
-         "libccd alone has no distance.\n\n"
-      << curved(figures)
       << "## Many pairs at once\n\n512 tracked pairs, ns a pair: single queries one after another, "
          "and "
          "batches by instruction set (AVX3 is AVX-512), without what moves the bodies. "

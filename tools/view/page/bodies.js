@@ -4,6 +4,7 @@ import * as THREE from "three";
 import { css } from "./format.js";
 import { gridOn } from "./grid.js";
 
+const MOST_FOCUS = 0.8; // of the cell's radius
 // Hues of groups that move, kept apart from those that say how near: red, amber, green.
 const MOVING = ["#4f8fe8", "#8f7ae5", "#3fa7c4", "#c77fc9", "#6f9a5a", "#b58a5c"];
 
@@ -99,7 +100,7 @@ export class Bodies extends THREE.Group {
     this.index = new Map(scene.objects.map(({ name }, i) => [name, i]));
     if (this.parts.length) this.build(scene.meshes);
     this.grids = scene.parts.filter(({ plane }) => plane).map((part) => gridOn(part, scene.objects[part.object]));
-    this.add(...this.grids);
+    for (const grid of this.grids) this.add(grid);
     this.ofObject.forEach((_, object) => this.place(object));
     this.recolour();
   }
@@ -192,12 +193,14 @@ export class Bodies extends THREE.Group {
     });
     return all;
   }
-  // What moves is where the view is cut away to.
+  // What moves is where the view is cut away to; where that is most of the cell, nothing is.
   refocus() {
     const moving = this.bounds(({ fixed }) => !fixed);
     if (moving.isEmpty()) return;
     const { center, radius } = moving.getBoundingSphere(new THREE.Sphere());
-    this.focus.value.set(...center, radius);
+    const isMost = radius > MOST_FOCUS * this.bounds().getBoundingSphere(new THREE.Sphere()).radius;
+    this.focus.value.set(...center, isMost ? 0 : radius);
+    if (this.ghost) this.ghost.visible = !isMost;
   }
 
   // Roughly: what is so near is seen through.

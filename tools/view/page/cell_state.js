@@ -1,13 +1,11 @@
 // What is known of the cell: the latest report, zones, health; and what must not be overlooked.
+import { LiveHistory, RecordedHistory } from "./history.js";
+import { isKnown } from "./pair_status.js";
 
-export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown"];
-const STALE = 5;
 const CAUSE = ["", "near", "late poses of", "no pose of", "a discontinuity of", "contradicting poses of"];
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // an overrun
-export const HISTORY_S = 30;
-
-export const isKnown = (pair) => pair.status < STALE;
+const HEALTH_AGAIN_S = 2.5; // later ones do not follow each other: a recording was moved
 
 export class CellState {
   constructor(scene, timeline) {
@@ -17,7 +15,7 @@ export class CellState {
     this.statuses = new Map();
     this.connected = false;
     this.timeNs = 0;
-    this.history = [];
+    this.history = timeline ? new RecordedHistory(timeline) : new LiveHistory();
     this.pairs = scene.pairs.map(([a, b], id) => ({
       id, a, b, name: `${scene.objects[a].name} – ${scene.objects[b].name}`,
       margins: scene.objects[a].margin + scene.objects[b].margin, zones: [],
@@ -26,19 +24,11 @@ export class CellState {
   }
 
   takeReport(report, timeNs) {
-    if (timeNs < this.reportNs || timeNs > this.reportNs + 1e9) this.history = [];
     this.report = report;
     this.reportNs = timeNs;
     this.lateObjects = new Map();
     for (const pair of report.pairs) if (!isKnown(pair)) this.noteLate(pair);
-    const minimum = this.minimum();
-    this.history.push({
-      s: timeNs * 1e-9, distance: minimum?.distance, lower: minimum?.lower,
-      tick: report.publish_ns ? (report.publish_ns - report.clock_offset_ns - report.now_ns) * 1e-3 : undefined,
-      pairs: report.pairs,
-    });
-    const first = this.history.findIndex(({ s }) => s > timeNs * 1e-9 - HISTORY_S);
-    if (first > 200) this.history.splice(0, first);
+    this.history.take(report, this.minimum(), timeNs);
   }
 
   // Which of a pair's objects is the cause: the one whose pose is older, or was never seen.
@@ -50,10 +40,14 @@ export class CellState {
   }
 
   takeHealth(health, timeNs) {
-    if (this.health && health.overruns > this.health.overruns && health.daemon === this.health.daemon) {
-      this.overrun = { count: health.overruns - this.health.overruns, ns: timeNs, us: health.tick_second_max_us };
+    const before = this.health;
+    const since = (timeNs - this.healthNs) * 1e-9;
+    const follows = before?.daemon === health.daemon && since >= 0 && since < HEALTH_AGAIN_S;
+    if (follows && health.overruns > before.overruns) {
+      this.overrun = { count: health.overruns - before.overruns, ns: timeNs, us: health.tick_second_max_us };
     }
     this.health = health;
+    this.healthNs = timeNs;
   }
 
   // The least pair; undefined while it is not known: a stale minimum is none.
@@ -77,14 +71,10 @@ export class CellState {
   }
 
   zoneStates() {
-    const at = (this.timeNs - Number(this.timeline?.begin_ns ?? 0)) * 1e-9;
     return this.scene.zones.map((zone, id) => {
       const state = this.zones.get(id);
-      const active = this.timeline
-        ? this.timeline.zones.some(({ zone: each, begin, end }) => each === id && begin <= at + 1e-6 && at <= end)
-        : state?.active;
-      const cause = active && state?.cause > 1 ? `${CAUSE[state.cause]} ${this.scene.objects[state.cause_object]?.name}` : "";
-      return { id, zone, active, known: this.timeline !== null || state !== undefined, cause };
+      const cause = state?.active && state.cause > 1 ? `${CAUSE[state.cause]} ${this.scene.objects[state.cause_object]?.name}` : "";
+      return { id, zone, active: state?.active, known: state !== undefined, cause };
     });
   }
 

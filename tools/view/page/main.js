@@ -4,6 +4,7 @@ import { CellState } from "./cell_state.js";
 import { Connection } from "./connection.js";
 import { onKeys } from "./keys.js";
 import { PairTable } from "./pair_table.js";
+import { savePicture } from "./picture.js";
 import { Plots } from "./plots.js";
 import { drawLegend, drawReadouts } from "./readouts.js";
 import { SceneView } from "./scene_view.js";
@@ -88,7 +89,7 @@ const secondsIn = () => (timeline ? (state.timeNs - Number(timeline.begin_ns)) *
 const pairName = (id) => `${scene.objects[state.pairs[id].a].name}~${scene.objects[state.pairs[id].b].name}`;
 function address(withCamera) {
   return addressOf({
-    time: secondsIn(), pairs: [...chosen].map(pairName), filter: table.filter, sort: table.key, theme,
+    time: secondsIn(), pairs: [...chosen].map(pairName), filter: table.filter, sort: table.sorting, theme,
     camera: withCamera ? view.place : asked.camera, shells: view.shells.visible,
   });
 }
@@ -100,7 +101,7 @@ for (const name of asked.pairs) {
   if (found) chosen.add(found.id);
 }
 table.filter = asked.filter;
-if (asked.sort) table.sortBy(asked.sort, false);
+if (asked.sort) table.sorting = asked.sort;
 view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
 view.shells.visible = asked.shells;
 if (asked.camera) view.place = asked.camera;
@@ -133,10 +134,10 @@ const actions = {
     toast("The link to this view is in the address bar, and copied");
   },
   picture: () => {
-    const link = document.createElement("a");
-    link.download = `${scene.name}-${state.report?.cycle ?? 0}.png`;
-    link.href = element("view").toDataURL("image/png");
-    link.click();
+    const cycle = state.report?.cycle ?? 0;
+    const [value, pair] = [element("minimum-value").textContent, element("minimum-pair").textContent];
+    const when = timeline ? `${secondsIn().toFixed(3)} s` : new Date(state.timeNs * 1e-6).toISOString();
+    savePicture(element("view"), element("labels"), `${scene.name}, cycle ${cycle}, ${when}: ${value}, ${pair}`, `${scene.name}-${cycle}.png`);
   },
   filter: () => element("filter").focus(),
   clear,
@@ -173,19 +174,31 @@ function frame(nowMs) {
 }
 requestAnimationFrame(frame);
 
+// Since when the recording has stood where somebody asks whether it stands.
+let stood;
+// Tables and plots are drawn a few times a second; what draws the scene works beside the page, and has ended when a
+// pixel can be read.
+function isDrawn() {
+  stood ??= { frame: frames, ms: performance.now() };
+  if (stood.finished) return frames > stood.finished + 1;
+  if (frames > stood.frame + 2 && performance.now() > stood.ms + 300) {
+    view.finish();
+    stood.finished = frames;
+  }
+  return false;
+}
+
 // For tests and pictures: what the page shows.
 window.clearance = {
   state, view, connection,
+  stands: () => ({ at: secondsIn(), report: drawnReport, time: state.timeNs, ready: view.isReady, frames, connected: state.connected }),
   shownFor: () => (firstMs === undefined ? -1 : (performance.now() - firstMs) / 1000),
   // Whether the recording stands at this time, s, and has been drawn there, tables and plots as well.
   isAt: (time) => {
     const there = drawnReport !== undefined && Math.abs(secondsIn() - Math.min(time, timeline.duration)) < 1e-3 &&
-      Math.abs(drawnReport - state.timeNs) < 1e9 && view.fitted;
-    if (!there) window.clearance.since = undefined;
-    else window.clearance.since ??= frames;
-    // What draws works beside the page: it has ended when a pixel can be read.
-    if (there && frames > window.clearance.since + 6) view.finish();
-    return there && frames > window.clearance.since + 12;
+      Math.abs(drawnReport - state.timeNs) < 1e9 && view.isReady && !state.history.isAsking;
+    if (!there) stood = undefined;
+    return there && isDrawn();
   },
   framesPerSecond: () => (times.length < 2 ? 0 : (1000 * (times.length - 1)) / (times.at(-1) - times[0])),
 };

@@ -2,7 +2,7 @@
 // distance and bounds beside those that matter.
 import * as THREE from "three";
 import { css, mm, put } from "./format.js";
-import { isKnown } from "./cell_state.js";
+import { isKnown } from "./pair_status.js";
 
 const MOST_LINES = 64, MOST_LABELS = 4;
 const WIDTH = 0.0016, POINT = 0.0042; // of the distance to the camera

@@ -1,6 +1,6 @@
 // The published pairs as a table: sorted, filtered, a row chosen by a click. Drawn a few times a second, and no more
 // rows than a person reads.
-import { isKnown, STATUS } from "./cell_state.js";
+import { isKnown, STATUS } from "./pair_status.js";
 import { COLOUR } from "./pair_lines.js";
 import { contact, milliseconds, mm, put, signed } from "./format.js";
 
@@ -29,10 +29,12 @@ export class PairTable {
     this.drawnMs = 0;
     this.sortBy("lower", false);
     for (const head of this.heads) {
+      head.tabIndex = 0;
       head.onclick = () => {
         this.sortBy(head.dataset.key, this.key === head.dataset.key && !this.down);
         changed();
       };
+      head.onkeydown = ({ key }) => key === "Enter" && head.onclick();
     }
     this.input.oninput = () => {
       this.drawnMs = 0;
@@ -46,9 +48,19 @@ export class PairTable {
     this.down = down;
     this.drawnMs = 0;
     for (const head of this.heads) {
-      head.classList.toggle("sorted", head.dataset.key === key);
-      head.classList.toggle("down", head.dataset.key === key && down);
+      const isSorted = head.dataset.key === key;
+      head.classList.toggle("sorted", isSorted);
+      head.classList.toggle("down", isSorted && down);
+      head.setAttribute("aria-sort", !isSorted ? "none" : down ? "descending" : "ascending");
     }
+  }
+
+  // For addresses: "lower", or "-lower" for the other way round.
+  get sorting() {
+    return `${this.down ? "-" : ""}${this.key}`;
+  }
+  set sorting(text) {
+    this.sortBy(text.replace("-", ""), text.startsWith("-"));
   }
 
   get filter() {

@@ -1,8 +1,9 @@
 // The last 30 s as lines: least distance with its lower bound, time of the tick, chosen pairs.
 import { css, micro, mm, put } from "./format.js";
-import { HISTORY_S, isKnown } from "./cell_state.js";
+import { HISTORY_S, tickOf } from "./history.js";
 
 const AGAIN_MS = 66;
+const MOST_THRESHOLDS = 4;
 const HUES = ["--accent", "--lost", "--good", "--near", "--alarm", "--quiet"];
 
 // A canvas with as many pixels as it has on the screen, and its drawing context, cleared.
@@ -23,6 +24,9 @@ export function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(Math.max(value, 1e-12)));
   return [1, 2, 5, 10].map((each) => each * power).find((each) => each >= value * 0.999);
 }
+
+// At most five characters.
+const axisNumber = (value) => (Math.abs(value) < 1e4 ? String(Number(value.toPrecision(3))) : `${Number((1e-3 * value).toPrecision(3))}k`);
 
 class Plot {
   constructor(id) {
@@ -53,7 +57,7 @@ class Plot {
       context.moveTo(left, y(value));
       context.lineTo(width, y(value));
       context.stroke();
-      context.fillText(String(Number(value.toPrecision(3))), left - 5, Math.min(height - 6, Math.max(7, y(value))));
+      context.fillText(axisNumber(value), left - 5, Math.min(height - 6, Math.max(7, y(value))));
     }
     for (let s = -20; s < 0; s += 10) {
       context.beginPath();
@@ -78,10 +82,16 @@ class Plot {
     context.strokeStyle = colour;
     context.lineWidth = 1.6;
     context.beginPath();
+    context.lineCap = "round";
     let pen = false;
     for (const [s, value] of points) {
-      if (Number.isFinite(value)) context[pen ? "lineTo" : "moveTo"](x(s), y(value));
-      pen = Number.isFinite(value);
+      if (!Number.isFinite(value)) {
+        pen = false;
+        continue;
+      }
+      if (!pen) context.moveTo(x(s), y(value));
+      context.lineTo(x(s), y(value)); // a single point is a dot
+      pen = true;
     }
     context.stroke();
     context.lineWidth = 1;
@@ -100,6 +110,8 @@ class Plot {
   }
 }
 
+const inMm = (curve) => curve.map(([s, metres]) => [s, 1e3 * metres]);
+
 export class Plots {
   constructor() {
     this.minimum = new Plot("plot-minimum");
@@ -110,31 +122,41 @@ export class Plots {
   }
 
   draw(state, chosen, nowMs) {
-    if (nowMs - this.drawnMs < AGAIN_MS || !state.history.length) return;
+    if (nowMs - this.drawnMs < AGAIN_MS || !state.report) return;
     this.drawnMs = nowMs;
-    const now = state.history.at(-1).s;
-    const series = (value) => state.history.map((at) => [at.s - now, value(at)]);
-    const thresholds = state.scene.zones.slice(0, 4).map(({ enter_below }) => ({ value: 1e3 * enter_below, colour: css("--alarm") }));
-    // A recording knows what was before it was moved to where it is.
-    const before = state.timeline?.stretches.map(([s, , lower]) => [s + Number(state.timeline.begin_ns) * 1e-9 - now, lower === null ? NaN : 1e3 * lower])
-      .filter(([s]) => s <= 0 && s > -HISTORY_S);
-    this.minimum.draw([{ colour: css("--accent"), fill: true, points: before ?? series(({ lower }) => 1e3 * lower) }], thresholds);
-    const { distance } = state.history.at(-1);
-    put(document.getElementById("plot-minimum-now"), distance === undefined ? "not known" : `${mm(distance, 2)} mm`);
-    this.tick.draw([{ colour: css("--good"), points: series(({ tick }) => tick) }]);
-    const { tick } = state.history.at(-1);
-    put(document.getElementById("plot-tick-now"), tick === undefined ? "not recorded" : micro(tick));
-    this.chosen(state, chosen, now);
+    state.history.wish(chosen);
+    this.drawMinimum(state);
+    this.drawTick(state);
+    this.drawChosen(state, chosen);
   }
 
-  chosen(state, chosen, now) {
+  // The distance as a line, what is proved as what lies below it.
+  drawMinimum(state) {
+    const { scene, history } = state, minimum = state.minimum();
+    const thresholds = scene.zones.slice(0, MOST_THRESHOLDS).map(({ enter_below }) => ({ value: 1e3 * enter_below, colour: css("--alarm") }));
+    const lower = { colour: css("--accent"), points: inMm(history.curve("lower")), fill: true };
+    this.minimum.draw([lower, { colour: css("--accent"), points: inMm(history.curve("distance")) }], thresholds);
+    put(document.getElementById("plot-minimum-now"), minimum ? `${mm(minimum.distance, 2)} mm` : "not known");
+  }
+
+  drawTick({ report, history }) {
+    this.tick.draw([{ colour: css("--good"), points: history.curve("tick") }]);
+    const tick = tickOf(report);
+    put(document.getElementById("plot-tick-now"), tick === undefined ? "not recorded" : micro(tick));
+  }
+
+  drawChosen({ pairs, history }, chosen) {
     this.figure.hidden = chosen.size === 0;
     if (!chosen.size) return;
-    const lines = [...chosen].slice(0, HUES.length).map((id, i) => {
-      const place = state.report.pairs.findIndex(({ pair }) => pair === id);
-      const points = state.history.map(({ s, pairs }) => [s - now, isKnown(pairs[place] ?? { status: 9 }) ? 1e3 * pairs[place].distance : NaN]);
-      return { colour: css(HUES[i]), points };
-    });
-    this.pairs.draw(lines);
+    const shown = [...chosen].slice(0, HUES.length);
+    this.pairs.draw(shown.map((id, i) => ({ colour: css(HUES[i]), points: inMm(history.curve(id)) })));
+    const names = document.getElementById("plot-chosen-names");
+    if (names.dataset.shown === shown.join()) return;
+    names.dataset.shown = shown.join();
+    names.replaceChildren(...shown.map((id, i) => {
+      const name = Object.assign(document.createElement("span"), { textContent: pairs[id].name });
+      name.style.setProperty("--mark", `var(${HUES[i]})`);
+      return name;
+    }));
   }
 }

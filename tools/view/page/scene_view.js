@@ -62,16 +62,21 @@ export class SceneView {
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(...DIRECTIONS[side]).normalize(), away);
     this.surround();
-    this.fitted = true;
   }
   // Grids reach as far as the cell does.
   surround() {
     const sphere = this.sphere(false);
+    if (!sphere) return;
     for (const { material } of this.bodies.grids) {
       material.uniforms.centre.value.copy(sphere.center);
       material.uniforms.reach.value = sphere.radius;
     }
     this.bodies.refocus();
+    this.fitted = true;
+  }
+  // The camera has its place, or there is nothing to be seen yet.
+  get isReady() {
+    return this.fitted || !this.sphere(false);
   }
 
   sphere(moving) {
@@ -93,12 +98,8 @@ export class SceneView {
 
   moved(transforms) {
     if (!this.bodies.move(transforms) && this.fitted) return;
-    if (this.isPlaced) {
-      this.surround();
-      this.fitted = true;
-    } else {
-      this.fit("cell", true);
-    }
+    if (this.isPlaced) this.surround();
+    else this.fit("cell", true);
   }
 
   // Draws where something has changed; a recording that stands still costs nothing.

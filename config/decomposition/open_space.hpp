@@ -1,0 +1,63 @@
+// The space around a mesh, on a grid: how far its points are from the mesh, and which of them a
+// ball from outside can reach. Approximate: it guides the search for parts, and certifies nothing.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "config/decomposition/triangle_mesh.hpp"
+
+namespace clearance {
+
+// A point of the open space.
+struct OpenPoint {
+  Vec3 position;
+  double distance;  // from the mesh, m
+};
+
+class OpenSpace {
+ public:
+  // Open is what a ball of radius `ball` can reach from outside without touching the mesh.
+  OpenSpace(const TriangleMesh& mesh, double ball);
+
+  [[nodiscard]] double spacing() const { return spacing_; }
+  // Of the grid, those of at least this distance from the mesh.
+  [[nodiscard]] std::vector<OpenPoint> points(double least) const;
+  // Whether a point, which may be outside of the grid, is in what no ball reaches.
+  [[nodiscard]] bool encloses(const Vec3& point) const;
+
+ private:
+  using Index = Eigen::Array3i;
+
+  [[nodiscard]] std::size_t flat(const Index& at) const {
+    return (static_cast<std::size_t>(at.z()) * static_cast<std::size_t>(count_.y()) +
+            static_cast<std::size_t>(at.y())) *
+               static_cast<std::size_t>(count_.x()) +
+           static_cast<std::size_t>(at.x());
+  }
+  [[nodiscard]] Vec3 centre(const Index& at) const {
+    return origin_ + spacing_ * at.cast<double>().matrix();
+  }
+  [[nodiscard]] Index index_of(const Vec3& point) const {
+    return ((point - origin_) / spacing_).array().round().cast<int>();
+  }
+  template <class Visit>
+  void each(const Visit& visit) const;
+
+  void sample(const TriangleMesh& mesh);
+  void offer(const Index& at, std::int32_t sample);
+  void spread();
+  void flood(double ball);
+  bool spread_open(const Index& at, double least, std::vector<Index>& reached);
+
+  Vec3 origin_;
+  double spacing_ = 0.0;
+  Index count_;
+  std::vector<Vec3> samples_;          // points of the mesh
+  std::vector<std::int32_t> nearest_;  // of each cell's centre: index of a sample
+  std::vector<float> distance_;        // from that
+  std::vector<bool> open_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,259 @@
+#include "config/decomposition/part_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <variant>
+
+#include "config/decomposition/cuts.hpp"
+#include "config/decomposition/in_parallel.hpp"
+#include "config/decomposition/large_faces.hpp"
+#include "config/decomposition/rough_hull.hpp"
+#include "core/enclosing_polyhedron.hpp"
+
+namespace clearance {
+namespace {
+
+// Shares of the tolerance.
+constexpr double kBall = 0.75;        // what is narrower than such a ball is taken as closed
+constexpr double kLeastOpen = 0.3;    // what is nearer to the mesh is no error
+constexpr double kOverlap = 0.01;     // of neighbouring cells
+constexpr double kSimplified = 0.06;  // how far corners may stick out that fewer facets leave
+
+constexpr std::size_t kFacets = 96;  // of a part, at most
+constexpr std::size_t kPiecesAPart = 3;
+
+// Of a body's size: more than clipping and rounding can move a point, and nothing to a distance.
+constexpr double kMargin = 0x1p-30;
+
+std::vector<Vec3> vertices_of(const ConvexPolyhedron& body) {
+  std::vector<Vec3> vertices;
+  for (const Vertex& vertex : body.vertices) vertices.push_back(vertex.position);
+  return vertices;
+}
+
+// Cubes of that half width around points that lie in one plane.
+std::vector<Vec3> thickened(const std::vector<Vec3>& points, double by) {
+  std::vector<Vec3> corners;
+  for (const Vec3& point : points) {
+    for (int k = 0; k < 8; ++k) {
+      corners.push_back(
+          point + by * Vec3((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1));
+    }
+  }
+  return corners;
+}
+
+std::optional<ConvexPolyhedron> body_of(const std::vector<Vec3>& points) {
+  ShapeResult made = polyhedron_from_vertices(points);
+  auto* body = std::get_if<ConvexPolyhedron>(&made);
+  return body == nullptr ? std::nullopt : std::optional(std::move(*body));
+}
+
+}  // namespace
+
+ConvexPolyhedron with_fewer_facets(ConvexPolyhedron hull, double tolerance) {
+  const double size = hull.bounding_radius;
+  hull.radius = kMargin * size;
+  const PlacedShape placed{&hull, {}};
+  const auto fewer = enclosing_polyhedron(
+      {&placed, 1}, {.facets = kFacets, .tolerance = kSimplified * tolerance / size});
+  // Its corners are rounded once more than the planes: what counts is their hull.
+  auto body = fewer ? body_of(vertices_of(*fewer)) : std::nullopt;
+  if (body) return *std::move(body);
+  hull.radius = 0.0;
+  return hull;
+}
+
+PartSearch::PartSearch(const TriangleMesh& mesh, const PartLimits& limits)
+    : mesh_(mesh),
+      limits_(limits),
+      space_(mesh, kBall * limits.tolerance),
+      faces_(large_faces(mesh, limits.tolerance)) {
+  for (const Vec3& vertex : mesh.vertices) box_.extend(vertex);
+  pieces_ = {whole()};
+  open_ = pieces_[0].open;
+}
+
+// The points of the mesh, one a cell of the open space's grid, and its box.
+Piece PartSearch::whole() const {
+  Piece piece;
+  piece.cells.emplace_back();
+  for (int axis = 0; axis < 3; ++axis) {
+    piece.cells[0].planes.push_back({Vec3::Unit(axis), box_.max()[axis]});
+    piece.cells[0].planes.push_back({-Vec3::Unit(axis), -box_.min()[axis]});
+  }
+  const double spacing = space_.spacing();
+  std::vector<std::pair<std::array<long, 3>, Vec3>> points;
+  const auto add = [&](const Vec3& point) {
+    points.emplace_back(
+        std::array{std::lround(point.x() / spacing), std::lround(point.y() / spacing),
+                   std::lround(point.z() / spacing)},
+        point);
+  };
+  for (const Vec3& vertex : mesh_.vertices) add(vertex);
+  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    subdivide(mesh_.triangle(i), 4.0 * spacing, [&](const Triangle& t) {
+      for (const Vec3& corner : t) add(corner);
+    });
+  }
+  std::ranges::stable_sort(points, [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i].first != points[i - 1].first) piece.points.push_back(points[i].second);
+  }
+  piece.finish(space_.points(kLeastOpen * limits_.tolerance), spacing);
+  return piece;
+}
+
+// Where the mesh runs through a plane of the piece: between points of the mesh, and often corners
+// of the piece's hull.
+void PartSearch::add_rim(const HalfSpace& plane, Piece& piece) const {
+  const double near = 1e-6 * space_.spacing();
+  const auto above = [&](const Vec3& point) { return plane.normal.dot(point) - plane.offset; };
+  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    const Triangle triangle = mesh_.triangle(i);
+    const double heights[] = {above(triangle[0]), above(triangle[1]), above(triangle[2])};
+    const auto [low, high] = std::ranges::minmax(heights);
+    if (low > 0.0 || high < 0.0) continue;
+    for (const Vec3& point : clipped(triangle, piece.cells[0], 0.0)) {
+      if (std::abs(above(point)) <= near) piece.points.push_back(point);
+    }
+  }
+}
+
+std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const {
+  const auto plane = best_cut(piece, faces_, limits_.tolerance, space_.spacing());
+  if (!plane) return std::nullopt;
+  std::pair<Piece, Piece> sides;
+  for (const Vec3& point : piece.points) {
+    const double above = plane->normal.dot(point) - plane->offset;
+    if (above <= 0.0) sides.first.points.push_back(point);
+    if (above >= 0.0) sides.second.points.push_back(point);
+  }
+  sides.first.cells = sides.second.cells = piece.cells;
+  sides.first.cells[0].planes.push_back(*plane);
+  sides.second.cells[0].planes.push_back({-plane->normal, -plane->offset});
+  for (Piece* side : {&sides.first, &sides.second}) {
+    const std::vector<Vec3> corners = side->cells[0].corners_within(space_, 0.0);
+    side->points.insert(side->points.end(), corners.begin(), corners.end());
+    add_rim(*plane, *side);
+    side->finish(piece.open, space_.spacing());
+  }
+  return sides;
+}
+
+// The worst one first.
+void PartSearch::split(double aim) {
+  while (pieces_.size() < kPiecesAPart * limits_.max_parts) {
+    const auto worst = std::ranges::max_element(
+        pieces_, [](const Piece& a, const Piece& b) { return a.error < b.error; });
+    if (worst->error <= aim) return;
+    auto sides = cut(*worst);
+    if (!sides) return;
+    *worst = std::move(sides->first);
+    pieces_.push_back(std::move(sides->second));
+  }
+}
+
+// Of the hull of both; where it is more than `enough`, some error above that.
+double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) const {
+  Outline outline = a.outline;
+  outline.add(b.outline);
+  const std::vector<Vec3> points = outline.points();
+  const double near = 0.5 * space_.spacing();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : points) box.extend(point);
+  box.extend(box.max() + Vec3::Constant(near));
+  box.extend(box.min() - Vec3::Constant(near));
+  const std::vector<HalfSpace> hull = rough_hull(points);
+  double error = 0.0;
+  for (const OpenPoint& point : open_) {
+    if (point.distance - near <= error || !box.contains(point.position) ||
+        !holds(hull, point.position, near)) {
+      continue;
+    }
+    error = point.distance - near;
+    if (error > enough) return error;
+  }
+  return error;
+}
+
+// The two whose hull is least wrong, again and again.
+void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
+  constexpr double kUnknown = -1.0;
+  // Of every two, the later one's row; a row and a column go when two are joined.
+  std::vector<std::vector<double>> errors(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) errors[i].assign(i, kUnknown);
+  while (pieces.size() > 1) {
+    const bool too_many = pieces.size() > limits_.max_parts;
+    std::vector<std::pair<std::size_t, std::size_t>> unknown;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (errors[i][j] == kUnknown) unknown.emplace_back(i, j);
+      }
+    }
+    in_parallel(unknown.size(), [&](std::size_t k) {
+      const auto [i, j] = unknown[k];
+      errors[i][j] = joint_error(pieces[i], pieces[j], too_many ? kInfinity : aim);
+    });
+    std::size_t first = 0, second = 1;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (errors[i][j] < errors[second][first]) {
+          first = j;
+          second = i;
+        }
+      }
+    }
+    if (errors[second][first] > aim && !too_many) return;
+    Piece& joined = pieces[first];
+    Piece& other = pieces[second];
+    joined.cells.insert(joined.cells.end(), other.cells.begin(), other.cells.end());
+    joined.outline.add(other.outline);
+    joined.error = errors[second][first];
+    const auto gone = static_cast<std::ptrdiff_t>(second);
+    pieces.erase(pieces.begin() + gone);
+    errors.erase(errors.begin() + gone);
+    for (std::size_t i = second; i < pieces.size(); ++i) errors[i].erase(errors[i].begin() + gone);
+    std::ranges::fill(errors[first], kUnknown);
+    for (std::size_t i = first + 1; i < pieces.size(); ++i) errors[i][first] = kUnknown;
+  }
+}
+
+// Every triangle of the mesh, clipped by the piece's cells, and the corners of these that no
+// triangle has: what of the mesh is in the cells is in their hull.
+std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
+  // Cells that overlap leave no gap, not even a point, that would be surface of the union.
+  const double overlap = kOverlap * limits_.tolerance;
+  std::vector<Vec3> points;
+  for (const Cell& cell : piece.cells) {
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const auto polygon = clipped(mesh_.triangle(i), cell, overlap);
+      points.insert(points.end(), polygon.begin(), polygon.end());
+    }
+    const std::vector<Vec3> corners = cell.corners_within(space_, overlap);
+    points.insert(points.end(), corners.begin(), corners.end());
+  }
+  return points;
+}
+
+std::vector<ConvexPolyhedron> PartSearch::parts(double aim) {
+  split(aim);
+  std::vector<Piece> pieces = pieces_;
+  join(aim, pieces);
+  std::vector<std::optional<ConvexPolyhedron>> made(pieces.size());
+  in_parallel(pieces.size(), [&](std::size_t i) {
+    const std::vector<Vec3> points = points_of(pieces[i]);
+    if (points.empty()) return;
+    auto hull = body_of(points);
+    if (!hull) hull = body_of(thickened(points, kOverlap * limits_.tolerance));
+    if (hull) made[i] = with_fewer_facets(*std::move(hull), limits_.tolerance);
+  });
+  std::vector<ConvexPolyhedron> parts;
+  for (auto& part : made) {
+    if (part) parts.push_back(*std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace clearance

@@ -1,0 +1,45 @@
+// The search for parts: cut until every piece is near enough to convex, then join what fits
+// together.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "config/decomposition/convex_parts.hpp"
+#include "config/decomposition/open_space.hpp"
+#include "config/decomposition/piece.hpp"
+#include "core/convex_polyhedron.hpp"
+
+namespace clearance {
+
+class PartSearch {
+ public:
+  PartSearch(const TriangleMesh& mesh, const PartLimits& limits);
+
+  // Parts whose estimated error is at most `aim`, or the most parts that the limits allow.
+  // Together they hold every triangle. A lower aim than before goes on from the pieces of before.
+  std::vector<ConvexPolyhedron> parts(double aim);
+
+ private:
+  [[nodiscard]] Piece whole() const;
+  void split(double aim);
+  [[nodiscard]] std::optional<std::pair<Piece, Piece>> cut(const Piece& piece) const;
+  void add_rim(const HalfSpace& plane, Piece& piece) const;
+  [[nodiscard]] double joint_error(const Piece& a, const Piece& b, double enough) const;
+  void join(double aim, std::vector<Piece>& pieces) const;
+  [[nodiscard]] std::vector<Vec3> points_of(const Piece& piece) const;
+
+  const TriangleMesh& mesh_;
+  PartLimits limits_;
+  OpenSpace space_;
+  Eigen::AlignedBox3d box_;
+  std::vector<HalfSpace> faces_;  // along which cuts are tried
+  std::vector<OpenPoint> open_;   // in the hull of the whole
+  std::vector<Piece> pieces_;     // none of them joined
+};
+
+// A body that holds `hull` and reaches a small share of the tolerance beyond it.
+[[nodiscard]] ConvexPolyhedron with_fewer_facets(ConvexPolyhedron hull, double tolerance);
+
+}  // namespace clearance

@@ -1,0 +1,126 @@
+#include "config/decomposition/piece.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "config/decomposition/rough_hull.hpp"
+
+namespace clearance {
+namespace {
+
+// The axes both ways, then a spiral over the sphere.
+std::array<Vec3, kDirections> spread_directions() {
+  std::array<Vec3, kDirections> directions;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    directions[2 * axis] = Vec3::Unit(static_cast<Eigen::Index>(axis));
+    directions[2 * axis + 1] = -directions[2 * axis];
+  }
+  constexpr std::size_t kSpiral = kDirections - 6;
+  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  for (std::size_t i = 0; i < kSpiral; ++i) {
+    const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / kSpiral;
+    const double ring = std::sqrt(1.0 - z * z), angle = turn * static_cast<double>(i);
+    directions[6 + i] = {ring * std::cos(angle), ring * std::sin(angle), z};
+  }
+  return directions;
+}
+
+const std::array<Vec3, kDirections>& directions() {
+  static const std::array<Vec3, kDirections> all = spread_directions();
+  return all;
+}
+
+}  // namespace
+
+Outline::Outline() { reach_.fill(-std::numeric_limits<double>::infinity()); }
+
+void Outline::add(const Vec3& point) {
+  const auto& all = directions();
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const double reach = all[k].dot(point);
+    if (reach <= reach_[k]) continue;
+    reach_[k] = reach;
+    farthest_[k] = point;
+  }
+}
+
+void Outline::add(const Outline& other) {
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    if (other.reach_[k] <= reach_[k]) continue;
+    reach_[k] = other.reach_[k];
+    farthest_[k] = other.farthest_[k];
+  }
+}
+
+std::vector<Vec3> Outline::points() const {
+  std::vector<Vec3> points;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    if (std::isinf(reach_[k])) continue;
+    if (std::ranges::find(points, farthest_[k]) == points.end()) points.push_back(farthest_[k]);
+  }
+  return points;
+}
+
+// Where three planes meet, and no other is in between.
+std::vector<Vec3> Cell::corners_within(const OpenSpace& space, double margin) const {
+  std::vector<Vec3> corners;
+  const double slack = 1e-6 * space.spacing();
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const Vec3 line = planes[i].normal.cross(planes[j].normal);
+      if (line.norm() < 1e-6) continue;
+      for (std::size_t k = j + 1; k < planes.size(); ++k) {
+        Mat3 normals;
+        normals << planes[i].normal.transpose(), planes[j].normal.transpose(),
+            planes[k].normal.transpose();
+        if (std::abs(normals.determinant()) < 1e-6) continue;
+        const Vec3 corner =
+            normals.inverse() *
+            (Vec3(planes[i].offset, planes[j].offset, planes[k].offset) + Vec3::Constant(margin));
+        if (holds(planes, corner, margin + slack) && space.encloses(corner))
+          corners.push_back(corner);
+      }
+    }
+  }
+  return corners;
+}
+
+void Piece::finish(std::span<const OpenPoint> open_before, double spacing) {
+  outline = Outline();
+  for (const Vec3& point : points) outline.add(point);
+  hull = rough_hull(outline.points());
+  open.clear();
+  error = 0.0;
+  if (hull.empty()) return;
+  for (const OpenPoint& point : open_before) {
+    if (!holds(hull, point.position, 0.5 * spacing)) continue;
+    open.push_back(point);
+    error = std::max(error, point.distance - 0.5 * spacing);
+  }
+}
+
+// Plane by plane, as I. Sutherland and G. Hodgman did (1974).
+std::vector<Vec3> clipped(const Triangle& triangle, const Cell& cell, double margin) {
+  std::vector<Vec3> polygon(triangle.begin(), triangle.end()), kept;
+  for (const HalfSpace& plane : cell.planes) {
+    const double limit = plane.offset + margin;
+    kept.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3& from = polygon[i];
+      const Vec3& to = polygon[(i + 1) % polygon.size()];
+      const double above_from = plane.normal.dot(from) - limit;
+      const double above_to = plane.normal.dot(to) - limit;
+      if (above_from <= 0.0) kept.push_back(from);
+      if ((above_from < 0.0 && above_to > 0.0) || (above_from > 0.0 && above_to < 0.0)) {
+        kept.push_back(from + above_from / (above_from - above_to) * (to - from));
+      }
+    }
+    polygon.swap(kept);
+    if (polygon.empty()) break;
+  }
+  return polygon;
+}
+
+}  // namespace clearance

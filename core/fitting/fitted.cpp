@@ -1,0 +1,102 @@
+#include "core/fitting/fitted.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/distance.hpp"
+
+namespace clearance {
+namespace {
+
+// Steps of the search, rad: the last one moves a link's surface by less than its model's slack of
+// a thousandth.
+constexpr double kFirstStep = 0.6, kLastStep = 1e-4;
+// So many, because costs have kinks: of few ways all may lead up beside a way that leads down.
+constexpr int kWays = 16;
+
+}  // namespace
+
+double size_of(const ConvexPolyhedron& body) {
+  double size = 0.0;
+  for (const Vec3& p : body.anchors) size = std::max(size, p.cwiseAbs().maxCoeff());
+  return size;
+}
+
+std::vector<Vec3> vertices_in(const ConvexPolyhedron& body,
+                              const Eigen::Quaterniond& body_from_frame) {
+  const Mat3 to_frame = rotation_matrix(body_from_frame).transpose();
+  std::vector<Vec3> placed;
+  placed.reserve(body.anchors.size());
+  for (const Vec3& p : body.anchors) placed.emplace_back(to_frame * p);
+  return placed;
+}
+
+Eigen::Quaterniond turn_to(const Vec3& axis) {
+  return Eigen::Quaterniond::FromTwoVectors(Vec3(Vec3::UnitZ()), axis).normalized();
+}
+
+Mat3 principal_axes(const ConvexPolyhedron& body) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : body.anchors) mean += p;
+  mean /= static_cast<double>(body.anchors.size());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& p : body.anchors) spread += (p - mean) * (p - mean).transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors();
+}
+
+Vec3 best_direction(std::span<const Vec3> starts, const std::function<double(const Vec3&)>& cost) {
+  Vec3 best = starts[0];
+  double least = kInfinity;
+  for (const Vec3& start : starts) {
+    Vec3 at = start;
+    double here = cost(at);
+    for (double step = kFirstStep; step > kLastStep;) {
+      const Vec3 x = at.unitOrthogonal(), y = at.cross(x);
+      Vec3 next = at;
+      double lower = here;
+      for (int k = 0; k < kWays; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kWays;
+        const Vec3 way = std::cos(angle) * x + std::sin(angle) * y;
+        const Vec3 tried = (at + step * way).normalized();
+        const double there = cost(tried);
+        if (there < lower) {
+          lower = there;
+          next = tried;
+        }
+      }
+      if (lower < here) {
+        at = next;
+        here = lower;
+      } else {
+        step *= 0.5;
+      }
+    }
+    if (here < least) {
+      least = here;
+      best = at;
+    }
+  }
+  return best;
+}
+
+EnclosingModel fitted(ModelKind kind, ShapeResult shape, const Pose& frame_from_shape,
+                      const ConvexPolyhedron& body) {
+  if (const auto* error = std::get_if<ShapeError>(&shape)) throw std::logic_error(error->reason);
+  EnclosingModel model{kind, std::get<ConvexPolyhedron>(std::move(shape)), frame_from_shape};
+  model.error = certified_error(model, body);
+  return model;
+}
+
+BeyondBody::BeyondBody(const ConvexPolyhedron& body)
+    : body_(body), point_(std::get<ConvexPolyhedron>(point(Vec3::Zero(), 0.0))) {}
+
+double BeyondBody::operator()(const Vec3& p) {
+  RelativePose body_from_point;
+  body_from_point.translation = p;
+  return distance(body_, point_, body_from_point, state_).upper;
+}
+
+}  // namespace clearance

@@ -1,0 +1,199 @@
+// What the daemon says: streams and latched values, each taken into a second sample and swapped.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "monitor/client/client.hpp"
+#include "monitor/pair_name.hpp"
+#include "monitor/participant/participant.hpp"
+
+namespace clearance::client {
+namespace {
+
+template <class T>
+bool take_one(dds_entity_t reader, T& sample) {
+  void* pointer = &sample;
+  dds_sample_info_t info;
+  while (dds_take(reader, &pointer, &info, 1, 1) > 0) {
+    if (info.valid_data) return true;
+  }
+  return false;
+}
+
+// Leaves `latest` as it is when there is nothing.
+template <class T>
+bool take_newer(dds_entity_t reader, Sample<T>& latest, Sample<T>& scratch) {
+  if (!take_one(reader, *scratch)) return false;
+  std::swap(*latest, *scratch);
+  return true;
+}
+
+template <class Message>
+TopicKind kind_of() {
+  for (const Topic& topic : kTopics) {
+    if (topic.type == &topic_descriptor<Message>()) return topic.kind;
+  }
+  return TopicKind::kDistances;
+}
+
+dds_entity_t make_reader(Connection& connection, TopicKind kind, std::int32_t depth = 0) {
+  return connection.participant().reader(kind, connection.topics().*topic(kind).name, depth);
+}
+
+template <class Sequence>
+auto list(const Sequence& sequence) {
+  return std::span(sequence._buffer, sequence._length);
+}
+
+template <class Sequence>
+std::optional<std::uint32_t> id_of(const Sequence& named, std::string_view name) {
+  for (const auto& one : list(named)) {
+    if (name == one.name) return one.id;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Connection::Connection(const DdsOptions& options, const Topics& topics)
+    : participant_(std::make_unique<Participant>(options)), topics_(topics) {}
+Connection::Connection(dds_entity_t participant, const std::string& partition, const Topics& topics)
+    : participant_(std::make_unique<Participant>(participant, partition)), topics_(topics) {}
+Connection::~Connection() = default;
+
+const std::string& Connection::where() const noexcept { return participant_->where(); }
+
+template <class Message>
+Stream<Message>::Stream(Connection& connection, const StreamOptions& options)
+    : reader_(make_reader(connection, kind_of<Message>(), options.depth)),
+      wait_(std::make_unique<DataWait>(connection.participant(), std::vector{reader_})),
+      checker_(options.old_after.count()) {}
+
+template <class Message>
+Stream<Message>::~Stream() {
+  wait_.reset();
+  dds_delete(reader_);
+}
+
+template <class Message>
+bool Stream<Message>::take() {
+  if (!take_newer(reader_, message_, scratch_)) return false;
+  check_ = checker_.check(*message_, now_ns());
+  return true;
+}
+
+// A writer that comes or goes wakes as well, with nothing to take.
+template <class Message>
+bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
+  const std::int64_t end_ns = dds_time() + timeout.count();
+  while (!take()) {
+    const std::int64_t left_ns = end_ns - dds_time();
+    if (left_ns <= 0) return false;
+    wait_->wait(left_ns);
+  }
+  return true;
+}
+
+// What is passed over counts as having come.
+template <class Message>
+bool Stream<Message>::newest(std::chrono::nanoseconds timeout) {
+  if (!next(timeout)) return false;
+  while (take()) {
+  }
+  return true;
+}
+
+template <class Message>
+std::uint32_t Stream<Message>::daemons() const {
+  return writers_alive(reader_);
+}
+
+template <class Message>
+bool Stream<Message>::has_ended() const {
+  return writers_there(reader_) == 0;
+}
+
+template class Stream<clearance_msg_Distances>;
+template class Stream<clearance_msg_Gradients>;
+template class Stream<clearance_msg_Separation>;
+
+const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
+                                       std::optional<std::uint32_t> pair) {
+  for (const clearance_msg_PairDistance& published : list(report.pairs)) {
+    if (published.pair == pair) return &published;
+  }
+  return nullptr;
+}
+
+Catalogue::Catalogue(Connection& connection)
+    : reader_(make_reader(connection, TopicKind::kCatalogue)) {}
+
+void Catalogue::update() {
+  while (take_newer(reader_, message_, scratch_)) known_ = true;
+}
+
+std::optional<std::uint32_t> Catalogue::object(std::string_view name) const {
+  return id_of(message_->objects, name);
+}
+
+std::optional<std::uint32_t> Catalogue::joint(std::string_view name) const {
+  return id_of(message_->joints, name);
+}
+
+std::optional<std::uint32_t> Catalogue::pair(std::string_view a, std::string_view b) const {
+  const auto first = object(a), second = object(b);
+  if (!first || !second) return std::nullopt;
+  for (const clearance_msg_CataloguePair& pair : list(message_->pairs)) {
+    const bool same = pair.object_a == *first && pair.object_b == *second;
+    const bool swapped = pair.object_a == *second && pair.object_b == *first;
+    if (same || swapped) return pair.id;
+  }
+  return std::nullopt;
+}
+
+std::string Catalogue::object_name(std::uint32_t object) const {
+  if (object >= message_->objects._length) return fmt::format("object {}", object);
+  return message_->objects._buffer[object].name;
+}
+
+std::string Catalogue::joint_name(std::uint32_t joint) const {
+  if (joint >= message_->joints._length) return fmt::format("joint {}", joint);
+  return message_->joints._buffer[joint].name;
+}
+
+std::string Catalogue::part_name(std::uint32_t object, std::uint32_t part) const {
+  if (object >= message_->objects._length) return object_name(object);
+  const clearance_msg_CatalogueObject& found = message_->objects._buffer[object];
+  if (found.parts._length < 2 || part >= found.parts._length) return found.name;
+  return fmt::format("{}.{}", found.name, found.parts._buffer[part]);
+}
+
+std::string Catalogue::pair_name(const clearance_msg_PairDistance& pair) const {
+  if (pair.pair >= message_->pairs._length) return fmt::format("pair {}", pair.pair);
+  const clearance_msg_CataloguePair& objects = message_->pairs._buffer[pair.pair];
+  return clearance::pair_name(part_name(objects.object_a, pair.part_a),
+                              part_name(objects.object_b, pair.part_b));
+}
+
+Health::Health(Connection& connection) : reader_(make_reader(connection, TopicKind::kHealth)) {}
+
+void Health::update() {
+  while (take_newer(reader_, message_, scratch_)) known_ = true;
+}
+
+Zones::Zones(Connection& connection) : reader_(make_reader(connection, TopicKind::kZones)) {}
+
+void Zones::update() {
+  clearance_msg_ZoneState zone{};
+  while (take_one(reader_, zone)) states_[zone.zone] = zone;
+}
+
+void Zones::keep_only(std::uint64_t daemon) {
+  std::erase_if(states_, [=](const auto& zone) { return zone.second.daemon != daemon; });
+}
+
+std::int64_t now_ns() noexcept { return dds_time(); }
+
+}  // namespace clearance::client

@@ -1,0 +1,68 @@
+// A stage of the tick: how the distances of published pairs change with the positions of joints.
+//
+// A distance changes by n . (v_b - v_a), with the normal n from A to B and the velocities v of the
+// two witness points, each fixed to its object: where the closest points are unique, what they do
+// on the surfaces makes no difference (the envelope theorem). So
+//
+//   d distance / d q = n . (J_b - J_a),   J dq: how q moves the object at its witness point.
+//
+// The same holds of a penetration depth along its normal. Where several pairs of points are
+// closest (parallel faces, two parts at once) the distance has no gradient, and this is the one by
+// the points that were found, one of its generalised gradients.
+//
+// Measured with two arms of seven joints (config/cells/seven_joint_arms.yaml; -O3, on a machine
+// that others kept busy): 24 us for 219 pairs with 1,430 entries. Nothing where the scene does not
+// ask.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/gradients/gradient_rows.hpp"
+#include "monitor/kinematics/joint_screw.hpp"
+#include "monitor/objects/robot_inputs.hpp"
+
+namespace clearance {
+
+class Differentiation {
+ public:
+  // Allocates all it will ever need. The scene must outlive this.
+  explicit Differentiation(const Scene& scene);
+
+  [[nodiscard]] const GradientRows& rows() const noexcept { return rows_; }
+
+  // `pairs`: the published ones as of this tick, `inputs` as they were placed in it. `gradients`:
+  // made by unknown_gradients() of the rows. Allocates, throws and locks nothing.
+  void differentiate(std::span<const PairReport> pairs, const RobotInputs& inputs,
+                     Gradients& gradients) noexcept;
+
+ private:
+  // A joint whose screws are needed.
+  struct Moving {
+    std::uint32_t robot, joint;
+    std::uint32_t first_screw;
+  };
+  // What one position of a joint adds to an entry.
+  struct Term {
+    std::uint32_t screw, entry;
+    bool moves_b;
+  };
+  struct Terms {  // of a row, the latter excluded
+    std::uint32_t first, end;
+  };
+
+  [[nodiscard]] std::uint32_t first_screw_of(const MovingJoint& joint);
+  void add_terms(const GradientRow& row, const ObjectPair& pair);
+  void find_screws(const RobotInputs& inputs) noexcept;
+
+  const Scene& scene_;
+  GradientRows rows_;
+  std::vector<Moving> moving_;
+  std::vector<JointScrew> screws_;
+  std::vector<Terms> terms_of_;  // by row
+  std::vector<Term> terms_;
+};
+
+}  // namespace clearance

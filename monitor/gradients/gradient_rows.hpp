@@ -1,0 +1,41 @@
+// Which joint positions move the one object of a published pair as seen from the other: the layout
+// of a report's gradients, which a scene determines once for all ticks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+
+// The gradient of one pair.
+struct GradientRow {
+  std::uint32_t published = 0;       // index into Report::pairs
+  std::uint32_t first = 0, end = 0;  // its entries, the latter excluded
+};
+
+struct GradientRows {
+  std::vector<GradientRow> rows;  // of the published pairs that joints move, in their order
+  std::vector<std::uint32_t>
+      variables;  // by entry, ascending in a row: index into Scene::variables
+};
+
+// A joint that moves one of a pair's objects and not the other. One on the way to both carries both
+// alike, which changes no distance.
+struct MovingJoint {
+  std::uint32_t robot = 0, joint = 0;  // indices into Scene::robots and Robot::joints
+  bool moves_b = false;                // the second object of the pair; else the first
+};
+
+// Of any pair: from the world outwards, those of the first object first.
+[[nodiscard]] std::vector<MovingJoint> joints_between(const Scene& scene, const ObjectPair& pair);
+
+// No rows unless Scene::gradients.
+[[nodiscard]] GradientRows gradient_rows(const Scene& scene);
+
+// With room for these rows, all of it NaN.
+[[nodiscard]] Gradients unknown_gradients(const GradientRows& rows);
+
+}  // namespace clearance

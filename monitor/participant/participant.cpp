@@ -1,0 +1,367 @@
+// Configures the domain in the process instead of by a file, creates the participant, and gives
+// every endpoint the QoS of the topic table. Every call is checked; a failure is a DdsError that
+// says what was attempted.
+#include "monitor/participant/participant.hpp"
+
+#include <fmt/format.h>
+
+#include <netdb.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <mutex>
+
+#if defined(__SANITIZE_THREAD__)
+// The packaged Cyclone is built without ThreadSanitizer, which therefore sees its locks but not its
+// atomic operations: what it reports inside the library says nothing. Reports in our code are not
+// affected.
+extern "C" const char* __tsan_default_suppressions() { return "race:libddsc.so\n"; }
+#endif
+
+namespace clearance {
+namespace {
+
+// A stopped reader must not hold a writer up: keep-last drops the oldest instead of waiting, and
+// what could still wait (a full send buffer) ends here.
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
+
+constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
+
+// Qos objects are freed by Cyclone.
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+// An empty name is the default partition, which is the absence of the policy.
+Qos partition_qos(const std::string& partition) {
+  Qos qos(dds_create_qos());
+  if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
+  return qos;
+}
+
+// The same for readers and writers, so that both sides of a topic always match.
+Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
+  dds_qset_durability(qos.get(), delivery == Delivery::kLatched ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                                                : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
+  // A writer that leaves takes nothing back: readers keep what it said.
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  return qos;
+}
+
+// As ROS 2 has it, with what its tools look for.
+Qos ros_qos(const RosType& type, bool reliable) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       kMaxBlocking);
+  dds_qset_durability(qos.get(),
+                      type.is_latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, type.depth);
+  dds_qset_userdata(qos.get(), type.user_data, std::strlen(type.user_data));
+  return qos;
+}
+
+// How large a datagram may be, and a fragment of a sample in it with its headers.
+struct DatagramSizes {
+  int message, fragment;
+};
+
+bool is_loopback(const DdsOptions& options) { return options.interface == "lo"; }
+bool is_default(const DdsOptions& options) { return options.interface == "default"; }
+
+// What chooses the network; nothing for the one that Cyclone chooses.
+std::string interface_xml(const DdsOptions& options) {
+  if (is_default(options)) return "";
+  return fmt::format(
+      "<Interfaces><NetworkInterface name=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>",
+      options.interface, is_loopback(options) ? "false" : "spdp");
+}
+
+// The default of Cyclone allows 9 programs on a machine without multicast.
+std::string discovery_xml(const DdsOptions& options) {
+  std::string xml;
+  if (!is_default(options)) {
+    xml =
+        "<ParticipantIndex>auto</ParticipantIndex>"
+        "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>";
+  }
+  std::string peers;
+  if (is_loopback(options)) peers = "<Peer Address=\"127.0.0.1\"/>";
+  for (const std::string& peer : options.peers)
+    peers += fmt::format("<Peer Address=\"{}\"/>", peer);
+  return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
+}
+
+// What is empty is left out: Cyclone refuses nothing, but a person has to read it.
+std::string element(const char* name, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
+}
+
+// For clients: how large their datagrams are is their own affair.
+std::string reach(const DdsOptions& options) {
+  const std::string on = fmt::format(
+      "in domain {} (ROS_DOMAIN_ID){}", options.domain,
+      options.partition.empty()
+          ? ""
+          : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
+  if (is_default(options) && options.peers.empty())
+    return fmt::format("every program without a configuration reaches it, {}", on);
+  return fmt::format(
+      "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
+      ", {}",
+      element("General", interface_xml(options)), element("Discovery", discovery_xml(options)), on);
+}
+
+// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and is ten IP
+// fragments on a network.
+DatagramSizes datagram_sizes(const DdsOptions& options) {
+  return is_loopback(options) ? DatagramSizes{.message = 65'000, .fragment = 64'000}
+                              : DatagramSizes{.message = 1'400, .fragment = 1'300};
+}
+
+// A process can configure a domain once: participants of the same domain share it, and the first
+// one's options hold.
+std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<const dds_entity_t>> domains;
+  const std::lock_guard lock(mutex);
+  if (auto open = domains[options.domain].lock()) return open;
+  const dds_entity_t handle =
+      check_dds(dds_create_domain(options.domain, domain_configuration(options).c_str()),
+                fmt::format("configuring DDS domain {}", options.domain));
+  std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
+                                             [](const dds_entity_t* entity) {
+                                               dds_delete(*entity);
+                                               delete entity;
+                                             });
+  domains[options.domain] = domain;
+  return domain;
+}
+
+std::string describe_partition(const std::string& partition) {
+  return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
+}
+
+std::string describe(const DdsOptions& options) {
+  return fmt::format("domain {}, {}, interface {}, datagrams of up to {} B{}", options.domain,
+                     describe_partition(options.partition),
+                     is_default(options) ? "as Cyclone chooses" : options.interface,
+                     datagram_sizes(options).message,
+                     std::getenv("CYCLONEDDS_URI") == nullptr ? "" : ", then CYCLONEDDS_URI");
+}
+
+// "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
+std::string host_of(const std::string& peer) {
+  if (peer.starts_with('[')) return peer.substr(1, peer.find(']') - 1);
+  const bool has_port = std::count(peer.begin(), peer.end(), ':') == 1;
+  return has_port ? peer.substr(0, peer.find(':')) : peer;
+}
+
+}  // namespace
+
+std::string domain_configuration(const DdsOptions& options) {
+  const DatagramSizes sizes = datagram_sizes(options);
+  std::string xml = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><General>{}"
+      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
+      "{}</Domain></CycloneDDS>",
+      interface_xml(options), sizes.message, sizes.fragment,
+      element("Discovery", discovery_xml(options)));
+  // What a person sets for all of Cyclone comes last, so it wins.
+  if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
+  return xml;
+}
+
+// Cyclone keeps the facts while the writer matches; the copy is ours to free.
+WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
+  dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader, writer);
+  if (endpoint == nullptr) return {};
+  WriterFacts facts{.present = true};
+  for (const std::uint8_t byte : endpoint->key.v) facts.guid += fmt::format("{:02x}", byte);
+  void* bytes = nullptr;
+  std::size_t size = 0;
+  if (dds_qget_userdata(endpoint->qos, &bytes, &size) && bytes != nullptr) {
+    facts.user_data.assign(static_cast<const char*>(bytes), size);
+    dds_free(bytes);
+  }
+  dds_builtintopic_free_endpoint(endpoint);
+  return facts;
+}
+
+// Asked again with more room when there are more than fit.
+std::vector<std::uint64_t> writers_of(dds_entity_t reader) {
+  std::vector<std::uint64_t> writers(64);
+  for (;;) {
+    const dds_return_t count = check_dds(
+        dds_get_matched_publications(reader, writers.data(), writers.size()), "listing writers");
+    const bool all = static_cast<std::size_t>(count) <= writers.size();
+    writers.resize(static_cast<std::size_t>(count));
+    if (all) return writers;
+  }
+}
+
+std::uint32_t writers_there(dds_entity_t reader) {
+  dds_subscription_matched_status_t status{};
+  dds_get_subscription_matched_status(reader, &status);
+  return status.current_count;
+}
+
+std::uint32_t writers_alive(dds_entity_t reader) {
+  dds_liveliness_changed_status_t status{};
+  dds_get_liveliness_changed_status(reader, &status);
+  return status.alive_count;
+}
+
+bool can_be_looked_up(const std::string& peer) {
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host_of(peer).c_str(), nullptr, nullptr, &found) != 0) return false;
+  freeaddrinfo(found);
+  return true;
+}
+
+DdsError::DdsError(const std::string& attempted, dds_return_t code)
+    : std::runtime_error(fmt::format("DDS: {} failed: {}", attempted, dds_strretcode(code))) {}
+
+dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
+  if (code < 0) throw DdsError(attempted, code);
+  return code;
+}
+
+// The partition is that of publisher and subscriber: endpoints of other partitions are never
+// matched.
+Participant::Participant(const DdsOptions& options)
+    : where_(describe(options)), how_to_reach_(reach(options)) {
+  if (options.domain > kMaxDomain) {
+    throw DdsError(fmt::format("joining domain {} (0 to 232 exist)", options.domain),
+                   DDS_RETCODE_BAD_PARAMETER);
+  }
+  domain_ = open_domain(options);
+  participant_ = check_dds(dds_create_participant(options.domain, nullptr, nullptr),
+                           fmt::format("joining {}", where_));
+  make_publisher_and_subscriber(options.partition);
+}
+
+Participant::Participant(dds_entity_t participant, const std::string& partition)
+    : is_own_(false),
+      where_(fmt::format("a participant of the program's own, {}", describe_partition(partition))),
+      participant_(participant) {
+  make_publisher_and_subscriber(partition);
+}
+
+void Participant::make_publisher_and_subscriber(const std::string& partition) {
+  const Qos qos = partition_qos(partition);
+  publisher_ =
+      check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");
+  subscriber_ =
+      check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
+}
+
+// Deletes topics, readers and writers as well, in somebody else's participant all but the topics.
+Participant::~Participant() {
+  if (is_own_) {
+    dds_delete(participant_);
+  } else {
+    dds_delete(publisher_);
+    dds_delete(subscriber_);
+  }
+}
+
+// Cyclone shares topics of one name and type, so creating one twice is allowed.
+dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const std::string& name) {
+  return check_dds(dds_create_topic(participant_, &type, name.c_str(), nullptr, nullptr),
+                   fmt::format("making topic {}", name));
+}
+
+// Latched topics keep the depth of the table: a reader with a greater one would not get more. The
+// filter is that of the topic entity, of which this reader has one of its own.
+dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
+                                 const dds_listener_t* listener, const dds_topic_filter* filter) {
+  const Topic& row = topic(kind);
+  const bool own_depth = depth > 0 && row.delivery == Delivery::kStream;
+  const Qos qos = endpoint_qos(row.delivery, own_depth ? depth : row.reader_depth);
+  const dds_entity_t of = make_topic(*row.type, name);
+  if (filter != nullptr) check_dds(dds_set_topic_filter_extended(of, filter), "filtering a topic");
+  return check_dds(dds_create_reader(subscriber_, of, qos.get(), listener),
+                   fmt::format("making a reader of {}", name));
+}
+
+// A late joiner needs nothing, and a sample that is lost is followed by another.
+dds_entity_t Participant::reader_of_others(const std::string& name,
+                                           const dds_listener_t* listener) {
+  const Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  const dds_entity_t of = make_topic(*topic(TopicKind::kDistances).type, name);
+  return check_dds(dds_create_reader(subscriber_, of, qos.get(), listener),
+                   fmt::format("making a reader of {}", name));
+}
+
+dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
+                                     const dds_listener_t* listener) {
+  const Qos qos = ros_qos(type, type.is_latched);
+  return check_dds(
+      dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
+      fmt::format("making a reader of {}", name));
+}
+
+dds_entity_t Participant::ros_writer(const RosType& type, const std::string& name) {
+  const Qos qos = ros_qos(type, true);
+  return check_dds(
+      dds_create_writer(publisher_, make_topic(*type.descriptor, name), qos.get(), nullptr),
+      fmt::format("making a writer of {}", name));
+}
+
+// Depth and durability are those of the table, whatever readers ask for.
+dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
+                                 const WriterOptions& options) {
+  const Topic& row = topic(kind);
+  const Qos qos = endpoint_qos(row.delivery, row.writer_depth);
+  if (options.lease_ns > 0) {
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, options.lease_ns);
+  }
+  if (!options.user_data.empty()) {
+    dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());
+  }
+  return check_dds(
+      dds_create_writer(publisher_, make_topic(*row.type, name), qos.get(), options.listener),
+      fmt::format("making a writer of {}", name));
+}
+
+// A guard condition beside the readers' conditions lets another thread end the wait.
+DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_t>& readers)
+    : waitset_(check_dds(dds_create_waitset(participant.handle()), "making a waitset")),
+      guard_(
+          check_dds(dds_create_guardcondition(participant.handle()), "making a guard condition")) {
+  check_dds(dds_waitset_attach(waitset_, guard_, 0), "attaching to a waitset");
+  for (const dds_entity_t reader : readers) add(reader);
+}
+
+// Both are gone already where the participant is.
+DataWait::~DataWait() {
+  dds_delete(waitset_);
+  dds_delete(guard_);
+}
+
+void DataWait::add(dds_entity_t reader) {
+  const dds_entity_t condition =
+      check_dds(dds_create_readcondition(reader, DDS_ANY_STATE), "making a read condition");
+  check_dds(dds_waitset_attach(waitset_, condition, reader), "attaching to a waitset");
+}
+
+// The guard is reset here, so one wake() ends one wait.
+bool DataWait::wait(std::int64_t timeout_ns) {
+  const dds_return_t triggered = dds_waitset_wait(waitset_, nullptr, 0, timeout_ns);
+  bool woken = false;
+  dds_take_guardcondition(guard_, &woken);
+  return triggered > 0 && !woken;
+}
+
+void DataWait::wake() noexcept { dds_set_guardcondition(guard_, true); }
+
+}  // namespace clearance

@@ -1,0 +1,93 @@
+#include "monitor/recording/recorded_cell.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "monitor/mcap/attachments.hpp"
+#include "monitor/mcap/compression.hpp"
+
+namespace clearance {
+namespace {
+
+// No compressed file may become larger.
+constexpr std::size_t kLargestFile = std::size_t{1} << 28;
+
+// A directory under the system's one for temporary files; gone with this.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::error_code fault;
+    std::string name = (std::filesystem::temp_directory_path(fault) / "clearance-XXXXXX").string();
+    if (!fault && ::mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code fault;
+    if (!path_.empty()) std::filesystem::remove_all(path_, fault);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Whoever made the recording says where they go: nowhere but under the root.
+bool stays_inside(const std::filesystem::path& name) {
+  return name.is_absolute() && name.has_filename() && name == name.lexically_normal() &&
+         std::none_of(name.begin(), name.end(),
+                      [](const std::filesystem::path& part) { return part == ".."; });
+}
+
+bool put_under(const std::filesystem::path& root, McapAttachment attachment) {
+  if (!stays_inside(attachment.name)) return false;
+  if (attachment.media_type == kZstdMediaType) {
+    std::vector<std::byte> bytes;
+    decompress(McapCompression::kZstd, attachment.bytes, kLargestFile, bytes);
+    attachment.bytes = std::move(bytes);
+  }
+  const auto path = root / std::filesystem::path(attachment.name).relative_path();
+  std::error_code fault;
+  std::filesystem::create_directories(path.parent_path(), fault);
+  std::ofstream out(path, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(attachment.bytes.data()),
+            static_cast<std::streamsize>(attachment.bytes.size()));
+  out.close();
+  return out.good();
+}
+
+CellResult failed(const std::filesystem::path& recording, const std::string& why) {
+  return std::vector<CellError>{
+      {fmt::format("{}: the files of its cell cannot be used: {}; expected --cell instead",
+                   recording.string(), why)}};
+}
+
+}  // namespace
+
+std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
+                                        const RecordingOutline& outline, CellOptions options) {
+  const char* const yaml = outline.catalogue ? (*outline.catalogue)->cell_yaml : nullptr;
+  if (yaml == nullptr || *yaml == '\0') return std::nullopt;
+  if (!stays_inside(outline.cell_file)) return parse_cell(yaml, recording, options);
+  McapAttachments attachments = read_first_attachments(recording);
+  if (!attachments.error.empty()) return failed(recording, attachments.error);
+  const TemporaryFolder folder;
+  if (folder.path().empty()) return failed(recording, "no directory for temporary files");
+  for (McapAttachment& attachment : attachments.found) {
+    const std::string name = attachment.name;
+    if (!put_under(folder.path(), std::move(attachment)))
+      return failed(recording, fmt::format("'{}' cannot be written", name));
+  }
+  const std::filesystem::path cell(outline.cell_file);
+  options.root = folder.path();
+  return parse_cell(yaml, folder.path() / cell.relative_path(), options);
+}
+
+}  // namespace clearance

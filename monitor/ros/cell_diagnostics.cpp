@@ -1,0 +1,190 @@
+#include "monitor/ros/cell_diagnostics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/pair_name.hpp"
+
+namespace clearance {
+namespace {
+
+struct Status {
+  std::string name, message;
+  DiagnosticLevel level = DiagnosticLevel::kOk;
+  std::vector<std::pair<std::string, std::string>> values = {};
+
+  // The first message of the highest level stays.
+  void raise(DiagnosticLevel to, std::string why) {
+    if (to <= level) return;
+    level = to;
+    message = std::move(why);
+  }
+};
+
+std::string milliseconds(std::int64_t ns) {
+  return fmt::format("{:.1f} ms", 1e-6 * static_cast<double>(ns));
+}
+
+Status tick_status(const clearance_msg_Health& health, std::uint64_t overruns,
+                   std::uint64_t dropped) {
+  Status status{.name = "tick", .message = "on time"};
+  if (dropped > 0)
+    status.raise(DiagnosticLevel::kWarn,
+                 fmt::format("{} reports were not published in the last second", dropped));
+  if (overruns > 0)
+    status.raise(DiagnosticLevel::kWarn,
+                 fmt::format("{} ticks ended late in the last second", overruns));
+  const auto us = [](double value) { return fmt::format("{:.1f} us", value); };
+  status.values = {{"cycle", std::to_string(health.cycle)},
+                   {"tick p50", us(health.tick_p50_us)},
+                   {"tick p99.9", us(health.tick_p999_us)},
+                   {"tick max", us(health.tick_max_us)},
+                   {"overruns", std::to_string(health.overruns)},
+                   {"skipped cycles", std::to_string(health.skipped_cycles)},
+                   {"lost batches", std::to_string(health.lost_batches)},
+                   {"dropped reports", std::to_string(health.dropped_reports)}};
+  return status;
+}
+
+Status distances_status(const Scene& scene, const Report& report) {
+  Status status{.name = "distances", .message = "all pairs are known"};
+  if (!report.minimum_certified)
+    status.raise(DiagnosticLevel::kWarn, "the minimum is not certified");
+  if (report.stale > 0) {
+    status.level = DiagnosticLevel::kWarn;
+    status.message = fmt::format("{} pairs are stale", report.stale);
+  }
+  if (report.unknown > 0)
+    status.raise(DiagnosticLevel::kError, fmt::format("{} pairs are unknown", report.unknown));
+  status.values = {{"pairs", std::to_string(report.pairs_total)},
+                   {"stale", std::to_string(report.stale)},
+                   {"unknown", std::to_string(report.unknown)},
+                   {"least lower bound", fmt::format("{:.6f} m", report.lower_all)}};
+  if (report.minimum_known) {
+    status.values.emplace_back("closest pair", pair_name(scene, report.minimum));
+    status.values.emplace_back("closest distance",
+                               fmt::format("{:.6f} m", report.minimum.distance));
+  }
+  return status;
+}
+
+// Of a pose or a position: its age as a value, and what is wrong with it.
+template <class Age>
+void add_input(const Age& input, Status& status) {
+  const std::string name = input.name;
+  status.values.emplace_back(name, input.age_ns < 0 ? "never seen" : milliseconds(input.age_ns));
+  if (input.age_ns < 0) {
+    status.raise(DiagnosticLevel::kError, name + " was never seen");
+  } else if (input.contradicted) {
+    status.raise(DiagnosticLevel::kError, name + " is contradicted");
+  } else if (input.stale) {
+    status.raise(DiagnosticLevel::kWarn, name + " is late");
+  }
+}
+
+// Links that follow joints have no poses of their own.
+Status poses_status(const clearance_msg_Health& health) {
+  Status status{.name = "poses", .message = "on time"};
+  for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
+    const clearance_msg_InputAge& input = health.inputs._buffer[i];
+    if (!input.follows_joints) add_input(input, status);
+  }
+  return status;
+}
+
+Status joints_status(const Scene& scene, std::uint32_t robot, const clearance_msg_Health& health) {
+  Status status{.name = "joints of " + scene.robots[robot].name, .message = "on time"};
+  for (std::uint32_t i = 0; i < health.joints._length; ++i) {
+    const clearance_msg_JointAge& joint = health.joints._buffer[i];
+    if (scene.variables[joint.variable].robot == robot) add_input(joint, status);
+  }
+  return status;
+}
+
+std::string cause_of(const Scene& scene, const ZoneReport& zone) {
+  const std::string& object = scene.objects[zone.cause_object].name;
+  switch (zone.cause) {
+    case ZoneCause::kInactive:
+      return "clear";
+    case ZoneCause::kNear:
+      return "by distance";
+    case ZoneCause::kLate:
+      return object + " is late";
+    case ZoneCause::kUnknown:
+      return object + " was never seen";
+    case ZoneCause::kDiscontinuous:
+      return object + " made a discontinuity";
+    case ZoneCause::kContradicted:
+      return object + " is contradicted";
+  }
+  return "";
+}
+
+Status zone_status(const Scene& scene, std::uint32_t index, const ZoneReport& zone) {
+  Status status{.name = "zone " + scene.zones[index].name, .message = "not active"};
+  const std::string cause = cause_of(scene, zone);
+  const std::string pair = pair_name(scene, zone.pair);
+  if (zone.active) status.raise(DiagnosticLevel::kWarn, fmt::format("active: {}, {}", pair, cause));
+  if (zone.active && zone.cause > ZoneCause::kLate) status.level = DiagnosticLevel::kError;
+  status.values = {{"active", zone.active ? "true" : "false"},
+                   {"certified", zone.certified ? "true" : "false"},
+                   {"cause", cause},
+                   {"pair", pair},
+                   {"clearance", fmt::format("{:.6f} m", zone.clearance)},
+                   {"swept clearance", fmt::format("{:.6f} m", zone.swept_clearance)},
+                   {"since cycle", std::to_string(zone.since_cycle)}};
+  return status;
+}
+
+Status recording_status(const clearance_msg_Health& health) {
+  Status status{.name = "recording", .message = health.recording};
+  if (!status.message.starts_with("recording "))
+    status.level = DiagnosticLevel::kError;
+  else if (health.recording_missing > 0)
+    status.level = DiagnosticLevel::kWarn;
+  status.values = {{"missing", std::to_string(health.recording_missing)}};
+  return status;
+}
+
+char* copied(const std::string& text) { return dds_string_dup(text.c_str()); }
+
+void to_wire(const Scene& scene, const Status& status,
+             diagnostic_msgs_msg_dds__DiagnosticStatus_& out) {
+  out.level = static_cast<std::uint8_t>(status.level);
+  out.name = copied(fmt::format("clearance {}: {}", scene.name, status.name));
+  out.message = copied(status.message);
+  out.hardware_id = copied(scene.name);
+  reserve_sequence(out.values, status.values.size());
+  for (const auto& [key, value] : status.values)
+    out.values._buffer[out.values._length++] = {copied(key), copied(value)};
+}
+
+}  // namespace
+
+Sample<DiagnosticArray> CellDiagnostics::make(const clearance_msg_Health& health,
+                                              const Report& report, std::int64_t stamp_ns) {
+  std::vector<Status> statuses = {
+      tick_status(health, health.overruns - std::exchange(overruns_, health.overruns),
+                  health.dropped_reports - std::exchange(dropped_, health.dropped_reports)),
+      distances_status(scene_, report), poses_status(health)};
+  for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot)
+    statuses.push_back(joints_status(scene_, robot, health));
+  for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone)
+    statuses.push_back(zone_status(scene_, zone, report.zones[zone]));
+  if (*health.recording != '\0') statuses.push_back(recording_status(health));
+
+  Sample<DiagnosticArray> sample;
+  sample->header.stamp.sec = static_cast<std::int32_t>(stamp_ns / 1'000'000'000);
+  sample->header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % 1'000'000'000);
+  sample->header.frame_id = copied("");
+  reserve_sequence(sample->status, statuses.size());
+  for (const Status& status : statuses)
+    to_wire(scene_, status, sample->status._buffer[sample->status._length++]);
+  return sample;
+}
+
+}  // namespace clearance

@@ -1,0 +1,36 @@
+// The health of a cell as diagnostics of ROS 2: what the health topic and the zones say, as levels
+// and texts.
+//
+// OK: known and on time. WARN: late, active, overrun; figures still hold, with wider bounds. ERROR:
+// not known, so nothing is clear of it.
+#pragma once
+
+#include <cstdint>
+
+#include "config/scene.hpp"
+#include "monitor/report.hpp"
+#include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/ros_types.hpp"
+
+namespace clearance {
+
+using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
+enum class DiagnosticLevel : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
+
+class CellDiagnostics {
+ public:
+  // The scene must outlive this.
+  explicit CellDiagnostics(const Scene& scene) : scene_(scene) {}
+
+  // To be called with every health sample, in order, and the report before it. Statuses: tick,
+  // distances, poses, joints of each robot, each zone, and the recording where there is one.
+  // Allocates.
+  [[nodiscard]] Sample<DiagnosticArray> make(const clearance_msg_Health& health,
+                                             const Report& report, std::int64_t stamp_ns);
+
+ private:
+  const Scene& scene_;
+  std::uint64_t overruns_ = 0, dropped_ = 0;
+};
+
+}  // namespace clearance

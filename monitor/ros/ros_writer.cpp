@@ -1,0 +1,159 @@
+#include "monitor/ros/ros_writer.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/dds/health.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "monitor/visual/cell_markers.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+// Of reports and numbers, for a thread that waits for a full send buffer now and then.
+constexpr std::size_t kReports = 2, kNumbers = 64;
+// A viewer that has thrown its markers away gets the bodies again.
+constexpr std::int64_t kBodiesAgainNs = 10'000'000'000;
+// Diagnostics need the last report before each second's end.
+constexpr double kDiagnosticReportsHz = 10.0;
+
+// 0: the cell does not ask for this topic.
+dds_entity_t make_writer(Participant& participant, const RosType& type, const std::string& topic) {
+  return topic.empty() ? 0 : participant.ros_writer(type, ros_dds_name(topic));
+}
+
+// The least of separation monitoring; a cell without it has the two speeds that its zones stand
+// for.
+double speed_scaling(const Report& report) noexcept {
+  if (!report.separated_zones.empty())
+    return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;
+  return std::ranges::any_of(report.zones, &ZoneReport::active) ? 0.0 : 1.0;
+}
+
+}  // namespace
+
+bool writes_ros(const Scene& scene) noexcept {
+  return std::ranges::any_of(kRosOutputs, [&](const RosOutput& output) {
+    return !(scene.ros.outputs.*output.topic).empty();
+  });
+}
+
+RosWriter::RosWriter(const Scene& scene, Participant& participant, const PoseReader& poses,
+                     const ReportQueue& published, const RecordingHealth& recording)
+    : scene_(scene),
+      poses_(poses),
+      published_(published),
+      recording_(recording),
+      markers_(make_writer(participant, kRosMarkers, scene.ros.outputs.markers)),
+      diagnostics_(make_writer(participant, kRosDiagnostics, scene.ros.outputs.diagnostics)),
+      minimum_distance_(make_writer(participant, kRosFloat64, scene.ros.outputs.minimum_distance)),
+      speed_scaling_(make_writer(participant, kRosFloat64, scene.ros.outputs.speed_scaling)),
+      queue_(scene, {.reports = kReports}),
+      numbers_(kNumbers),
+      period_ns_(std::llround(1e9 / (markers_ != 0 ? scene.ros.markers_hz : kDiagnosticReportsHz))),
+      cell_diagnostics_(scene),
+      distances_(make_distances(scene)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+RosWriter::~RosWriter() { finish(); }
+
+void RosWriter::finish() {
+  if (!thread_.joinable()) return;
+  stop_ = true;
+  queue_.close();
+  thread_.join();
+}
+
+void RosWriter::report(const Report& report, std::span<const SourceUse> sources) noexcept {
+  if (minimum_distance_ != 0 || speed_scaling_ != 0) {
+    if (Numbers* const slot = numbers_.back()) {
+      *slot = {.minimum_distance = report.lower_all, .speed_scaling = speed_scaling(report)};
+      numbers_.push();
+      queue_.wake();
+    }
+  }
+  if (markers_ == 0 && diagnostics_ == 0) return;
+  if (report.now_ns < next_ns_ && next_ns_ - report.now_ns <= period_ns_) return;
+  next_ns_ = report.now_ns + period_ns_;
+  queue_.report(report, sources);
+}
+
+void RosWriter::statistics(const LoopStatistics& statistics) noexcept {
+  if (diagnostics_ != 0) queue_.statistics(statistics);
+}
+
+void RosWriter::run() {
+  name_thread("ros");
+  // Nobody's safety rests on what it writes: no priority over the rest of the machine.
+  if (const Refusal refusal = use_fifo_scheduling(0)) spdlog::warn("{}", *refusal);
+  for (;;) {
+    queue_.wait();
+    if (stop_) return;
+    write_numbers();
+    while (const QueuedReport* queued = queue_.reports().front()) {
+      last_ = queued->report;
+      if (markers_ != 0) write_markers(*queued);
+      queue_.reports().pop();
+    }
+    while (const LoopStatistics* statistics = queue_.statistics().front()) {
+      write_diagnostics(*statistics);
+      queue_.statistics().pop();
+    }
+  }
+}
+
+void RosWriter::write_numbers() {
+  while (const Numbers* numbers = numbers_.front()) {
+    const std_msgs_msg_dds__Float64_ distance{numbers->minimum_distance};
+    const std_msgs_msg_dds__Float64_ scaling{numbers->speed_scaling};
+    numbers_.pop();
+    if (minimum_distance_ != 0) write(minimum_distance_, &distance);
+    if (speed_scaling_ != 0) write(speed_scaling_, &scaling);
+  }
+}
+
+// Bodies whenever a reader comes, and now and then: the topic is volatile, as viewers expect.
+void RosWriter::write_markers(const QueuedReport& queued) {
+  dds_publication_matched_status_t readers{};
+  dds_get_publication_matched_status(markers_, &readers);
+  bodies_due_ = bodies_due_ || readers.total_count_change > 0;
+  if (readers.current_count == 0) return;
+  const std::int64_t now_ns = queued.handed_over_ns;
+  if (bodies_due_ || std::abs(now_ns - bodies_written_ns_) >= kBodiesAgainNs) {
+    if (bodies_.empty()) bodies_ = bodies_message_for_tf(scene_, scene_.ros.world());
+    write_marker_array(bodies_);
+    bodies_written_ns_ = now_ns;
+    bodies_due_ = false;
+  }
+  to_wire(queued.report, queued.sources(), 0, *distances_);
+  const std::int64_t stamp_ns = queued.report.now_ns + queued.report.clock_offset_ns;
+  write_marker_array(closest_message(scene_, *distances_, stamp_ns, scene_.ros.world()));
+}
+
+// Through Cyclone's own type, which checks every length.
+void RosWriter::write_marker_array(std::span<const std::byte> cdr) {
+  if (decoder_.decode(cdr, marker_array_)) write(markers_, &*marker_array_);
+}
+
+void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
+  const auto health =
+      make_health(scene_, statistics, poses_, published_.dropped_reports(), recording_);
+  const auto sample = cell_diagnostics_.make(*health, last_, dds_time());
+  write(diagnostics_, &*sample);
+}
+
+// Powers of two say often enough that something fails.
+void RosWriter::write(dds_entity_t writer, const void* sample) {
+  const dds_return_t result = dds_write(writer, sample);
+  if (result == DDS_RETCODE_OK) return;
+  const std::uint64_t failed = ++failed_writes_;
+  if ((failed & (failed - 1)) == 0) {
+    spdlog::warn("writing for ROS 2 failed: {} ({} failed so far)", dds_strretcode(result), failed);
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,84 @@
+// What a cell tells ROS 2: markers, diagnostics and numbers, as far as it asks for them.
+//
+// A thread of its own makes and writes them. The tick thread copies a number each tick, a report as
+// often as markers are drawn, statistics once a second, and waits for nothing: what finds no room
+// is left out, and the next one says it anew.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/dds/recording_health.hpp"
+#include "monitor/loop/ports.hpp"
+#include "monitor/loop/report_queue.hpp"
+#include "monitor/loop/spsc_ring.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/ros/cell_diagnostics.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Whether the cell writes anything for ROS 2.
+[[nodiscard]] bool writes_ros(const Scene& scene) noexcept;
+
+class RosWriter final : public ReportSink {
+ public:
+  // Joins the topics that the scene names and starts the thread. Everything given must outlive
+  // this. `published`: of the reports on DDS, whose losses diagnostics name.
+  RosWriter(const Scene& scene, Participant& participant, const PoseReader& poses,
+            const ReportQueue& published, const RecordingHealth& recording);
+  ~RosWriter() override;
+  RosWriter(const RosWriter&) = delete;
+  RosWriter& operator=(const RosWriter&) = delete;
+
+  // Tick thread.
+  void input(const PoseBatch&) noexcept override {}
+  void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
+  void statistics(const LoopStatistics& statistics) noexcept override;
+
+  // After the last tick, or when another daemon publishes this cell: nothing more is written.
+  void finish();
+
+ private:
+  // Of one tick.
+  struct Numbers {
+    double minimum_distance = 0.0, speed_scaling = 0.0;
+  };
+
+  void run();
+  void write_numbers();
+  void write_markers(const QueuedReport& queued);
+  void write_marker_array(std::span<const std::byte> cdr);
+  void write_diagnostics(const LoopStatistics& statistics);
+  void write(dds_entity_t writer, const void* sample);
+
+  const Scene& scene_;
+  const PoseReader& poses_;
+  const ReportQueue& published_;
+  const RecordingHealth& recording_;
+  dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_;  // 0: not asked for
+  ReportQueue queue_;
+  SpscRing<Numbers> numbers_;
+  std::int64_t period_ns_, next_ns_ = 0;  // tick thread: when a report is handed over again
+
+  // The thread's own.
+  CellDiagnostics cell_diagnostics_;
+  Report last_;
+  Sample<clearance_msg_Distances> distances_;
+  Sample<visualization_msgs_msg_dds__MarkerArray_> marker_array_;
+  std::vector<std::byte> bodies_;
+  bool bodies_due_ = false;  // a reader has come
+  std::int64_t bodies_written_ns_ = 0;
+  CdrDecoder decoder_;
+  std::uint64_t failed_writes_ = 0;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,92 @@
+#include "monitor/separation/protective_distance.hpp"
+
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/motion/elapsed.hpp"
+
+namespace clearance {
+namespace {
+
+// S_p = c0 + c1 v + c2 v^2 for a speed v, in exact numbers. None is negative.
+struct Quadratic {
+  double c0, c1, c2;
+};
+
+// How the time and the distance of stopping grow with the speed at which braking begins: by
+// `time` v s and `distance` v^2 m, from the constants where no speed is stated.
+struct Stopping {
+  double constant_time = 0.0, constant_distance = 0.0;
+  double time = 0.0, distance = 0.0;
+};
+
+Stopping stopping(const Separation& terms) noexcept {
+  const double time = seconds(terms.stopping_time_ns);
+  const double speed = terms.stopping_speed;
+  if (speed == 0.0) {
+    return {.constant_time = time, .constant_distance = terms.stopping_distance};
+  }
+  return {.time = time / speed, .distance = terms.stopping_distance / (speed * speed)};
+}
+
+Quadratic quadratic(const Separation& terms, const Approach& approach) noexcept {
+  const Stopping s = stopping(terms);
+  const double reaction = seconds(terms.reaction_time_ns);
+  const double gained = terms.robot_acceleration * reaction;
+  // Until the robot stands: t0 + t1 v.
+  const double t0 = approach.human_age + reaction + s.constant_time + s.time * gained;
+  const double t1 = s.time;
+  const double half = 0.5 * approach.human_acceleration;
+  const double human0 = (approach.human_speed + half * t0) * t0;
+  const double human1 = (approach.human_speed + 2.0 * half * t0) * t1;
+  const double robot0 = approach.robot_speed * approach.robot_age + gained * reaction;
+  const double stopping0 = s.constant_distance + s.distance * gained * gained;
+  const double others =
+      terms.intrusion_distance + terms.human_uncertainty + terms.robot_uncertainty;
+  return {.c0 = human0 + robot0 + stopping0 + others,
+          .c1 = human1 + reaction + 2.0 * s.distance * gained,
+          .c2 = half * t1 * t1 + s.distance};
+}
+
+}  // namespace
+
+// Sums, products and rounding outward of what is not negative: each step keeps the order.
+ProtectiveDistance protective_distance(const Separation& terms, const Approach& approach,
+                                       double speed) noexcept {
+  const Stopping s = stopping(terms);
+  const double reaction = seconds(terms.reaction_time_ns);
+  const double braked_from = rounded_up(speed + terms.robot_acceleration * reaction);
+  const double until_standing =
+      rounded_up(approach.human_age + reaction + s.constant_time + swept(braked_from, s.time));
+  ProtectiveDistance found;
+  found.human = rounded_up(
+      (approach.human_speed + 0.5 * approach.human_acceleration * until_standing) * until_standing);
+  found.robot = rounded_up(approach.robot_speed * approach.robot_age + braked_from * reaction);
+  found.stopping =
+      rounded_up(s.constant_distance + swept(braked_from, swept(braked_from, s.distance)));
+  found.sum = rounded_up(found.human + found.robot + found.stopping + terms.intrusion_distance +
+                         terms.human_uncertainty + terms.robot_uncertainty);
+  return found;
+}
+
+// The root of c0 + c1 v + c2 v^2 = distance in the form that does not cancel; then down, by what it
+// is too much and more, until the rounded S_p agrees.
+double largest_speed(const Separation& terms, const Approach& approach, double distance) noexcept {
+  constexpr int kMostSteps = 8;
+  constexpr double kMore = 1.0 + 0x1p-40;
+  if (!(protective_distance(terms, approach, 0.0).sum <= distance)) return 0.0;
+  const Quadratic q = quadratic(terms, approach);
+  if (q.c1 == 0.0 && q.c2 == 0.0) return kInfinity;
+  const double left = std::fmax(distance - q.c0, 0.0);
+  double speed = 2.0 * left / (q.c1 + std::sqrt(q.c1 * q.c1 + 4.0 * q.c2 * left));
+  double step = 0x1p-50 * speed;
+  for (int i = 0; i < kMostSteps && speed > 0.0; ++i) {
+    const double over = protective_distance(terms, approach, speed).sum - distance;
+    if (over <= 0.0) return speed;
+    step = std::fmax(2.0 * step, kMore * over / (q.c1 + 2.0 * q.c2 * speed));
+    speed -= step;
+  }
+  return 0.0;
+}
+
+}  // namespace clearance

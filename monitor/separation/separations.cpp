@@ -1,0 +1,159 @@
+#include "monitor/separation/separations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/motion/elapsed.hpp"
+#include "monitor/pairs/pair_table.hpp"
+#include "monitor/separation/closing.hpp"
+#include "monitor/separation/protective_distance.hpp"
+
+namespace clearance {
+namespace {
+
+// A late object's pair has lower bounds that count in what it may have moved since its pose.
+double age_to_count_in(const TrackedObject& object) noexcept {
+  return object.late ? 0.0 : rounded_up(seconds(object.age_ns));
+}
+
+PairSeparation unknown_separation(std::uint32_t zone, std::uint32_t pair) noexcept {
+  PairSeparation unknown{.zone = zone, .pair = pair};
+  unknown.clearance = unknown.remaining = -kInfinity;
+  unknown.human_speed = unknown.robot_speed = kNan;
+  unknown.human_term = unknown.robot_term = unknown.stopping_term = kNan;
+  unknown.protective_distance = kNan;
+  return unknown;
+}
+
+// From the robot to the person, where that was found in this tick; else NaN.
+Vec3 towards_human(const PairReport& pair, bool human_is_first, std::uint64_t cycle) noexcept {
+  if (pair.evaluated_cycle != cycle) return Vec3::Constant(kNan);
+  return human_is_first ? Vec3(-pair.normal) : pair.normal;
+}
+
+// The largest factor of the robot's present speed with which it is not above the limit.
+double scaling_of(double robot_speed, double speed_limit, double remaining_when_standing) noexcept {
+  if (!(remaining_when_standing >= 0.0)) return 0.0;
+  if (robot_speed <= speed_limit) return 1.0;
+  return rounded_down(speed_limit / robot_speed);
+}
+
+// The weakest of a zone's pairs.
+void count_in(const PairSeparation& pair, ZoneSeparation& zone) noexcept {
+  const bool is_least = pair.scaling < zone.scaling ||
+                        (pair.scaling == zone.scaling && pair.remaining < zone.remaining);
+  if (is_least) zone.pair = pair.pair;
+  zone.validity = std::min(zone.validity, pair.validity);
+  zone.remaining = std::min(zone.remaining, pair.remaining);
+  zone.speed_limit = std::min(zone.speed_limit, pair.speed_limit);
+  zone.scaling = std::min(zone.scaling, pair.scaling);
+}
+
+}  // namespace
+
+Separations::Separations(const Scene& scene, const ZoneLevels& levels) : scene_(scene) {
+  std::vector<std::uint32_t> place(scene.pairs.size(), 0);
+  std::uint32_t published = 0;
+  for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+    place[p] = published;
+    published += scene.pairs[p].publish;
+  }
+  for (std::uint32_t z = 0; z < scene.zones.size(); ++z) {
+    const Zone& zone = scene.zones[z];
+    if (!zone.separation) continue;
+    const std::size_t first = members_.size();
+    for (std::size_t i = 0; i < zone.pairs.size(); ++i) {
+      const std::uint32_t pair = zone.pairs[i];
+      const bool human_is_first = zone.separation->human_is_first[i] != 0;
+      const ObjectPair& objects = scene.pairs[pair];
+      const auto in_zone =
+          std::ranges::find(levels.zones_of(pair), z, &ZoneLevels::Membership::zone);
+      members_.push_back({.pair = pair,
+                          .published = place[pair],
+                          .human = human_is_first ? objects.first : objects.second,
+                          .robot = human_is_first ? objects.second : objects.first,
+                          .human_is_first = human_is_first,
+                          .margins = in_zone->margins});
+    }
+    zones_.push_back({z, first, members_.size()});
+  }
+}
+
+void Separations::prepare(Report& report) const {
+  for (const SeparatedZone& zone : zones_) {
+    report.separated_zones.push_back({.zone = zone.zone, .pair = members_[zone.first_member].pair});
+    for (std::size_t m = zone.first_member; m < zone.end_member; ++m)
+      report.separated_pairs.push_back(unknown_separation(zone.zone, members_[m].pair));
+  }
+}
+
+void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cycle,
+                        Report& report) const noexcept {
+  for (std::size_t z = 0; z < zones_.size(); ++z) {
+    const SeparatedZone& zone = zones_[z];
+    ZoneSeparation least{.zone = zone.zone,
+                         .validity = SeparationValidity::kMeasured,
+                         .pair = members_[zone.first_member].pair,
+                         .remaining = kInfinity,
+                         .speed_limit = kInfinity,
+                         .scaling = 1.0};
+    for (std::size_t m = zone.first_member; m < zone.end_member; ++m) {
+      const Member& member = members_[m];
+      PairSeparation& pair = report.separated_pairs[m];
+      write_pair(zone, member, report.pairs[member.published], objects, cycle, pair);
+      count_in(pair, least);
+    }
+    report.separated_zones[z] = least;
+  }
+}
+
+// Speeds are those that are measured; what is not known has the largest that is stated.
+void Separations::write_pair(const SeparatedZone& zone, const Member& member,
+                             const PairReport& pair, std::span<const TrackedObject> objects,
+                             std::uint64_t cycle, PairSeparation& out) const noexcept {
+  const Separation& terms = *scene_.zones[zone.zone].separation;
+  const TrackedObject &human = objects[member.human], &robot = objects[member.robot];
+  out = unknown_separation(zone.zone, member.pair);
+  out.age_human_ns = human.age_ns;
+  out.age_robot_ns = robot.age_ns;
+
+  const double robot_limit = scene_.objects[member.robot].max_speed;
+  const double robot_assumed = std::min(terms.robot_speed, robot_limit);
+  const bool robot_known = robot.velocity_known();
+  if (pair.status == PairStatus::kUnknown || !(pair.lower > -kInfinity) ||
+      (!robot_known && !(robot_assumed < kInfinity))) {
+    return;
+  }
+  const Vec3 towards = towards_human(pair, member.human_is_first, cycle);
+  const Vec3& on_human = member.human_is_first ? pair.witness_a : pair.witness_b;
+  const Vec3& on_robot = member.human_is_first ? pair.witness_b : pair.witness_a;
+  const bool human_known = !terms.human_speed_is_measured || human.velocity_known();
+  const bool measured = terms.human_speed_is_measured && human_known;
+  const Approach approach{
+      .human_speed = measured ? speed_towards(human, -towards, on_human,
+                                              scene_.objects[member.human].max_speed)
+                              : terms.human_speed,
+      .human_acceleration = measured ? terms.human_acceleration : 0.0,
+      .robot_speed =
+          robot_known ? speed_towards(robot, towards, on_robot, robot_limit) : robot_assumed,
+      .human_age = age_to_count_in(human),
+      .robot_age = age_to_count_in(robot)};
+
+  const bool on_time = !human.late && !robot.late && human_known && robot_known;
+  out.validity = on_time ? SeparationValidity::kMeasured : SeparationValidity::kAssumed;
+  out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;
+  out.human_speed = approach.human_speed;
+  out.robot_speed = approach.robot_speed;
+  const ProtectiveDistance distance = protective_distance(terms, approach, approach.robot_speed);
+  out.human_term = distance.human;
+  out.robot_term = distance.robot;
+  out.stopping_term = distance.stopping;
+  out.protective_distance = distance.sum;
+  out.remaining = rounded_down(out.clearance - distance.sum);
+  out.speed_limit = largest_speed(terms, approach, out.clearance);
+  out.scaling = scaling_of(approach.robot_speed, out.speed_limit,
+                           out.clearance - protective_distance(terms, approach, 0.0).sum);
+}
+
+}  // namespace clearance

@@ -1,0 +1,26 @@
+// The gradients of a report as a DDS message.
+#pragma once
+
+#include <cstdint>
+
+#include "config/scene.hpp"
+#include "monitor/gradients/gradient_rows.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Pairs and joints are always the same: of each report only the numbers are filled in, which
+// allocates nothing.
+class GradientMessage {
+ public:
+  explicit GradientMessage(const Scene& scene);
+
+  // Valid until the next call. `daemon` is the caller's to set. `publish_ns`: as of Distances.
+  [[nodiscard]] clearance_msg_Gradients& of(const Report& report, std::int64_t publish_ns) noexcept;
+
+ private:
+  GradientRows rows_;
+  Sample<clearance_msg_Gradients> message_;
+};
+
+}  // namespace clearance

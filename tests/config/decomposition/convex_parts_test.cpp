@@ -1,0 +1,187 @@
+// Oracles: points of every triangle against every part's half-spaces; and the distance of points of
+// the parts' surface from every triangle, without a tree, by regions (C. Ericson, Real-Time
+// Collision Detection, 5.1.5).
+#include "config/decomposition/convex_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "config/decomposition/surface_error.hpp"
+#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance {
+namespace {
+
+struct Drawn {
+  std::string name;
+  TriangleMesh mesh;
+  std::size_t most_parts;  // that are expected within the tolerance
+  double tolerance = 5e-3;
+};
+std::ostream& operator<<(std::ostream& out, const Drawn& drawn) { return out << drawn.name; }
+
+class ConvexPartsOf : public testing::TestWithParam<Drawn> {};
+
+ConvexParts parts_of_mesh(const TriangleMesh& mesh, const PartLimits& limits = {}) {
+  return std::get<ConvexParts>(convex_parts(mesh, limits));
+}
+
+// Made once, for all tests.
+const ConvexParts& parts_of(const Drawn& drawn, std::size_t most = 24) {
+  static std::map<std::pair<std::string, std::size_t>, ConvexParts> made;
+  const auto [entry, is_new] = made.try_emplace({drawn.name, most});
+  if (is_new)
+    entry->second = parts_of_mesh(drawn.mesh, {.tolerance = drawn.tolerance, .max_parts = most});
+  return entry->second;
+}
+
+std::vector<ConvexPolyhedron> bodies_of_parts(const ConvexParts& parts) {
+  std::vector<ConvexPolyhedron> bodies;
+  for (const auto& part : parts.parts) bodies.push_back(test::made(polyhedron_from_vertices(part)));
+  return bodies;
+}
+
+// By how much a point lies outside; negative: inside.
+double outside(const ConvexPolyhedron& body, const Vec3& point) {
+  double most = -kInfinity;
+  for (const Facet& facet : body.facets) {
+    most = std::max(most, facet.normal.dot(point) - facet.offset);
+  }
+  return most;
+}
+
+Vec3 random_point(const Triangle& t, Random& random) {
+  double u = random.uniform(0.0, 1.0), v = random.uniform(0.0, 1.0);
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+}
+
+double distance_by_regions(const Triangle& t, const Vec3& p) {
+  const Vec3 ab = t[1] - t[0], ac = t[2] - t[0];
+  const double d1 = ab.dot(p - t[0]), d2 = ac.dot(p - t[0]);
+  if (d1 <= 0.0 && d2 <= 0.0) return (p - t[0]).norm();
+  const double d3 = ab.dot(p - t[1]), d4 = ac.dot(p - t[1]);
+  if (d3 >= 0.0 && d4 <= d3) return (p - t[1]).norm();
+  const double d5 = ab.dot(p - t[2]), d6 = ac.dot(p - t[2]);
+  if (d6 >= 0.0 && d5 <= d6) return (p - t[2]).norm();
+  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (p - t[0] - d1 / (d1 - d3) * ab).norm();
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (p - t[0] - d2 / (d2 - d6) * ac).norm();
+  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
+    return (p - t[1] - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1])).norm();
+  }
+  return (p - t[0] - vb / (va + vb + vc) * ab - vc / (va + vb + vc) * ac).norm();
+}
+
+// The largest distance from the mesh of points on the surface of the union.
+double sampled_error(const std::vector<ConvexPolyhedron>& bodies, const TriangleMesh& mesh,
+                     int samples) {
+  Random random(7);
+  double worst = 0.0;
+  for (const ConvexPolyhedron& body : bodies) {
+    for (const Facet& facet : body.facets) {
+      const auto corner = [&](std::int32_t side) {
+        const EdgeUse use = body.facet_edges[static_cast<std::size_t>(facet.first_side + side)];
+        const Edge& edge = body.edges[static_cast<std::size_t>(use.edge)];
+        return body.vertices[static_cast<std::size_t>(edge.vertex[use.side])].position;
+      };
+      for (int i = 0; i < samples; ++i) {
+        const std::int32_t side = 1 + i % (facet.sides - 2);
+        const Vec3 point = random_point({corner(0), corner(side), corner(side + 1)}, random);
+        const bool covered = std::ranges::any_of(bodies, [&](const ConvexPolyhedron& other) {
+          return &other != &body && outside(other, point) < 0.0;
+        });
+        if (covered) continue;
+        double nearest = kInfinity;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+          const Triangle triangle = mesh.triangle(t);
+          const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+          if (normal.norm() == 0.0) continue;  // its points are those of its neighbours
+          nearest = std::min(nearest, distance_by_regions(triangle, point));
+        }
+        worst = std::max(worst, nearest);
+      }
+    }
+  }
+  return worst;
+}
+
+TEST_P(ConvexPartsOf, HoldEveryPointOfEveryTriangle) {
+  const TriangleMesh& mesh = GetParam().mesh;
+  const std::vector<ConvexPolyhedron> bodies = bodies_of_parts(parts_of(GetParam()));
+  Random random(3);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int i = 0; i < 60; ++i) {
+      const Triangle triangle = mesh.triangle(t);
+      const Vec3 point =
+          i < 3 ? triangle[static_cast<std::size_t>(i)] : random_point(triangle, random);
+      double least = kInfinity;
+      for (const ConvexPolyhedron& body : bodies) least = std::min(least, outside(body, point));
+      ASSERT_LE(least, 1e-15) << "triangle " << t;
+    }
+  }
+}
+
+TEST_P(ConvexPartsOf, AreWithinTheToleranceAndFew) {
+  const ConvexParts parts = parts_of(GetParam());
+  EXPECT_LE(parts.error, GetParam().tolerance);
+  EXPECT_LE(parts.parts.size(), GetParam().most_parts);
+}
+
+TEST_P(ConvexPartsOf, AreNowhereFartherFromTheMeshThanTheirError) {
+  for (const std::size_t most : {1, 24}) {
+    const ConvexParts parts = parts_of(GetParam(), most);
+    EXPECT_LE(parts.parts.size(), most);
+    const double sampled = sampled_error(bodies_of_parts(parts), GetParam().mesh, 40);
+    EXPECT_LE(sampled, parts.error) << most;
+    EXPECT_GE(sampled, 0.5 * parts.error - 1e-6) << most;  // nor is the bound an empty one
+  }
+}
+
+// Of the rib between two blocks the search leaves 26 mm of one beside it at any tolerance.
+INSTANTIATE_TEST_SUITE_P(Drawn, ConvexPartsOf,
+                         testing::Values(Drawn{"L", test::l_shape(), 2},
+                                         Drawn{"Torus", test::torus(), 24, 8e-3},
+                                         Drawn{"OpenBox", test::open_box(), 9},
+                                         Drawn{"NestedBoxes", test::nested_boxes(), 1},
+                                         Drawn{"DegenerateL", test::degenerate_l(), 2},
+                                         Drawn{"Slivers", test::slivers(), 6, 0.03}),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST(ConvexParts, AConvexMeshIsItsHullToTheBit) {
+  const ConvexParts parts = parts_of_mesh(test::nested_boxes());
+  EXPECT_TRUE(parts.is_hull);
+  EXPECT_LE(parts.error, 1e-12);
+  EXPECT_EQ(parts.parts.at(0).size(), 8u);
+  for (const Vec3& v : parts.parts.at(0)) EXPECT_TRUE((v.array() == 0.0 || v.array() == 0.2).all());
+}
+
+TEST(ConvexParts, AreTheSameAtEveryStart) {
+  EXPECT_EQ(parts_of_mesh(test::open_box()).parts, parts_of_mesh(test::open_box()).parts);
+}
+
+TEST(ConvexParts, OfALargerToleranceAreFewer) {
+  const auto fine = parts_of_mesh(test::l_shape(), {.tolerance = 5e-3});
+  const auto coarse = parts_of_mesh(test::l_shape(), {.tolerance = 0.15});
+  EXPECT_LE(coarse.error, 0.15);
+  EXPECT_LT(coarse.parts.size(), fine.parts.size());
+}
+
+TEST(ConvexParts, OfAFlatMeshAreNone) {
+  TriangleMesh flat;
+  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
+  EXPECT_TRUE(std::holds_alternative<ShapeError>(convex_parts(flat)));
+}
+
+}  // namespace
+}  // namespace clearance

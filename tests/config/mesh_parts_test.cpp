@@ -1,0 +1,139 @@
+#include "config/mesh_parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/config/cells.hpp"
+#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A cell with an L of sheet bars, and what reading it told.
+class PartsOfMeshes : public testing::Test {
+ protected:
+  PartsOfMeshes() {
+    test::write_text(folder_ / "l.obj", test::obj_of(test::l_shape()));
+    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  }
+  ~PartsOfMeshes() override { ::unsetenv("XDG_CACHE_HOME"); }
+
+  Scene read(const std::string& keys = "", const std::string& sections = "") {
+    told_.clear();
+    const std::string text =
+        cell_text(sections + "objects:\n  - {name: a, mesh: {file: l.obj" + keys +
+                  "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
+    CellOptions options;
+    options.tell = [this](const std::string& line) { told_ += line + "\n"; };
+    options.mesh_errors = &mesh_errors_;
+    CellResult result = parse_cell(text, folder_ / "cell.yaml", options);
+    if (auto* scene = std::get_if<Scene>(&result)) return std::move(*scene);
+    for (const CellError& error : std::get<std::vector<CellError>>(result)) errors_ += error.text;
+    return {};
+  }
+
+  // The only file in a folder.
+  static std::filesystem::path only_file(const std::filesystem::path& folder) {
+    EXPECT_EQ(1, std::distance(std::filesystem::directory_iterator(folder), {}));
+    return std::filesystem::directory_iterator(folder)->path();
+  }
+
+  static std::vector<Vec3> anchors(const Scene& scene) {
+    std::vector<Vec3> all;
+    for (const Part& part : scene.objects.at(0).parts) {
+      all.insert(all.end(), part.shape.anchors.begin(), part.shape.anchors.end());
+    }
+    return all;
+  }
+
+  test::ScratchFolder folder_;
+  std::string told_, errors_;
+  std::map<std::string, double> mesh_errors_;
+};
+
+TEST_F(PartsOfMeshes, AreMadeOnceAndKeptBesideTheCell) {
+  const Scene first = read();
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  only_file(folder_ / "cell.yaml.parts");
+  const Scene second = read();
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_EQ(anchors(first), anchors(second));
+  EXPECT_EQ(first.revision, second.revision);
+  EXPECT_EQ(second.objects.at(0).parts.at(1).name, "mesh.1");
+  EXPECT_GT(mesh_errors_.at("a"), 0.0);
+  EXPECT_LE(mesh_errors_.at("a"), 5e-3);
+  EXPECT_FALSE(mesh_errors_.contains("b"));
+}
+
+TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
+  const Scene first = read();
+  const auto file = only_file(folder_ / "cell.yaml.parts");
+  const std::string good = test::read_text(file);
+  std::string other_number = good;
+  other_number.replace(other_number.find("0x1."), 4, "0x0.");
+  for (const std::string& bad :
+       {good.substr(0, good.size() / 2), other_number, std::string(), std::string("\0\xff", 2)}) {
+    test::write_text(file, bad);
+    EXPECT_EQ(anchors(first), anchors(read()));
+    EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+    EXPECT_EQ(good, test::read_text(file));
+  }
+}
+
+TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
+  const Scene first = read();
+  EXPECT_NEAR(read(", scale: 2").objects.at(0).parts.at(0).shape.bounding_radius,
+              2.0 * first.objects.at(0).parts.at(0).shape.bounding_radius, 2e-3);
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  read(", unit: mm");
+  EXPECT_THAT(told_, IsEmpty());  // its hull is within the tolerance
+  EXPECT_EQ(read(", tolerance: 0.2").objects.at(0).parts.size(), 1u);
+  EXPECT_EQ(read("", "defaults: {max_parts: 1}\n").objects.at(0).parts.size(), 1u);
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  test::write_text(folder_ / "l.obj", test::obj_of(test::degenerate_l()));
+  read();
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+}
+
+TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
+  test::write_text(folder_ / "cell.yaml.parts", "a file where a folder should be");
+  read();
+  EXPECT_THAT(told_, HasSubstr("kept in '" + (folder_ / "cache").string()));
+  only_file(folder_ / "cache/clearance/parts");
+  read();
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(PartsOfMeshes, AreUsedEvenWhereNothingCanBeKept) {
+  test::write_text(folder_ / "cell.yaml.parts", "a file where a folder should be");
+  test::write_text(folder_ / "cache", "another");
+  EXPECT_EQ(read().objects.at(0).parts.size(), 2u);
+  EXPECT_THAT(told_, HasSubstr("warning: '"));
+  EXPECT_THAT(told_, HasSubstr("cannot be written"));
+}
+
+TEST_F(PartsOfMeshes, AllHaveTheRadiusAroundTheMesh) {
+  const Scene scene = read(", rounding: 0.01");
+  for (const Part& part : scene.objects.at(0).parts) {
+    EXPECT_EQ(part.shape.radius, 0.01);
+  }
+}
+
+TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
+  read(", tolerance: 0");
+  read(", max_parts: 0");
+  read(", max_parts: 65");
+  EXPECT_THAT(errors_, HasSubstr("how far the parts of a mesh may reach beyond it"));
+  EXPECT_THAT(errors_, HasSubstr("parts of a mesh at most"));
+}
+
+}  // namespace
+}  // namespace clearance

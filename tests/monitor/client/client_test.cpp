@@ -1,0 +1,217 @@
+// The client library over real DDS, the daemon's side played by this test.
+#include "monitor/client/client.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "monitor/participant/participant.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance {
+namespace {
+
+using std::chrono::milliseconds;
+using test::eventually;
+
+constexpr milliseconds kPatience(20'000);
+
+// Writes what a daemon writes.
+class Daemon {
+ public:
+  explicit Daemon(const DdsOptions& dds)
+      : participant_(dds),
+        distances_(participant_.writer(TopicKind::kDistances, Topics{}.distances,
+                                       {.lease_ns = 100'000'000})),
+        catalogue_(participant_.writer(TopicKind::kCatalogue, Topics{}.catalogue)) {}
+
+  [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
+
+  void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time(), std::uint64_t daemon = 7) {
+    clearance_msg_Distances report{};
+    report.daemon = daemon;
+    report.cycle = cycle;
+    report.publish_ns = publish_ns;
+    report.scene_revision = 5;
+    check_dds(dds_write(distances_, &report), "writing");
+  }
+
+  // Hand (of two parts) and table, one pair, one joint.
+  void announce() {
+    Sample<clearance_msg_Catalogue> catalogue;
+    catalogue->scene = dds_string_dup("cell");
+    catalogue->cell_yaml = dds_string_dup("");
+    catalogue->scene_revision = 5;
+    reserve_sequence(catalogue->objects, 2);
+    for (const char* name : {"hand", "table"}) {
+      clearance_msg_CatalogueObject& object =
+          catalogue->objects._buffer[catalogue->objects._length];
+      object.id = catalogue->objects._length++;
+      object.name = dds_string_dup(name);
+    }
+    clearance_msg_CatalogueObject& hand = catalogue->objects._buffer[0];
+    reserve_sequence(hand.parts, 2);
+    for (const char* part : {"palm", "finger"}) {
+      hand.parts._buffer[hand.parts._length++] = dds_string_dup(part);
+    }
+    reserve_sequence(catalogue->pairs, 1);
+    catalogue->pairs._buffer[catalogue->pairs._length++] = {0, 0, 1, true};
+    reserve_sequence(catalogue->joints, 1);
+    catalogue->joints._buffer[catalogue->joints._length++] = {0, dds_string_dup("elbow")};
+    check_dds(dds_write(catalogue_, &*catalogue), "writing");
+  }
+
+  Participant& participant() { return participant_; }
+
+ private:
+  Participant participant_;
+  dds_entity_t distances_, catalogue_;
+};
+
+TEST(Client, GetsReportsInOrderEachWithItsCheck) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  client::Connection connection(dds);
+  client::Reports reports(connection, {.old_after = std::chrono::seconds(10)});
+  ASSERT_TRUE(eventually([&] { return daemon.is_heard() && reports.daemons() == 1; }));
+  EXPECT_FALSE(reports.next());
+  EXPECT_EQ(reports->cycle, 0u);
+  daemon.report(4);
+  daemon.report(5);
+  daemon.report(8, dds_time() - 20'000'000'000);
+  daemon.report(1, dds_time(), 9);
+  for (const std::uint64_t cycle : {4, 5}) {
+    ASSERT_TRUE(reports.next(kPatience));
+    EXPECT_EQ(reports->cycle, cycle);
+    EXPECT_TRUE(reports.check().fresh());
+    EXPECT_EQ(reports.check().missed, 0u);
+  }
+  ASSERT_TRUE(reports.next(kPatience));
+  EXPECT_EQ(reports.check().missed, 2u);
+  EXPECT_TRUE(reports.check().is_old);
+  ASSERT_TRUE(reports.next(kPatience));
+  EXPECT_TRUE(reports.check().other_daemon);
+  EXPECT_FALSE(reports.next(milliseconds(1)));
+  EXPECT_EQ((*reports).cycle, 1u) << "the last one stays";
+}
+
+TEST(Client, MayAskForTheNewestReportOnly) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  client::Connection connection(dds);
+  client::Reports reports(connection);
+  ASSERT_TRUE(eventually([&] { return daemon.is_heard(); }));
+  for (std::uint64_t cycle = 1; cycle <= 20; ++cycle) daemon.report(cycle);
+  ASSERT_TRUE(eventually([&] { return reports.newest(milliseconds(1)) && reports->cycle == 20; }));
+  EXPECT_FALSE(reports.newest());
+}
+
+TEST(Client, HearsThatTheDaemonHasEnded) {
+  const DdsOptions dds = test::own_dds();
+  client::Connection connection(dds);
+  client::Reports reports(connection);
+  {
+    Daemon daemon(dds);
+    ASSERT_TRUE(eventually([&] { return !reports.has_ended(); }));
+    daemon.report(1);
+    ASSERT_TRUE(eventually([&] { return reports.next(); }));
+  }
+  EXPECT_TRUE(eventually([&] { return reports.has_ended() && reports.daemons() == 0; }));
+  EXPECT_EQ(reports->cycle, 1u);
+}
+
+TEST(Client, KnowsNamesFromTheCatalogueHoweverLateItComes) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  daemon.announce();
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  clearance_msg_PairDistance pair{};
+  pair.part_a = 1;
+  EXPECT_EQ(catalogue.pair_name(pair), "pair 0");
+  EXPECT_EQ(catalogue.object("hand"), std::nullopt);
+  ASSERT_TRUE(eventually([&] { return catalogue.update(), catalogue.message() != nullptr; }));
+  EXPECT_EQ(catalogue.revision(), 5u);
+  EXPECT_EQ(catalogue.object("table"), 1u);
+  EXPECT_EQ(catalogue.pair("table", "hand"), 0u);
+  EXPECT_EQ(catalogue.pair("table", "chair"), std::nullopt);
+  EXPECT_EQ(catalogue.joint("elbow"), 0u);
+  EXPECT_EQ(catalogue.object_name(1), "table");
+  EXPECT_EQ(catalogue.object_name(9), "object 9");
+  EXPECT_EQ(catalogue.joint_name(0), "elbow");
+  EXPECT_EQ(catalogue.pair_name(pair), "hand.finger - table");
+}
+
+template <class T>
+bool take(dds_entity_t reader, Sample<T>& sample) {
+  void* pointer = &*sample;
+  dds_sample_info_t info;
+  return dds_take(reader, &pointer, &info, 1, 1) > 0 && info.valid_data;
+}
+
+TEST(Client, JointsAndPosesArriveAsTheDaemonWantsThem) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  const dds_entity_t joints =
+      daemon.participant().reader(TopicKind::kJointStates, Topics{}.joint_states);
+  const dds_entity_t poses = daemon.participant().reader(TopicKind::kPoses, Topics{}.poses);
+  client::Connection connection(dds);
+  client::JointWriter arm(connection, "arm", {"shoulder", "elbow"});
+  client::PoseWriter tracker(connection, "tracker");
+  ASSERT_TRUE(eventually([&] { return arm.is_heard() && tracker.is_heard(); }));
+  EXPECT_TRUE(arm.write({{0.1, 0.2}}, {{1.0, 2.0}}, 77));
+  EXPECT_TRUE(arm.write({{0.3, 0.4}}));
+  Sample<clearance_msg_JointStates> states;
+  ASSERT_TRUE(eventually([&] { return take(joints, states); }));
+  EXPECT_STREQ(states->source, "arm");
+  EXPECT_EQ(states->sequence_number, 1u);
+  EXPECT_EQ(states->stamp_ns, 77);
+  ASSERT_EQ(states->names._length, 2u);
+  EXPECT_STREQ(states->names._buffer[1], "elbow");
+  EXPECT_EQ(states->positions._buffer[1], 0.2);
+  EXPECT_EQ(states->velocities._buffer[1], 2.0);
+  ASSERT_TRUE(eventually([&] { return take(joints, states); }));
+  EXPECT_EQ(states->sequence_number, 2u);
+  EXPECT_EQ(states->velocities._length, 0u);
+  EXPECT_GT(states->stamp_ns, 1'000'000'000'000'000'000);
+
+  std::vector<clearance_msg_ObjectPose> sent(2);
+  sent[1].object = 1;
+  sent[1].position = {1.0, 2.0, 3.0};
+  EXPECT_TRUE(tracker.write(sent, 5));
+  Sample<clearance_msg_PoseBatch> batch;
+  ASSERT_TRUE(eventually([&] { return take(poses, batch); }));
+  EXPECT_STREQ(batch->source, "tracker");
+  EXPECT_EQ(batch->scene_revision, 5u);
+  ASSERT_EQ(batch->poses._length, 2u);
+  EXPECT_EQ(batch->poses._buffer[1].position.z, 3.0);
+}
+
+TEST(Client, RefusesWhatTheDaemonCouldNotUse) {
+  client::Connection connection(test::own_dds());
+  EXPECT_THROW(client::PoseWriter(connection, ""), std::invalid_argument);
+  EXPECT_THROW(client::PoseWriter(connection, std::string(33, 'x')), std::invalid_argument);
+  client::JointWriter arm(connection, std::string(32, 'x'), {"a", "b"});
+  EXPECT_THROW((void)arm.write({{0.1}}), std::invalid_argument);
+  EXPECT_THROW((void)arm.write({{0.1, 0.2}}, {{0.1}}), std::invalid_argument);
+  client::PoseWriter poses(connection, "p");
+  EXPECT_FALSE(poses.write(std::vector<clearance_msg_ObjectPose>(clearance_msg_kMaxPoses + 1), 0));
+}
+
+TEST(Client, MayLiveInAParticipantOfTheProgramsOwn) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  daemon.announce();
+  // Another participant in this process's domain, as a program with DDS of its own has one.
+  const dds_entity_t own = check_dds(dds_create_participant(dds.domain, nullptr, nullptr), "own");
+  {
+    client::Connection connection(own, dds.partition);
+    client::Catalogue catalogue(connection);
+    EXPECT_TRUE(eventually([&] { return catalogue.update(), catalogue.message() != nullptr; }));
+  }
+  EXPECT_EQ(dds_delete(own), DDS_RETCODE_OK) << "it is left to its owner";
+}
+
+}  // namespace
+}  // namespace clearance

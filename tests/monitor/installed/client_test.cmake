@@ -1,0 +1,32 @@
+# Installs the libraries of BUILD into FOLDER, builds there the example client as it was installed, and runs it beside the
+# daemon on an installed cell. README shows the example's own lines.
+file(REMOVE_RECURSE "${FOLDER}")
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+foreach(room core config idl monitor)
+  run("${CMAKE_COMMAND}" --install "${BUILD}/${room}" --component Unspecified --prefix "${FOLDER}/prefix")
+endforeach()
+set(share "${FOLDER}/prefix/share/clearance")
+run("${CMAKE_COMMAND}" -S "${share}/example" -B "${FOLDER}/build" "-DCMAKE_PREFIX_PATH=${FOLDER}/prefix")
+run("${CMAKE_COMMAND}" --build "${FOLDER}/build")
+run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/types" -B "${FOLDER}/build_types"
+    "-DCMAKE_PREFIX_PATH=${FOLDER}/prefix")
+run("${CMAKE_COMMAND}" --build "${FOLDER}/build_types")
+run("${FOLDER}/build_types/uses_types")
+
+# Side by side: the client ends by itself, the daemon a while later.
+string(RANDOM LENGTH 12 partition)
+execute_process(COMMAND "${FOLDER}/build/client" "${partition}" 4
+                COMMAND "${BUILD}/bin/clearanced" "${share}/cells/seven_joint_arms.yaml" --partition "${partition}"
+                        --ticks 8000
+                OUTPUT_VARIABLE summary RESULTS_VARIABLE results)
+if(NOT results STREQUAL "0;0")
+  message(FATAL_ERROR "client and daemon ended with ${results}: ${summary}")
+endif()
+file(READ "${SOURCE}/monitor/client/example/client.cpp" example)
+file(READ "${SOURCE}/README.md" readme)
+string(FIND "${readme}" "${example}" place)
+if(place EQUAL -1)
+  message(FATAL_ERROR "README.md does not show monitor/client/example/client.cpp as it is")
+endif()

@@ -1,0 +1,143 @@
+// Things that follow frames of tf, over real DDS: what is published, what the log says, and that a
+// recording of it replays to the bit.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <string>
+
+#include "tests/shared/ros_frames.hpp"
+#include "tests/shared/ros_joints.hpp"
+#include "tests/tools/watched_daemon.hpp"
+
+namespace clearance::test {
+namespace {
+
+// An arm on a cart that follows a frame, a box that follows another, and a wall at x = 5.
+class DaemonFrames : public WatchedDaemon {
+ protected:
+  void start(const std::vector<std::string>& more = {}) {
+    watch(
+        "name: frames\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+        "defaults: {age_limit_ms: 300}\nros2: {world_frame: map}\n"
+        "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir}}]\n"
+        "objects:\n"
+        "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
+        "  - {name: box, frame: box_link, max_speed: 50, sphere: {radius: 0.1}}\n"
+        "pairs: [{between: [arm, wall]}, {between: [box, wall]}]\n",
+        more);
+  }
+
+  Participant second{dds};
+};
+
+// And falls silent: late by the age limit, and named.
+TEST_F(DaemonFrames, PlaceAnObjectAndTheBaseOfARobot) {
+  start();
+  RosFrames frames(client);
+  RosJoints joints(client);
+  ASSERT_TRUE(frames.is_heard() && joints.is_heard());
+  const auto send_joints = [&] { joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1}); };
+  const auto send = [&] {
+    send_joints();
+    frames.send({{"map", "mir", {1, 0, 0}}, {"mir", "box_link", {0.5, 0, 0}}});
+  };
+  ASSERT_TRUE(step_until(5, send, [&] {
+    return is("box", PairStatus::kConverged) && is("finger", PairStatus::kConverged);
+  })) << daemon->output();
+  EXPECT_NEAR(pair("box").distance, 5 - 1.5 - 0.1, 1e-12);
+  EXPECT_NEAR(pair("finger").distance, 5 - 1 - 2.1 - 0.05, 1e-12);
+  EXPECT_TRUE(step_until(5, send_joints, [&] {
+    return is("box", PairStatus::kStale) && is("finger", PairStatus::kUnknown);
+  })) << "nothing bounds how fast a base moves";
+  EXPECT_TRUE(step_until(5, send_joints, logged("the last pose of box that could be used")))
+      << daemon->output();
+}
+
+TEST_F(DaemonFrames, ThatAreMissingAreNamedWithThoseThatThereAre) {
+  start();
+  RosFrames frames(client);
+  ASSERT_TRUE(frames.is_heard());
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        frames.send({{"map", "box_lnk"}, {"odom", "mir"}});
+      },
+      logged("box is not known: it follows the frame 'box_link', which no transform leads to; "
+             "there are box_lnk, "
+             "mir")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("did you mean 'box_lnk'")) << daemon->output();
+  EXPECT_TRUE(step_until(
+      5, [] {},
+      logged("arm is not known: it follows the frame 'mir', whose transforms lead to "
+             "'odom' and not to the world_frame 'map'")))
+      << daemon->output();
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        frames.send({{"a", "box_link"}, {"box_link", "a"}});
+      },
+      logged("whose transforms go round in a circle (box_link, a, box_link)")))
+      << daemon->output();
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        frames.send({{"map", "a"}, {"a", "box_link"}});
+      },
+      logged("frame 'box_link', which box follows, is there")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("frame 'a' hangs on 'map' now, before on 'box_link'"));
+}
+
+TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
+  start();
+  RosFrames first(client), other(second);
+  ASSERT_TRUE(first.is_heard() && other.is_heard());
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        first.send({{"map", "box_link", {1, 0, 0}}});
+        other.send({{"map", "box_link", {2, 0, 0}}});
+      },
+      logged("frame 'box_link' is sent by two publishers: transforms of the one that came later "
+             "are not used")))
+      << daemon->output();
+  EXPECT_TRUE(is("box", PairStatus::kConverged));
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        other.send_at(dds_time() - 100'000'000'000, {{"map", "mir"}});
+      },
+      logged("transforms of frame 'mir' are stamped -100.00")))
+      << daemon->output();
+  EXPECT_TRUE(daemon->wrote("'stamps: sent' of 'ros2' would take the time"));
+}
+
+// Objects and bases, static and changing, with a turn and a new parent on the way.
+TEST_F(DaemonFrames, OfARecordingReplayToTheBit) {
+  const std::string recording = folder / "run.mcap";
+  start({"--record", recording});
+  RosFrames frames(client), fixed(second, RosFrames::Kind::kStatic);
+  RosJoints joints(client);
+  ASSERT_TRUE(frames.is_heard() && fixed.is_heard() && joints.is_heard());
+  fixed.send({{"mir", "rack", {0.1, 0.2, 0.3}}});
+  double t = 0.0;
+  ASSERT_TRUE(step_until(
+      5,
+      [&] {
+        t += 0.005;
+        joints.send({"shoulder", "elbow", "push"}, {t, -t, 0.1});
+        const double half = 0.3 * t;
+        frames.send({{"map", "mir", {t, 0, 0}, {0, 0, std::sin(half), std::cos(half)}},
+                     {t < 0.5 ? "rack" : "map", "box_link", {0, t, 0}}});
+      },
+      [&] { return t > 1.0; }));
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  ChildProcess replay(kReplay, {"--offline", "--cell", cell, recording, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+}
+
+}  // namespace
+}  // namespace clearance::test

@@ -1,0 +1,98 @@
+// Speed and separation monitoring as a client meets it: over DDS, in a recording, on a terminal.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+// A person who stands 2 m in front of a robot that stands: 1.7 m apart.
+const char* const kPersonAndRobot = R"(name: hall
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 300}
+objects:
+  - {name: person, sphere: {radius: 0.2}}
+  - {name: robot, sphere: {radius: 0.1}}
+pairs: [{between: [person, robot]}]
+zones:
+  - name: people
+    between: [person, robot]
+    enter_below: 0.3
+    leave_above: 0.4
+    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
+                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
+simulation:
+  movers: [{object: person, centre: {xyz: [2, 0, 0]}}, {object: robot}]
+)";
+
+TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
+  const CellFile cell(kPersonAndRobot);
+  const Scene scene = cell.scene();
+  const DdsOptions dds = own_dds();
+  const ScratchFolder folder;
+  const std::string run = (folder / "run.mcap").string();
+  Participant client(dds);
+  Poses poses(client, scene);
+  const dds_entity_t reader = client.reader(TopicKind::kSeparation, scene.topics.separation, 4096);
+  ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
+  ChildProcess daemon(kDaemon, with({cell.path(), "--record", run}, dds_arguments(dds)));
+
+  Sample<clearance_msg_Separation> sample;
+  const auto next = [&] {
+    void* pointer = &*sample;
+    dds_sample_info_t info{};
+    return eventually(
+        [&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+  };
+  const auto wait_for = [&](SeparationValidity validity, bool sending) {
+    for (int i = 0; i < 2000; ++i) {
+      if (sending && i % 10 == 0) poses.send(0.0);
+      if (!next()) return false;
+      if (sample->zones._buffer[0].validity == static_cast<std::uint8_t>(validity)) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(next()) << daemon.output();
+  EXPECT_EQ(sample->zones._buffer[0].validity, 0);
+  EXPECT_EQ(sample->zones._buffer[0].scaling, 0.0);
+  ASSERT_TRUE(wait_for(SeparationValidity::kMeasured, true)) << daemon.output();
+  ASSERT_EQ(sample->zones._length, 1u);
+  ASSERT_EQ(sample->pairs._length, 1u);
+  const clearance_msg_PairSeparation& pair = sample->pairs._buffer[0];
+  EXPECT_NE(sample->daemon, 0u);
+  EXPECT_EQ(sample->scene_revision, scene.revision);
+  EXPECT_GE(sample->publish_ns, sample->now_ns);
+  EXPECT_NEAR(pair.clearance, 1.7, 1e-9);
+  // C, and the way of 1.6 m/s while the robot reacts and the pose gets older.
+  const double age_s = 1e-9 * static_cast<double>(pair.age_human_ns);
+  EXPECT_NEAR(pair.protective_distance, 0.1 + 1.6 * (0.1 + age_s), 1e-9);
+  EXPECT_EQ(pair.scaling, 1.0);
+  const std::uint64_t cycle = sample->cycle;
+  ASSERT_TRUE(next());
+  EXPECT_EQ(sample->cycle, cycle + 1);
+  EXPECT_TRUE(eventually([&] {
+    poses.send(0.0);
+    return watch.wrote("people: scaling 1.00, robot up to ");
+  })) << watch.output();
+
+  ASSERT_TRUE(wait_for(SeparationValidity::kUnknown, false)) << daemon.output();
+  EXPECT_EQ(sample->zones._buffer[0].scaling, 0.0);
+  EXPECT_TRUE(eventually([&] {
+    return watch.wrote("people: not known, scaling 0, person - robot");
+  })) << watch.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  const std::vector<Kept> messages = messages_of(run);
+  EXPECT_EQ(std::ranges::count(messages, TopicKind::kSeparation, &Kept::kind),
+            std::ranges::count(messages, TopicKind::kDistances, &Kept::kind));
+  ChildProcess replay(kReplay, {"--offline", run, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+}
+
+}  // namespace
+}  // namespace clearance::test

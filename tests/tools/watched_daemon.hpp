@@ -1,0 +1,77 @@
+// A daemon that a test feeds and watches: the last report, and what the log says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+
+class WatchedDaemon : public testing::Test {
+ protected:
+  // A cell of this text, beside which scara.urdf lies.
+  void watch(const std::string& text, const std::vector<std::string>& more = {}) {
+    write_text(folder / "scara.urdf", kScaraUrdf);
+    cell = folder / "cell.yaml";
+    write_text(cell, text);
+    scene = std::get<Scene>(read_cell(cell));
+    distances.emplace(client, scene);
+    daemon.emplace(kDaemon, with(with({cell}, dds_arguments(dds)), more));
+    distances->settle();
+  }
+
+  // Every `period_ms` until `is_so`, or the time is over.
+  template <class Step, class IsSo>
+  bool step_until(int period_ms, const Step& step, const IsSo& is_so, int seconds = 20) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+      step();
+      std::this_thread::sleep_for(std::chrono::milliseconds(period_ms));
+      take();
+      if (is_so()) return true;
+    }
+    return false;
+  }
+  auto logged(const std::string& text) {
+    return [this, text] { return daemon->wrote(text); };
+  }
+  void take() {
+    void* pointer = &*report;
+    dds_sample_info_t info{};
+    while (dds_take(distances->reader(), &pointer, &info, 1, 1) == 1) {
+    }
+  }
+  // As of the last report.
+  const clearance_msg_PairDistance& pair(const std::string& link) const {
+    std::uint32_t place = 0;  // in the report, which has the published ones only
+    for (const ObjectPair& of : scene.pairs) {
+      if (!of.publish) continue;
+      if (scene.objects[of.first].name == link || scene.objects[of.second].name == link)
+        return report->pairs._buffer[place];
+      ++place;
+    }
+    ADD_FAILURE() << "no pair of " << link;
+    return report->minimum;
+  }
+  bool is(const std::string& link, PairStatus status) const {
+    return report->pairs._length > 0 && pair(link).status == static_cast<std::uint8_t>(status);
+  }
+
+  ScratchFolder folder;
+  std::filesystem::path cell;
+  Scene scene;
+  DdsOptions dds = own_dds();
+  Participant client{dds};
+  std::optional<Distances> distances;
+  Sample<clearance_msg_Distances> report;
+  std::optional<ChildProcess> daemon;
+};
+
+}  // namespace clearance::test

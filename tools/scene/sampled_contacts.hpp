@@ -1,0 +1,32 @@
+// Which links of a robot touch each other, in random positions of its joints?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "config/scene.hpp"
+
+namespace clearance {
+
+struct SamplingOptions {
+  std::uint64_t samples = 10'000;
+  std::uint64_t seed = 1;
+  std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
+};
+
+// Two links with shapes, not both fixed. Ids are indices into Scene::objects.
+struct SampledPair {
+  std::uint32_t first = 0, second = 0;
+  bool adjacent = false;       // one is the next above the other that has shapes
+  bool touch_at_zero = false;  // with every joint at 0, or at the limit next to it
+  std::uint64_t touching = 0;  // samples in which they are not certified apart
+  double least = kInfinity;    // m: the least distance of all samples; 0 where they touch
+};
+
+// Of the scene's only robot. Joints are uniform within their limits, or over a whole turn;
+// where the base of the robot is does not matter. Same seed, same counts.
+[[nodiscard]] std::vector<SampledPair> sample_contacts(const Scene& scene,
+                                                       const SamplingOptions& options);
+
+}  // namespace clearance

@@ -1,0 +1,74 @@
+// What the plots show: curves over the last 30 s. Live they are gathered from the reports; of a recording the server
+// knows them for any moment. A curve is [[s before now, value], ...] of "distance", "lower" (m), "tick" (us), or of a
+// pair by its id (m).
+import { isKnown } from "./pair_status.js";
+
+export const HISTORY_S = 30;
+const TRIMMED_AT = 200; // points that are too old
+const FETCHED_AGAIN_S = 0.1; // of the recording's time
+
+export class LiveHistory {
+  constructor() {
+    this.points = [];
+  }
+
+  // `minimum`: undefined where it is not known.
+  take(report, minimum, ns) {
+    this.points.push({ s: ns * 1e-9, distance: minimum?.distance, lower: minimum?.lower, tick: tickOf(report), pairs: report.pairs });
+    const first = this.points.findIndex(({ s }) => s > ns * 1e-9 - HISTORY_S);
+    if (first > TRIMMED_AT) this.points.splice(0, first);
+  }
+
+  wish() {}
+
+  curve(name) {
+    const now = this.points.at(-1)?.s ?? 0;
+    const value = typeof name === "number" ? this.pairAt(name) : (point) => point[name];
+    return this.points.map((point) => [point.s - now, value(point)]);
+  }
+
+  // The published pairs have the same places in every report.
+  pairAt(id) {
+    const place = this.points.at(-1)?.pairs.findIndex(({ pair }) => pair === id);
+    return ({ pairs }) => (pairs[place] && isKnown(pairs[place]) ? pairs[place].distance : undefined);
+  }
+}
+
+export class RecordedHistory {
+  constructor(timeline) {
+    this.begin = Number(timeline.begin_ns);
+    this.now = 0;
+    this.fetched = { end: NaN, chosen: "", s: [], pairs: {} };
+  }
+
+  take(report, minimum, ns) {
+    this.now = (ns - this.begin) * 1e-9;
+  }
+
+  // Asks for what is missing, one request at a time.
+  async wish(chosen) {
+    const pairs = [...chosen].join();
+    const isThere = Math.abs(this.now - this.fetched.end) < FETCHED_AGAIN_S && pairs === this.fetched.chosen;
+    if (this.isAsking || isThere) return;
+    this.isAsking = true;
+    const end = this.now;
+    try {
+      const answer = await fetch(`/history.json?end=${end}&pairs=${pairs}`);
+      this.fetched = { end, chosen: pairs, ...(await answer.json()) };
+    } catch {
+      // The page says that the connection is lost.
+    } finally {
+      this.isAsking = false;
+    }
+  }
+
+  curve(name) {
+    const values = typeof name === "number" ? this.fetched.pairs[name] : this.fetched[name];
+    return this.fetched.s.map((s, i) => [s - this.now, values?.[i] ?? undefined]).filter(([s]) => s <= 0 && s > -HISTORY_S);
+  }
+}
+
+// From the time that a tick was told to its report, us; undefined where nobody has measured it.
+export function tickOf({ publish_ns, clock_offset_ns, now_ns }) {
+  return publish_ns ? (publish_ns - clock_offset_ns - now_ns) * 1e-3 : undefined;
+}

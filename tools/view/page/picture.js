@@ -1,0 +1,47 @@
+// The scene as it is on the screen, with its labels, as a file; below it stands what it shows.
+import { css } from "./format.js";
+
+const CAPTION = 34, PADDING = 12; // pixels of the page
+
+// A label as the page shows it, at its place in the scene.
+function drawLabel(context, label, origin) {
+  const box = label.getBoundingClientRect(), style = getComputedStyle(label);
+  const x = box.left - origin.left, y = box.top - origin.top;
+  context.fillStyle = css("--panel");
+  context.fillRect(x, y, box.width, box.height);
+  context.fillStyle = style.borderLeftColor;
+  context.fillRect(x, y, parseFloat(style.borderLeftWidth), box.height);
+  [...label.children].forEach((line) => {
+    const at = line.getBoundingClientRect(), { font, color } = getComputedStyle(line);
+    context.font = font;
+    context.fillStyle = color;
+    context.textBaseline = "middle";
+    context.fillText(line.textContent, at.left - origin.left, at.top + at.height / 2 - origin.top);
+  });
+}
+
+function drawCaption(context, caption, width, top) {
+  context.fillStyle = css("--panel");
+  context.fillRect(0, top, width, CAPTION);
+  context.fillStyle = css("--text");
+  context.font = "600 14px system-ui, sans-serif";
+  context.textBaseline = "middle";
+  context.fillText(caption, PADDING, top + CAPTION / 2, width - 2 * PADDING);
+}
+
+// Of the scene's canvas and the element with its labels.
+export function savePicture(view, labels, caption, name) {
+  const box = view.getBoundingClientRect(), sharp = window.devicePixelRatio;
+  const canvas = document.createElement("canvas");
+  canvas.width = Math.round(box.width * sharp);
+  canvas.height = Math.round((box.height + CAPTION) * sharp);
+  const context = canvas.getContext("2d");
+  context.scale(sharp, sharp);
+  context.drawImage(view, 0, 0, box.width, box.height);
+  for (const label of labels.children) if (!label.hidden) drawLabel(context, label, box);
+  drawCaption(context, caption, box.width, box.height);
+  const link = document.createElement("a");
+  link.download = name;
+  link.href = canvas.toDataURL("image/png");
+  link.click();
+}

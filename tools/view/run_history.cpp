@@ -1,0 +1,157 @@
+#include "tools/view/run_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "monitor/report.hpp"
+
+namespace clearance::view {
+namespace {
+
+using Piece = RunHistory::Piece;
+
+constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
+// Distances that are kept: 64 MB. An hour of 162 pairs is then kept in pieces of 64 ms.
+constexpr std::size_t kMostDistances = 1 << 24;
+
+bool is_known(const clearance_msg_PairDistance& pair) {
+  return pair.status < static_cast<std::uint8_t>(PairStatus::kStale);
+}
+
+Piece piece_of(const clearance_msg_Distances& report, std::int64_t log_ns) {
+  Piece piece{.begin_ns = log_ns, .time_ns = log_ns};
+  if (report.minimum_known && is_known(report.minimum)) {
+    piece.distance = report.minimum.distance;
+    piece.lower = report.minimum.lower;
+    piece.pair = report.minimum.pair;
+  }
+  if (report.publish_ns != 0) {
+    piece.tick_us =
+        1e-3 * static_cast<double>(report.publish_ns - report.clock_offset_ns - report.now_ns);
+  }
+  return piece;
+}
+
+void merge(const Piece& later, Piece& piece) {
+  piece.tick_us = std::fmax(piece.tick_us, later.tick_us);
+  if (!(std::isnan(piece.distance) || later.distance < piece.distance)) return;
+  piece.time_ns = std::isnan(later.distance) ? piece.time_ns : later.time_ns;
+  piece.distance = later.distance;
+  piece.lower = later.lower;
+  piece.pair = later.pair;
+}
+
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+}  // namespace
+
+RunHistory::RunHistory(const Scene& scene) {
+  for (const ObjectPair& pair : scene.pairs) {
+    column_of_.push_back(pair.publish ? static_cast<std::uint32_t>(columns_++) : kNotPublished);
+  }
+}
+
+void RunHistory::take(const clearance_msg_Distances& report, std::int64_t log_ns) {
+  const Piece piece = piece_of(report, log_ns);
+  if (pieces_.empty() || number_of(log_ns) > number_of(pieces_.back().begin_ns)) {
+    if ((pieces_.size() + 1) * std::max<std::size_t>(columns_, 8) > kMostDistances) halve();
+    pieces_.push_back(piece);
+    distances_.resize(pieces_.size() * columns_, kNotKnown);
+  } else {
+    merge(piece, pieces_.back());
+  }
+  take_pairs(report);
+}
+
+void RunHistory::take_pairs(const clearance_msg_Distances& report) {
+  const std::span<float> least = row(pieces_.size() - 1);
+  for (const auto& pair : std::span(report.pairs._buffer, report.pairs._length)) {
+    const std::uint32_t column =
+        pair.pair < column_of_.size() ? column_of_[pair.pair] : kNotPublished;
+    if (column == kNotPublished || !is_known(pair)) continue;
+    least[column] = std::fmin(least[column], static_cast<float>(pair.distance));
+  }
+}
+
+// Pieces of twice the length: of two that fall together the least.
+void RunHistory::halve() {
+  piece_ns_ *= 2;
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < pieces_.size(); ++i) {
+    if (number_of(pieces_[i].begin_ns) > number_of(pieces_[kept].begin_ns)) {
+      pieces_[++kept] = pieces_[i];
+      std::ranges::copy(row(i), row(kept).begin());
+      continue;
+    }
+    merge(pieces_[i], pieces_[kept]);
+    std::ranges::transform(row(kept), row(i), row(kept).begin(),
+                           [](float a, float b) { return std::fmin(a, b); });
+  }
+  pieces_.resize(kept + 1);
+  distances_.resize(pieces_.size() * columns_);
+}
+
+Piece RunHistory::least() const {
+  Piece least;
+  for (const Piece& piece : pieces_) merge(piece, least);
+  return least;
+}
+
+std::vector<Piece> RunHistory::pieces(std::size_t most) const {
+  std::vector<Piece> merged;
+  if (pieces_.empty()) return merged;
+  const std::int64_t begin_ns = pieces_.front().begin_ns;
+  const double span = static_cast<double>(pieces_.back().begin_ns - begin_ns) + 1.0;
+  const auto number = [&](const Piece& piece) {
+    return std::floor(static_cast<double>(piece.begin_ns - begin_ns) / span *
+                      static_cast<double>(most));
+  };
+  for (const Piece& piece : pieces_) {
+    if (!merged.empty() && number(piece) == number(merged.back())) {
+      merge(piece, merged.back());
+    } else {
+      merged.push_back(piece);
+    }
+  }
+  return merged;
+}
+
+float RunHistory::least_of(std::uint32_t pair, std::size_t first, std::size_t last) const {
+  float least = kNotKnown;
+  const std::uint32_t column = pair < column_of_.size() ? column_of_[pair] : kNotPublished;
+  if (column == kNotPublished) return least;
+  for (std::size_t i = first; i < last; ++i)
+    least = std::fmin(least, distances_[i * columns_ + column]);
+  return least;
+}
+
+std::string RunHistory::window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const {
+  nlohmann::json all = {{"s", nlohmann::json::array()},
+                        {"distance", nlohmann::json::array()},
+                        {"lower", nlohmann::json::array()},
+                        {"tick", nlohmann::json::array()},
+                        {"pairs", nlohmann::json::object()}};
+  const auto first = std::ranges::upper_bound(pieces_, end_ns - kWindowNs, {}, &Piece::begin_ns);
+  const auto last = std::ranges::upper_bound(pieces_, end_ns, {}, &Piece::begin_ns);
+  const auto from = static_cast<std::size_t>(first - pieces_.begin()),
+             to = static_cast<std::size_t>(last - pieces_.begin());
+  const std::size_t together = (to - from) / kMostPoints + 1;
+  for (std::size_t i = from; i < to; i += together) {
+    const std::size_t end = std::min(to, i + together);
+    Piece piece = pieces_[i];
+    for (std::size_t j = i + 1; j < end; ++j) merge(pieces_[j], piece);
+    all["s"].push_back(1e-9 * static_cast<double>(piece.time_ns - pieces_.front().begin_ns));
+    all["distance"].push_back(number(piece.distance));
+    all["lower"].push_back(number(piece.lower));
+    all["tick"].push_back(number(piece.tick_us));
+    for (const std::uint32_t pair : pairs) {
+      all["pairs"][std::to_string(pair)].push_back(number(least_of(pair, i, end)));
+    }
+  }
+  return all.dump();
+}
+
+}  // namespace clearance::view
