@@ -24,7 +24,8 @@
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
-#include "tools/robot/joint_motion.hpp"
+#include "tools/robot/joint_log_motion.hpp"
+#include "tools/robot/joint_sweep.hpp"
 #include "tools/robot/latency_meter.hpp"
 #include "tools/robot/simulated_robot.hpp"
 

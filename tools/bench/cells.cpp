@@ -147,7 +147,7 @@ void register_cell(const std::string& name, Scene scene) {
 
 }  // namespace
 
-void register_cells(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> cells_in(const std::filesystem::path& folder) {
   std::set<std::filesystem::path> files;
   std::error_code gone;
   for (const auto& entry : std::filesystem::directory_iterator(folder, gone)) {
@@ -157,13 +157,21 @@ void register_cells(const std::filesystem::path& folder) {
     print(stderr, "clearance-bench: no rows of cells: {} cannot be read: {}\n", folder.string(),
           gone.message());
   }
-  for (const auto& file : files) {
-    CellResult cell = read_cell(file);
-    if (auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
-      for (const CellError& e : *errors) print(stderr, "{}\n", e.text);
-      continue;
-    }
-    register_cell(file.stem().string(), std::move(std::get<Scene>(cell)));
+  return {files.begin(), files.end()};
+}
+
+std::optional<Scene> read_or_say(const std::filesystem::path& file) {
+  CellResult cell = read_cell(file);
+  if (auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
+    for (const CellError& e : *errors) print(stderr, "{}\n", e.text);
+    return std::nullopt;
+  }
+  return std::get<Scene>(std::move(cell));
+}
+
+void register_cells(const std::vector<std::filesystem::path>& cells) {
+  for (const auto& file : cells) {
+    if (auto scene = read_or_say(file)) register_cell(file.stem().string(), std::move(*scene));
   }
 }
 

@@ -1,11 +1,21 @@
-// The distance queries of the shipped cells along their simulated motion.
+// The distance queries of cells along their simulated motion.
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "config/scene.hpp"
 
 namespace clearance::bench {
 
-// One set of benchmarks a cell file in `folder`, in the order of their names.
-void register_cells(const std::filesystem::path& folder);
+// The cell files in a folder, in the order of their names; says on stderr when it cannot be read.
+[[nodiscard]] std::vector<std::filesystem::path> cells_in(const std::filesystem::path& folder);
+
+// What a cell file says; its mistakes go to stderr.
+[[nodiscard]] std::optional<Scene> read_or_say(const std::filesystem::path& file);
+
+// One set of benchmarks a cell file.
+void register_cells(const std::vector<std::filesystem::path>& cells);
 
 }  // namespace clearance::bench

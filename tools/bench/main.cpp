@@ -19,6 +19,7 @@
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
+#include "tools/bench/robots.hpp"
 #include "tools/bench/ticks.hpp"
 #include "tools/bench/variants.hpp"
 
@@ -71,6 +72,11 @@ constexpr const char* kHelp =
     "  tick/NAME/plain    the same evaluating every pair; tick/NAME/fcl the minimum alone, by "
     "FCL's\n"
     "                     DynamicAABBTreeCollisionManager\n"
+    "  robot/kinematics/NAME  all joints of a cell's robots in, all links placed; joints: how "
+    "many\n"
+    "  robot/tick/HOW/NAME  one Monitor::tick of them: poses, told by the links' poses; joints, "
+    "by\n"
+    "                     joints; gradients, with the gradients of distances\n"
     "  sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), "
     "and of\n"
     "                     other numbers of objects; counters objects, speed (m/s) and density\n"
@@ -88,6 +94,7 @@ constexpr const char* kHelp =
     "The warning of a DEBUG library is about how Debian builds Google Benchmark, not about ours.\n"
     "\n"
     "  --tick             runs the ticks alone, as --benchmark_filter=^tick/ does\n"
+    "  --cell FILE        also the rows cell/ and robot/ of this cell; repeatable\n"
     "  --version          prints the version and the build\n"
     "  --report DIR       runs all but cells, ticks, sweeps, variants of all but\n"
     "                     facet-balls and variant/moved/cold, in two to four minutes,\n"
@@ -105,7 +112,7 @@ constexpr const char* kHelp =
     "\n"
     "Options of Google Benchmark:\n";
 
-void register_all() {
+void register_all(const std::vector<std::filesystem::path>& more_cells) {
   using namespace clearance::bench;
   register_ours();
   register_batches();
@@ -113,7 +120,10 @@ void register_all() {
   register_adjacency();
   register_chapter5();
   register_peers();
-  register_cells(CLEARANCE_CELLS);
+  std::vector<std::filesystem::path> cells = cells_in(CLEARANCE_CELLS);
+  cells.insert(cells.end(), more_cells.begin(), more_cells.end());
+  register_cells(cells);
+  register_robots(cells);
   register_ticks();
 }
 
@@ -145,6 +155,7 @@ std::vector<std::string> options_of(const Part& part, bool report) {
 
 int main(int argc, char** argv) {
   std::optional<std::filesystem::path> report;
+  std::vector<std::filesystem::path> cells;
   const Part* part = nullptr;
   std::vector<std::string> options, others;
   for (int i = 1; i < argc; ++i) {
@@ -159,13 +170,18 @@ int main(int argc, char** argv) {
                      [&](const Part& candidate) { return word == candidate.option; });
     if (named != std::end(kParts)) {
       part = named;
-    } else if (word != "--report") {
+    } else if (word != "--report" && word != "--cell") {
       others.emplace_back(word);
-    } else if (i + 1 < argc) {
-      report = argv[++i];
-    } else {
-      std::fputs("--report needs the folder to write to, as in: --report build/report\n", stderr);
+    } else if (i + 1 == argc) {
+      std::fputs(word == "--cell"
+                     ? "--cell needs a cell file, as in: --cell cell.yaml\n"
+                     : "--report needs the folder to write to, as in: --report build/report\n",
+                 stderr);
       return 2;
+    } else if (word == "--cell") {
+      cells.emplace_back(argv[++i]);
+    } else {
+      report = argv[++i];
     }
   }
   if (report && part == nullptr) part = &kQueries;
@@ -176,7 +192,7 @@ int main(int argc, char** argv) {
   int count = static_cast<int>(words.size());
   benchmark::Initialize(&count, words.data());
   if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 2;
-  register_all();
+  register_all(cells);
   if (report) {
     clearance::bench::Collector collector;
     if (benchmark::RunSpecifiedBenchmarks(&collector) == 0) return 1;

@@ -1,4 +1,4 @@
-// How the robots of a cell move when nothing else says it: within their limits, or after a log.
+// How the robots of a cell move after a log of their joints.
 #pragma once
 
 #include <cstdint>
@@ -7,24 +7,9 @@
 #include <vector>
 
 #include "config/scene.hpp"
-#include "config/simulation.hpp"
 #include "monitor/joint_batch.hpp"
 
 namespace clearance {
-
-// Every position swings about the middle of its limits, each at a pace of its own, through nine
-// tenths of its range and at half its velocity limit at most; a joint without limits through a
-// quarter turn to either side.
-class JointSweep {
- public:
-  // The scene must outlive this.
-  explicit JointSweep(const Scene& scene);
-  // Positions and velocities of all variables, `t_s` after the start, in their order.
-  void at(double t_s, std::vector<JointSample>& joints) const;
-
- private:
-  std::vector<Swing> swings_;  // by variable
-};
 
 // Positions from a CSV: t_ns and one column a joint, by its name in the cell; others are ignored.
 // In between on a straight line. Joints without a column stand still, as near to 0 as they can.
@@ -35,7 +20,7 @@ class JointLogMotion {
   // What is wrong with the file: "FILE:LINE: ..."; empty: nothing.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] double seconds() const noexcept;  // from its first row to its last
-  // As of JointSweep; before the first row and after the last they stand.
+  // As JointSweep::at; before the first row and after the last they stand.
   void at(double t_s, std::vector<JointSample>& joints);
 
  private:

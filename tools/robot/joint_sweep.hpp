@@ -1,0 +1,30 @@
+// How the robots of a cell move when nothing says it: within their limits.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "config/simulation.hpp"
+#include "monitor/joint_batch.hpp"
+
+namespace clearance {
+
+// Without a stamp or a source.
+[[nodiscard]] JointSample moving_joint(std::size_t variable, double position, double velocity);
+
+// Every position swings about the middle of its limits, each at a pace of its own, through nine
+// tenths of its range and at half its velocity limit at most; a joint without limits through a
+// quarter turn to either side.
+class JointSweep {
+ public:
+  // The scene must outlive this.
+  explicit JointSweep(const Scene& scene);
+  // Positions and velocities of all variables, `t_s` after the start, in their order.
+  void at(double t_s, std::vector<JointSample>& joints) const;
+
+ private:
+  std::vector<Swing> swings_;  // by variable
+};
+
+}  // namespace clearance
