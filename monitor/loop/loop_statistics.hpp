@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "config/scene.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/monitor.hpp"
 #include "monitor/pose_batch.hpp"
@@ -22,6 +23,14 @@ struct MinimumSeen {
 
 // All figures are since the start unless they say otherwise.
 struct LoopStatistics {
+  LoopStatistics() = default;
+  // Of its final size: filling or copying it allocates nothing.
+  explicit LoopStatistics(const Scene& scene)
+      : rejected(scene.objects.size()),
+        ages(scene.objects.size()),
+        rejected_joints(scene.variables.size()),
+        joint_ages(scene.variables.size()) {}
+
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
   std::uint64_t clock_steps = 0;        // of CLOCK_REALTIME, and

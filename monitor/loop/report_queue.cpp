@@ -35,10 +35,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.report.separated_pairs.resize(separated.pairs);
     slot.report.gradients = gradients;
   });
-  statistics_.prepare([&](LoopStatistics& slot) {
-    slot.rejected.resize(scene.objects.size());
-    slot.ages.resize(scene.objects.size());
-  });
+  statistics_.prepare([&](LoopStatistics& slot) { slot = LoopStatistics(scene); });
   if (keeps_inputs_) {
     inputs_.prepare([&](PoseBatch& slot) {
       slot.samples.resize(options.samples_a_batch);

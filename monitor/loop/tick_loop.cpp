@@ -18,13 +18,10 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       clock_(clock),
       options_(options),
       period_ns_(std::llround(1e9 / scene.rate_hz)),
-      ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))) {
+      ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))),
+      statistics_(scene) {
   samples_.reserve(options_.max_samples);
   joints_.reserve(options_.max_samples);
-  statistics_.rejected.resize(scene.objects.size());
-  statistics_.ages.resize(scene.objects.size());
-  statistics_.rejected_joints.resize(scene.variables.size());
-  statistics_.joint_ages.resize(scene.variables.size());
 }
 
 // Times are measured around the tick: how late the thread woke, and how long it took until the

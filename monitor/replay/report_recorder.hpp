@@ -25,6 +25,10 @@ class ReportRecorder {
     if (!recorder_) recorder_.emplace(file_, scene_, 0, RecordingOptions{});
     return recorder_->close();
   }
+  // Why the cell's files are not in it, if so.
+  [[nodiscard]] std::string without_files() const {
+    return recorder_ ? recorder_->without_files() : "";
+  }
   [[nodiscard]] std::string error() const { return recorder_ ? recorder_->error() : ""; }
 
  private:

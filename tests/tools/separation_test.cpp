@@ -40,6 +40,8 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   Poses poses(client, scene);
   const dds_entity_t reader = client.reader(TopicKind::kSeparation, scene.topics.separation, 4096);
   ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
+  const std::string thinned = (folder / "thinned.mcap").string();
+  ChildProcess recorder(kRecord, with({"-o", thinned, "--every", "7"}, dds_arguments(dds)));
   ChildProcess daemon(kDaemon, with({cell.path(), "--record", run}, dds_arguments(dds)));
 
   Sample<clearance_msg_Separation> sample;
@@ -92,6 +94,18 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
             std::ranges::count(messages, TopicKind::kDistances, &Kept::kind));
   ChildProcess replay(kReplay, {"--offline", run, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
+
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait(), 0) << recorder.output();
+  int whole = 0;
+  for (const Kept& message : messages_of(thinned)) {
+    if (message.kind != TopicKind::kSeparation) continue;
+    const auto separation = decoded<clearance_msg_Separation>(message);
+    EXPECT_EQ(separation->cycle % 7 == 0, separation->pairs._length > 0);
+    EXPECT_EQ(separation->zones._length, 1u);
+    whole += separation->pairs._length > 0;
+  }
+  EXPECT_GT(whole, 2);
 }
 
 }  // namespace

@@ -110,7 +110,10 @@ class Subscription {
       return;
     }
     if (is_report && !keeps_pairs(options_, report_->cycle)) {
-      write_without_pairs(now_ns, taken.source_ns);
+      write_without_pairs(kind, *report_, now_ns, taken.source_ns);
+    } else if (decoded && kind == TopicKind::kSeparation &&
+               !keeps_pairs(options_, separation_->cycle)) {
+      write_without_pairs(kind, *separation_, now_ns, taken.source_ns);
     } else {
       writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
     }
@@ -120,10 +123,12 @@ class Subscription {
     if (kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
   }
 
-  void write_without_pairs(std::int64_t now_ns, std::int64_t source_ns) {
-    const std::uint32_t pairs = std::exchange(report_->pairs._length, 0);
-    writer_.write(TopicKind::kDistances, now_ns, source_ns, *report_);
-    report_->pairs._length = pairs;
+  template <class Message>
+  void write_without_pairs(TopicKind kind, Message& message, std::int64_t now_ns,
+                           std::int64_t source_ns) {
+    const std::uint32_t pairs = std::exchange(message.pairs._length, 0);
+    writer_.write(kind, now_ns, source_ns, message);
+    message.pairs._length = pairs;
   }
 
   // False: it is of a kind of which nothing needs to be known, or does not decode.
@@ -138,7 +143,8 @@ class Subscription {
     } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
     } else {
-      return kind == TopicKind::kGradients && decoder_.decode(bytes_, gradients_);
+      return (kind == TopicKind::kGradients && decoder_.decode(bytes_, gradients_)) ||
+             (kind == TopicKind::kSeparation && decoder_.decode(bytes_, separation_));
     }
     return true;
   }
@@ -156,6 +162,7 @@ class Subscription {
   Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_Gradients> gradients_;
+  Sample<clearance_msg_Separation> separation_;
   StreamGaps gaps_;
 };
 

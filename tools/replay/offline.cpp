@@ -152,6 +152,10 @@ class Outputs {
   bool close(const OfflineReplay& replay) {
     const bool drawn = !curves_ || said(curves_->write(replay));
     const bool recorded = !recording_ || recording_->close() || said(recording_->error());
+    if (recording_ && recorded && !recording_->without_files().empty()) {
+      say(fmt::format("the files that the cell names are not in {}: {}", arguments_.out,
+                      recording_->without_files()));
+    }
     const bool tabled = !csv_ || csv_->close() || said(csv_->error());
     return recorded && tabled && drawn;
   }

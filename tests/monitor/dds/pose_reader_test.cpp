@@ -20,13 +20,6 @@ Scene two_movers() {
       {test::moving("a", {test::ball(0.1)}), test::moving("b", {test::ball(0.1)})});
 }
 
-LoopStatistics no_statistics(const Scene& scene) {
-  LoopStatistics statistics;
-  statistics.rejected.resize(scene.objects.size());
-  statistics.ages.resize(scene.objects.size());
-  return statistics;
-}
-
 class Sender {
  public:
   Sender(const Scene& scene, const DdsOptions& dds, std::string_view source,
@@ -144,7 +137,7 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
     EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{100 + i});
   }
   EXPECT_TRUE(test::eventually([&] { return !port.poses.refused_sources().empty(); }));
-  const auto health = make_health(port.scene, no_statistics(port.scene), port.poses, 0);
+  const auto health = make_health(port.scene, LoopStatistics(port.scene), port.poses, 0);
   ASSERT_EQ(health->rejected._length, 1u);
   EXPECT_STREQ(health->rejected._buffer[0].object, "source 'source16'");
   EXPECT_STREQ(health->rejected._buffer[0].cause, "one source too many");
@@ -155,7 +148,7 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
 
 // What health says of one cause, of all objects and sources.
 std::uint64_t refused(const Port& port, std::string_view cause) {
-  const auto health = make_health(port.scene, no_statistics(port.scene), port.poses, 0);
+  const auto health = make_health(port.scene, LoopStatistics(port.scene), port.poses, 0);
   std::uint64_t count = 0;
   for (std::uint32_t i = 0; i < health->rejected._length; ++i) {
     if (cause == health->rejected._buffer[i].cause) count += health->rejected._buffer[i].count;
@@ -273,7 +266,7 @@ TEST(PoseReader, CountsWhatCannotBeDecodedInHealth) {
   EXPECT_TRUE(
       test::eventually([&] { return port.poses.undecodable() == 100; }, std::chrono::seconds(20)))
       << port.poses.undecodable() << sender.output();
-  EXPECT_EQ(make_health(port.scene, no_statistics(port.scene), port.poses, 0)->undecodable_samples,
+  EXPECT_EQ(make_health(port.scene, LoopStatistics(port.scene), port.poses, 0)->undecodable_samples,
             port.poses.undecodable());
   EXPECT_EQ(sender.wait(), 0) << sender.output();
   EXPECT_EQ(port.poses.next(), nullptr);

@@ -147,9 +147,7 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   Publisher publisher;
   Participant client(publisher.dds);
   Reader<clearance_msg_Health> reader(client, publisher.scene);
-  LoopStatistics statistics;
-  statistics.rejected.resize(2);
-  statistics.ages.resize(2);
+  LoopStatistics statistics(publisher.scene);
   statistics.cycle = 1000;
   statistics.now_ns = test::kStart;
   statistics.overruns = 3;

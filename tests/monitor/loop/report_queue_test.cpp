@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/monitor/scara_cell.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
@@ -67,13 +68,11 @@ TEST(ReportQueue, RefusesABatchThatIsLargerThanItsSlots) {
 }
 
 TEST(ReportQueue, AllocatesNothingInTheTickThread) {
-  const Scene scene = published_cell();
+  const Scene scene = test::scara_cell();
   Monitor monitor(scene);
   ReportQueue queue(scene, {.reports = 8, .inputs = 8, .samples_a_batch = 4});
   const PoseBatch batch = batch_of(1, 4);
-  LoopStatistics statistics;
-  statistics.rejected.resize(scene.objects.size());
-  statistics.ages.resize(scene.objects.size());
+  const LoopStatistics statistics(scene);
   const Report& report = monitor.tick({}, test::kStart);
   const SourceUse use{};
   const std::uint64_t before = allocations();

@@ -57,9 +57,7 @@ class RosWriterTest : public testing::Test {
   }
   void hand_over(const Report& report) { ros.report(report, {}); }
   void tell_statistics(std::int64_t age_ns) {
-    LoopStatistics statistics;
-    statistics.rejected.resize(scene.objects.size());
-    statistics.ages.resize(scene.objects.size());
+    LoopStatistics statistics(scene);
     statistics.ages[0].age_ns = age_ns;
     statistics.ages[0].stale = age_ns > 20'000'000;
     ros.statistics(statistics);
