@@ -13,7 +13,7 @@ namespace {
 
 // To be raised when the same mesh would be split otherwise: what is kept from before is then made
 // anew.
-constexpr int kMethod = 1;
+constexpr int kMethod = 2;
 
 // Of all that decides on the parts.
 std::string key_of(const MeshUse& use, const std::string& bytes) {

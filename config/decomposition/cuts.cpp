@@ -85,6 +85,7 @@ void add_slabs(const Piece& piece, const Vec3& normal, std::vector<Candidate>& c
 // Along each face, and on either side of it, so that a wall comes off with what is near to it.
 void add_faces(const Piece& piece, const std::vector<HalfSpace>& faces, double tolerance,
                std::vector<Candidate>& candidates) {
+  const double overlap = kOverlap * tolerance;
   std::vector<HalfSpace> planes;
   for (const HalfSpace& face : faces) {
     for (const double beside : {0.0, -kBeside, kBeside}) {
@@ -100,7 +101,9 @@ void add_faces(const Piece& piece, const std::vector<HalfSpace>& faces, double t
     }
     if (std::min(points[0], points[1]) * 20 < piece.points.size()) continue;
     for (const Vec3& point : piece.points) {
-      candidate.sides[face.normal.dot(point) > face.offset ? 1 : 0].add(point);
+      const double above = face.normal.dot(point) - face.offset;
+      if (above <= overlap) candidate.sides[0].add(point);
+      if (above >= -overlap) candidate.sides[1].add(point);
     }
     candidates.push_back(std::move(candidate));
     if (++count == kMostFaceCuts) return;

@@ -17,7 +17,6 @@ namespace {
 // Shares of the tolerance.
 constexpr double kBall = 0.75;        // what is narrower than such a ball is taken as closed
 constexpr double kLeastOpen = 0.3;    // what is nearer to the mesh is no error
-constexpr double kOverlap = 0.01;     // of neighbouring cells
 constexpr double kSimplified = 0.06;  // how far corners may stick out that fewer facets leave
 
 constexpr std::size_t kFacets = 96;  // of a part, at most
@@ -125,16 +124,17 @@ std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const
   const auto plane = best_cut(piece, faces_, limits_.tolerance, space_.spacing());
   if (!plane) return std::nullopt;
   std::pair<Piece, Piece> sides;
+  const double overlap = kOverlap * limits_.tolerance;
   for (const Vec3& point : piece.points) {
     const double above = plane->normal.dot(point) - plane->offset;
-    if (above <= 0.0) sides.first.points.push_back(point);
-    if (above >= 0.0) sides.second.points.push_back(point);
+    if (above <= overlap) sides.first.points.push_back(point);
+    if (above >= -overlap) sides.second.points.push_back(point);
   }
   sides.first.cells = sides.second.cells = piece.cells;
   sides.first.cells[0].planes.push_back(*plane);
   sides.second.cells[0].planes.push_back({-plane->normal, -plane->offset});
   for (Piece* side : {&sides.first, &sides.second}) {
-    const std::vector<Vec3> corners = side->cells[0].corners_within(space_, 0.0);
+    const std::vector<Vec3> corners = side->cells[0].corners_within(space_, overlap);
     side->points.insert(side->points.end(), corners.begin(), corners.end());
     add_rim(*plane, *side);
     side->finish(piece.open, space_.spacing());
@@ -223,7 +223,6 @@ void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
 // Every triangle of the mesh, clipped by the piece's cells, and the corners of these that no
 // triangle has: what of the mesh is in the cells is in their hull.
 std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
-  // Cells that overlap leave no gap, not even a point, that would be surface of the union.
   const double overlap = kOverlap * limits_.tolerance;
   std::vector<Vec3> points;
   for (const Cell& cell : piece.cells) {

@@ -13,6 +13,10 @@ namespace clearance {
 
 inline constexpr std::size_t kDirections = 160;
 
+// Of neighbouring cells, a share of the tolerance: they leave no gap, not even a point, that would
+// be surface of the union. A face along which a cut runs is thus in the cells on both sides.
+inline constexpr double kOverlap = 0.01;
+
 // In each of some directions the farthest of a set of points: a sketch of the set's hull, which
 // sets that are joined share out.
 class Outline {

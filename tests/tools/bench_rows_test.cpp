@@ -55,7 +55,7 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
         "batch/own/boxes", "batch/single/boxes", "interval/100/f2", "variant/base/interval/100/f2",
         "variant/moved-before/tracked/f2", "adjacency/walk/f2", "adjacency/core/f2",
         "adjacency/qhull/f2", "overlap/tracked/boxes/middle", "cell/tracked/two_arms",
-        "cell/batch/two_arms", "robot/kinematics/seven_joint_arms"}) {
+        "cell/batch/two_arms", "robot/kinematics/seven_joint_arms/iterations:20000/manual_time"}) {
     EXPECT_TRUE(there.contains(name)) << name;
   }
 }
