@@ -10,9 +10,9 @@
 // closest (parallel faces, two parts at once) the distance has no gradient, and this is the one by
 // the points that were found, one of its generalised gradients.
 //
-// Measured with two arms of seven joints (config/cells/seven_joint_arms.yaml; -O3, on a machine
-// that others kept busy): 24 us for 219 pairs with 1,430 entries. Nothing where the scene does not
-// ask.
+// Measured with two arms of seven joints (config/cells/seven_joint_arms.yaml, `clearance-bench
+// --benchmark_filter=^robot/tick`): 15 us for 219 pairs with 1,430 entries. Nothing where the scene
+// does not ask.
 #pragma once
 
 #include <cstdint>

@@ -27,10 +27,13 @@ class PartsOfMeshes : public testing::Test {
   ~PartsOfMeshes() override { ::unsetenv("XDG_CACHE_HOME"); }
 
   Scene read(const std::string& keys = "", const std::string& sections = "") {
+    return read_text(sections + "objects:\n  - {name: a, mesh: {file: l.obj" + keys +
+                     "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
+  }
+
+  Scene read_text(const std::string& sections) {
+    const std::string text = cell_text(sections);
     told_.clear();
-    const std::string text =
-        cell_text(sections + "objects:\n  - {name: a, mesh: {file: l.obj" + keys +
-                  "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
     CellOptions options;
     options.tell = [this](const std::string& line) { told_ += line + "\n"; };
     options.mesh_errors = &mesh_errors_;
@@ -125,6 +128,27 @@ TEST_F(PartsOfMeshes, AllHaveTheRadiusAroundTheMesh) {
   for (const Part& part : scene.objects.at(0).parts) {
     EXPECT_EQ(part.shape.radius, 0.01);
   }
+}
+
+TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
+  test::write_text(folder_ / "r.urdf",
+                   "<robot name='r'><link name='base'><collision><geometry><mesh "
+                   "filename='l.obj'/></geometry></collision></link><link name='tip'><collision>"
+                   "<geometry><sphere radius='0.1'/></geometry></collision></link><joint name='j' "
+                   "type='prismatic'><origin xyz='1 0 0'/><axis xyz='1 0 0'/><limit lower='0' "
+                   "upper='1' velocity='1'/><parent link='base'/><child link='tip'/></joint>"
+                   "</robot>");
+  const auto parts = [this](const std::string& keys) {
+    const Scene scene = read_text(
+        "objects: [{name: b, sphere: {radius: 1}}]\nrobots: [{name: r, "
+        "urdf: r.urdf" +
+        keys + "}]\npairs: [{between: [r, b]}]\n");
+    return scene.objects.at(1).parts.size();
+  };
+  EXPECT_EQ(parts(""), 2u) << errors_;
+  EXPECT_EQ(parts(", tolerance: 0.2"), 1u) << errors_;
+  EXPECT_EQ(parts(", max_parts: 1"), 1u) << errors_;
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
