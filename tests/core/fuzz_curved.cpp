@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/distance.hpp"
+#include "tests/core/fuzz_input.hpp"
 #include "tests/shared/curved_judge.hpp"
 #include "tests/shared/nonsense_state.hpp"
 
@@ -25,17 +26,6 @@ namespace clearance {
 namespace {
 
 using hard::CurvedCase;
-
-class CurvedBytes {
- public:
-  CurvedBytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  [[nodiscard]] bool any_left() const { return at_ < size_; }
-  std::uint8_t byte() { return at_ < size_ ? data_[at_++] : 0; }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_, at_ = 0;
-};
 
 std::vector<double*> numbers_of(CurvedCase& c) {
   std::vector<double*> out;
@@ -45,38 +35,13 @@ std::vector<double*> numbers_of(CurvedCase& c) {
     for (Disc& disc : body->shape.discs) out.push_back(&disc.radius);
     out.push_back(&body->radius);
   }
-  for (Pose* pose : {&c.pose_a, &c.pose_b}) {
-    for (int k = 0; k < 3; ++k) out.push_back(&pose->position[k]);
-    for (int k = 0; k < 4; ++k) out.push_back(&pose->orientation.coeffs()[k]);
-  }
+  append_numbers(c.pose_a, out);
+  append_numbers(c.pose_b, out);
   return out;
 }
 
-void change(CurvedCase& c, CurvedBytes& bytes) {
-  const std::vector<double*> numbers = numbers_of(c);
-  while (bytes.any_left()) {
-    double& x = *numbers[bytes.byte() % numbers.size()];
-    const std::uint8_t how = bytes.byte();
-    switch (how % 6) {
-      case 0:
-        x = std::nextafter(x, how < 128 ? -kInfinity : kInfinity);
-        break;
-      case 1:
-        x = 0.0;
-        break;
-      case 2:
-        x = -x;
-        break;
-      case 3:
-        x = *numbers[bytes.byte() % numbers.size()];
-        break;
-      case 4:
-        x = std::ldexp(x, bytes.byte() % 24 - 12);
-        break;
-      default:
-        x += (how - 128) * std::ldexp(1.0, -bytes.byte() % 64);
-    }
-  }
+void change(CurvedCase& c, Bytes& bytes) {
+  change(numbers_of(c), 12, bytes);
   for (Pose* pose : {&c.pose_a, &c.pose_b}) {
     const double norm = pose->orientation.norm();
     if (norm > 1e-3) pose->orientation.coeffs() /= norm;
@@ -109,7 +74,7 @@ void judge(const CurvedJudge& judge, const DistanceResult& r, const char* how, c
   std::abort();
 }
 
-void run(CurvedBytes bytes) {
+void run(Bytes bytes) {
   const auto families = hard::curved_families();
   const hard::CurvedFamily& family = families[bytes.byte() % families.size()];
   const std::uint64_t low = bytes.byte(), high = bytes.byte();
@@ -140,6 +105,6 @@ void run(CurvedBytes bytes) {
 }  // namespace clearance
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  clearance::run(clearance::CurvedBytes(data, size));
+  clearance::run(clearance::Bytes(data, size));
   return 0;
 }

@@ -22,6 +22,7 @@
 
 #include "core/batch.hpp"
 #include "core/distance.hpp"
+#include "tests/core/fuzz_input.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/nonsense_state.hpp"
@@ -29,21 +30,6 @@
 
 namespace clearance {
 namespace {
-
-class Bytes {
- public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
-  [[nodiscard]] bool any_left() const { return at_ < size_; }
-  std::uint8_t byte() { return at_ < size_ ? data_[at_++] : 0; }
-  std::uint32_t word() {
-    const std::uint32_t low = byte(), high = byte();
-    return low | high << 8;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t size_, at_ = 0;
-};
 
 std::vector<double*> doubles_of(hard::HardCase& c) {
   std::vector<double*> out;
@@ -57,38 +43,9 @@ std::vector<double*> doubles_of(hard::HardCase& c) {
     }
     out.push_back(&body->radius);
   }
-  for (Pose* pose : {&c.pose_a, &c.pose_b}) {
-    for (int k = 0; k < 3; ++k) out.push_back(&pose->position[k]);
-    for (int k = 0; k < 4; ++k) out.push_back(&pose->orientation.coeffs()[k]);
-  }
+  append_numbers(c.pose_a, out);
+  append_numbers(c.pose_b, out);
   return out;
-}
-
-void change(hard::HardCase& c, Bytes& bytes) {
-  const std::vector<double*> doubles = doubles_of(c);
-  while (bytes.any_left()) {
-    double& x = *doubles[bytes.word() % doubles.size()];
-    const std::uint8_t how = bytes.byte();
-    switch (how % 6) {
-      case 0:
-        x = std::nextafter(x, how < 128 ? -kInfinity : kInfinity);
-        break;
-      case 1:
-        x = 0.0;
-        break;
-      case 2:
-        x = -x;
-        break;
-      case 3:
-        x = *doubles[bytes.word() % doubles.size()];
-        break;
-      case 4:
-        x = std::ldexp(x, bytes.byte() % 64 - 32);
-        break;
-      default:
-        x += (how - 128) * std::ldexp(1.0, -bytes.byte() % 64);
-    }
-  }
 }
 
 TrackingState::Side any_side(Bytes& bytes) {
@@ -190,7 +147,7 @@ void run(Bytes bytes) {
   TrackingState state;
   if (by_input) state = {any_side(bytes), any_side(bytes)};
   state.a.penetrating = bytes.byte() % 2 == 1;
-  change(c, bytes);
+  change(doubles_of(c), 32, bytes);
   if (!has_truth(c)) return;
   Fuzzed fuzzed(family.name, c);
   if (fuzzed.refused()) return;

@@ -41,12 +41,11 @@ class MovingRobots {
     }
   }
 
-  // Every joint at a time.
-  [[nodiscard]] const std::vector<JointSample>& joints_at(std::int64_t now_ns) {
+  void move(std::int64_t now_ns) {
     sweep_.at(1e-9 * static_cast<double>(now_ns), joints_);
     for (JointSample& joint : joints_) joint.stamp_ns = now_ns;
-    return joints_;
   }
+  [[nodiscard]] const std::vector<JointSample>& joints() const noexcept { return joints_; }
 
   // What the tick does with them: each is taken in, and all links are placed.
   void place(std::int64_t now_ns) noexcept {
@@ -87,21 +86,31 @@ std::size_t joints_in(const Scene& scene) {
   return joints;
 }
 
-void time_kinematics(benchmark::State& state, const Scene& scene) {
-  MovingRobots robots(scene);
+// The time of `timed` in each cycle of the robots, after `prepare`; both are told the time.
+template <class Prepare, class Timed>
+void time_cycles(benchmark::State& state, const Scene& scene, const Prepare& prepare,
+                 const Timed& timed) {
   std::vector<double> times;
   std::int64_t now_ns = kFirst;
   const double clock_cost = cost_of(wall_ns);
   for (auto _ : state) {
     now_ns += kPeriod;
-    static_cast<void>(robots.joints_at(now_ns));
+    prepare(now_ns);
     const double start = wall_ns();
-    robots.place(now_ns);
+    timed(now_ns);
     times.push_back(std::max(0.0, wall_ns() - start - clock_cost));
     state.SetIterationTime(1e-9 * times.back());
   }
   state.counters["joints"] = static_cast<double>(joints_in(scene));
+  state.counters["pairs"] = static_cast<double>(scene.pairs.size());
   count_times(times, state);
+}
+
+void time_kinematics(benchmark::State& state, const Scene& scene) {
+  MovingRobots robots(scene);
+  time_cycles(
+      state, scene, [&](std::int64_t now_ns) { robots.move(now_ns); },
+      [&](std::int64_t now_ns) { robots.place(now_ns); });
 }
 
 enum class Input { kPoses, kJoints };
@@ -109,26 +118,19 @@ enum class Input { kPoses, kJoints };
 void time_ticks(benchmark::State& state, const Scene& scene, Input input) {
   MovingRobots robots(scene);
   Monitor monitor(scene);
-  std::vector<double> times;
-  std::int64_t now_ns = kFirst;
-  const double clock_cost = cost_of(wall_ns);
-  for (auto _ : state) {
-    now_ns += kPeriod;
-    std::vector<JointSample> joints = robots.joints_at(now_ns);
-    std::vector<PoseSample> poses;
-    if (input == Input::kPoses) {
+  std::vector<JointSample> joints;
+  std::vector<PoseSample> poses;
+  const auto prepare = [&](std::int64_t now_ns) {
+    robots.move(now_ns);
+    if (input == Input::kJoints) {
+      joints = robots.joints();
+    } else {
       robots.place(now_ns);
       poses = robots.poses(now_ns);
-      joints.clear();
     }
-    const double start = wall_ns();
-    monitor.tick(poses, joints, now_ns);
-    times.push_back(std::max(0.0, wall_ns() - start - clock_cost));
-    state.SetIterationTime(1e-9 * times.back());
-  }
-  state.counters["joints"] = static_cast<double>(joints_in(scene));
-  state.counters["pairs"] = static_cast<double>(scene.pairs.size());
-  count_times(times, state);
+  };
+  time_cycles(state, scene, prepare,
+              [&](std::int64_t now_ns) { monitor.tick(poses, joints, now_ns); });
 }
 
 void register_robot(const std::string& name, Scene read) {

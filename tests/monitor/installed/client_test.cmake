@@ -1,12 +1,6 @@
 # Installs the libraries of BUILD into FOLDER, builds there the example client as it was installed, and runs it beside the
 # daemon on an installed cell. README shows the example's own lines.
-file(REMOVE_RECURSE "${FOLDER}")
-function(run)
-  execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
-endfunction()
-foreach(room core config idl monitor)
-  run("${CMAKE_COMMAND}" --install "${BUILD}/${room}" --component Unspecified --prefix "${FOLDER}/prefix")
-endforeach()
+include("${CMAKE_CURRENT_LIST_DIR}/install.cmake")
 set(share "${FOLDER}/prefix/share/clearance")
 run("${CMAKE_COMMAND}" -S "${share}/example" -B "${FOLDER}/build" "-DCMAKE_PREFIX_PATH=${FOLDER}/prefix")
 run("${CMAKE_COMMAND}" --build "${FOLDER}/build")

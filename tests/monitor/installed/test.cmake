@@ -1,11 +1,5 @@
 # Installs the libraries of BUILD into FOLDER, and builds and runs there a project that replays a recording with them.
-file(REMOVE_RECURSE "${FOLDER}")
-function(run)
-  execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
-endfunction()
-foreach(room core config idl monitor)
-  run("${CMAKE_COMMAND}" --install "${BUILD}/${room}" --component Unspecified --prefix "${FOLDER}/prefix")
-endforeach()
+include("${CMAKE_CURRENT_LIST_DIR}/install.cmake")
 run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}" -B "${FOLDER}/build" "-DCMAKE_PREFIX_PATH=${FOLDER}/prefix")
 run("${CMAKE_COMMAND}" --build "${FOLDER}/build")
 
