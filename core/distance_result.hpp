@@ -36,10 +36,13 @@ enum class DistancePath : std::uint8_t {
 // by more than s.
 //
 // Apart, point_on_a and point_on_b are closest points, and point_on_b - point_on_a = distance *
-// normal. Overlapping, B moved by depth * normal only touches A, and the two points are those that
-// meet there: point_on_a is A's farthest along the normal, point_on_b is B's farthest against it
-// (where B is now), and again point_on_b - point_on_a = distance * normal. Touching, they coincide
-// up to rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
+// normal to within sqrt(upper^2 - lower^2): the points prove the upper bound and the normal the
+// lower one, so that these two bounds say how far one can be off the other. Overlapping, B moved by
+// depth * normal only touches A, and the two points are those that meet there: point_on_a is A's
+// farthest along the normal, point_on_b is B's farthest against it (where B is now), and again
+// point_on_b - point_on_a = distance * normal; of curved bodies along the normal only, to upper -
+// lower, and across it both points are anywhere in the contact. Touching, they coincide up to
+// rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
 //
 // Two unbounded bodies are answered in doubles, with true bounds: where these cannot tell along
 // which directions neither body is unbounded, lower is -infinity and the status kIterationLimit.

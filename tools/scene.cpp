@@ -36,7 +36,8 @@ Examples:
   clearance-scene --from-urdf panda.urdf --allow -o panda.srdf
   clearance-scene --warehouse 1000 -o warehouse.yaml
   clearance-scene --report warehouse.yaml
-  clearance-scene --reduce panda.urdf --tolerance 0.005)";
+  clearance-scene --reduce panda.urdf --tolerance 0.005
+  clearance-scene --reduce a.stl b.stl --distance 0.1 0.5 --speed 1 --plot models.svg)";
 
 struct Arguments {
   RobotCellOptions robot;
@@ -45,7 +46,7 @@ struct Arguments {
   ReductionOptions reduction;
   std::uint64_t seed = 1;
   SamplingOptions sampling;
-  std::string output, report, form = "srdf";
+  std::string output, report, form = "srdf", plot;
   bool json = false, force = false, allow = false;
 };
 
@@ -127,7 +128,33 @@ int report(const std::string& cell, bool json) {
   return kOk;
 }
 
-int print_reductions(const ReductionOptions& options, bool json) {
+std::filesystem::path page_beside(std::filesystem::path svg) {
+  return svg.replace_extension(".md");
+}
+
+int write_reductions(const std::vector<Reduction>& bodies, const ReductionOptions& options,
+                     const std::filesystem::path& svg) {
+  const std::string fault = plot_reductions(bodies, options, svg);
+  if (!fault.empty()) {
+    print(stderr, "{}: {}\n", svg.string(), fault);
+    return kFailed;
+  }
+  const std::filesystem::path page = page_beside(svg);
+  std::ofstream stream(page, std::ios::binary);
+  stream << reduction_page(bodies, options, svg.filename());
+  stream.close();
+  if (stream) return kOk;
+  print(stderr, "{}: cannot be written: {}\n", page.string(), std::strerror(errno));
+  return kFailed;
+}
+
+int print_reductions(const Arguments& arguments) {
+  const ReductionOptions& options = arguments.reduction;
+  const std::string& plot = arguments.plot;
+  if (!plot.empty() && (!can_create("clearance-scene", plot, arguments.force) ||
+                        !can_create("clearance-scene", page_beside(plot), arguments.force))) {
+    return kFailed;
+  }
   const auto made = reduce(options);
   if (const auto* faults = std::get_if<std::vector<std::string>>(&made)) {
     for (const std::string& fault : *faults) print(stderr, "{}\n", fault);
@@ -135,13 +162,16 @@ int print_reductions(const ReductionOptions& options, bool json) {
   }
   const Reductions& all = std::get<Reductions>(made);
   for (const std::string& note : all.notes) print(stderr, "note: {}\n", note);
-  print(stdout, "{}", json ? reduction_json(all.bodies) : reduction_table(all.bodies));
-  return kOk;
+  print(
+      stdout, "{}",
+      arguments.json ? reduction_json(all.bodies, options) : reduction_table(all.bodies, options));
+  return plot.empty() ? kOk : write_reductions(all.bodies, options, plot);
 }
 
-CLI::Option* add_reduction(CLI::App& app, CLI::Option_group& what, ReductionOptions& options) {
-  auto* reduce = what.add_option("--reduce", options.file,
-                                 "Simpler models around a mesh, or around each object of a cell "
+CLI::Option* add_reduction(CLI::App& app, CLI::Option_group& what, ReductionOptions& options,
+                           std::string& plot) {
+  auto* reduce = what.add_option("--reduce", options.files,
+                                 "Simpler models around meshes, or around each object of a cell "
                                  "or link of a robot (.yaml, .urdf), with certified errors")
                      ->check(CLI::ExistingFile);
   app.add_option("--object", options.object, "Only this object or link")->needs(reduce);
@@ -155,6 +185,21 @@ CLI::Option* add_reduction(CLI::App& app, CLI::Option_group& what, ReductionOpti
       ->needs(reduce)
       ->excludes(tolerance);
   app.add_flag("--time", options.time, "Measure a query against each model, ns")->needs(reduce);
+  auto* distance =
+      app.add_option("--distance", options.distances,
+                     "Which model is the cheapest to watch a pair by that is so far apart, m, "
+                     "beyond a zone's threshold; measures queries; several are possible")
+          ->check(positive_number())
+          ->needs(reduce);
+  app.add_option("--speed", options.speed,
+                 "How far both objects come in a second, added up, m/s; for --distance")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->needs(distance);
+  app.add_option("--plot", plot,
+                 "Write a picture of error against time (SVG, by gnuplot), and the tables as "
+                 "Markdown beside it")
+      ->needs(distance);
   return reduce;
 }
 
@@ -169,7 +214,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* report = what->add_option(
       "--report", arguments.report,
       "Print the models of each object of this cell: facets, certified errors, memory");
-  auto* reduce = add_reduction(app, *what, arguments.reduction);
+  auto* reduce = add_reduction(app, *what, arguments.reduction, arguments.plot);
   what->require_option(1);
   app.add_option("-o,--output", arguments.output,
                  "The cell file to write; mesh paths are relative to it")
@@ -246,8 +291,8 @@ int run(int argc, char** argv) {
     return kUsage;
   }
   if (!arguments.report.empty()) return report(arguments.report, arguments.json);
-  if (!arguments.reduction.file.empty()) {
-    return print_reductions(arguments.reduction, arguments.json);
+  if (!arguments.reduction.files.empty()) {
+    return print_reductions(arguments);
   }
   arguments.warehouse.seed = arguments.seed;
   if (arguments.allow && arguments.output.empty()) return propose_allowed(arguments);

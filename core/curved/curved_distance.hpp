@@ -11,8 +11,9 @@
 namespace clearance {
 
 // noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer
-// says; the pose has to be a good one. `depth`: as DistanceOptions has it. Two polyhedra are
-// accepted as well, of which distance() says more; of two unbounded ones nothing is known.
+// says; the pose has to be a good one. `depth`: as DistanceOptions has it. Both bodies may be
+// polyhedra, but distance() answers these faster and with closer bounds. If both bodies are
+// unbounded, the bounds are infinite and the rest is NaN.
 [[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth = true) noexcept;

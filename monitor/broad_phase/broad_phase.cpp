@@ -9,9 +9,6 @@
 namespace clearance {
 namespace {
 
-// A pair with a smaller allowance than this is cheaper active: it would be back within a few ticks.
-constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
-constexpr double kLeastTicks = 4.0;  // of both objects' usual displacement
 // Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
 // spheres' own rounding takes over.
 constexpr double kSumError = 1e-9;

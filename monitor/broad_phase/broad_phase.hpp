@@ -22,6 +22,11 @@ namespace clearance {
 
 class BroadPhase {
  public:
+  // A pair with a smaller allowance than this, m, and so many ticks of both objects' usual
+  // displacement is cheaper active: it would be back within a few ticks.
+  static constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
+  static constexpr double kLeastTicks = 4.0;
+
   // `urgent`: by object, m: a pair nearer than that of both together, or that near to its zone
   // level, is active. `left_out`: pairs that are looked at anyway, in ascending order.
   // `most_activated`: pairs that may be activated a tick, half as many by meeting for the first

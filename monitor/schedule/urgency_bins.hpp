@@ -16,6 +16,7 @@ class UrgencyBins {
  public:
   // Bin b < kBins: fewer than 2^b ticks. At 1 kHz the last of them ends 8 ms ahead.
   static constexpr std::size_t kBins = 4;
+  static constexpr double kTicks = 8.0;  // 2^(kBins - 1)
 
   // `levels` must outlive it.
   UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts, const ZoneLevels& levels);
@@ -33,8 +34,6 @@ class UrgencyBins {
                                    const PairTable& table) const noexcept;
 
  private:
-  static constexpr double kTicks = 8.0;  // 2^(kBins - 1)
-
   [[nodiscard]] double speed_of(std::uint32_t object, const TrackedObject& state) const noexcept;
 
   const ZoneLevels& levels_;

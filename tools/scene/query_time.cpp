@@ -25,13 +25,17 @@ std::vector<Pose> way_around(double size) {
   return poses;
 }
 
-// Of one round, a query; the sum keeps the compiler from leaving the queries out.
-double round_ns(const EnclosingModel& model, const ConvexPolyhedron& other,
-                const std::vector<Pose>& poses, double& sum) {
-  TrackingState state;
+// Of one round, a query.
+double round_ns(const ReducedModel& model, const ConvexPolyhedron& other,
+                const std::vector<Pose>& poses, bool tracked) {
+  std::vector<TrackingState> states(model.parts.size());
   const auto start = std::chrono::steady_clock::now();
   for (const Pose& pose : poses) {
-    sum += distance(model.shape, other, model.frame_from_shape, pose, state).distance;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      if (!tracked) states[i] = TrackingState();
+      const EnclosingModel& part = model.parts[i];
+      static_cast<void>(distance(part.shape, other, part.frame_from_shape, pose, states[i]));
+    }
   }
   const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
   return took.count() / static_cast<double>(poses.size());
@@ -39,27 +43,24 @@ double round_ns(const EnclosingModel& model, const ConvexPolyhedron& other,
 
 }  // namespace
 
-std::vector<double> query_times(std::span<const EnclosingModel> models) {
+void measure_queries(std::vector<ReducedModel>& models) {
   double size = 0.0;
-  for (const EnclosingModel& model : models) {
-    const double reach = model.frame_from_shape.position.norm() + model.shape.bounding_radius;
-    size = std::max(size, reach + model.shape.radius);
+  for (const ReducedModel& model : models) {
+    for (const EnclosingModel& part : model.parts) {
+      const double reach = part.frame_from_shape.position.norm() + part.shape.bounding_radius;
+      size = std::max(size, reach + part.shape.radius);
+    }
   }
   const auto other = std::get<ConvexPolyhedron>(box(Vec3::Constant(0.25 * size)));
   const std::vector<Pose> poses = way_around(size);
-  std::vector<std::vector<double>> rounds(models.size());
-  double sum = 0.0;
+  for (ReducedModel& model : models) model.time = QueryTimes{kInfinity, kInfinity};
   for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      rounds[i].push_back(round_ns(models[i], other, poses, sum));
+    for (ReducedModel& model : models) {
+      QueryTimes& least = *model.time;
+      least.tracked = std::min(least.tracked, round_ns(model, other, poses, true));
+      least.cold = std::min(least.cold, round_ns(model, other, poses, false));
     }
   }
-  std::vector<double> medians;
-  for (std::vector<double>& of_model : rounds) {
-    std::nth_element(of_model.begin(), of_model.begin() + kRounds / 2, of_model.end());
-    medians.push_back(std::isfinite(sum) ? of_model[kRounds / 2] : kInfinity);
-  }
-  return medians;
 }
 
 }  // namespace clearance

@@ -59,19 +59,6 @@ std::string shape_text(const EnclosingModel& model) {
   return polyhedron_text(shape);
 }
 
-std::string line(const Reduction& body, std::size_t i) {
-  const EnclosingModel& model = body.models[i];
-  const std::size_t facets = model.shape.facets.size();
-  const bool itself = i + 1 == body.models.size();
-  return fmt::format("{} {:<12} {:>6} {:>9.5f} {:>7}\n", body.chosen == i ? "*" : " ",
-                     itself ? "body itself" : name(model.kind),
-                     facets > 0 ? fmt::format("{}", facets) : "-",
-                     1e-5 * std::ceil(1e5 * (itself ? 0.0 : model.error)),
-                     body.query_ns.empty() ? "-" : fmt::format("{:.0f}", body.query_ns[i]));
-}
-
-}  // namespace
-
 std::string part_yaml(const EnclosingModel& model) {
   const Pose& pose = model.frame_from_shape;
   const Eigen::Quaterniond& q = pose.orientation;
@@ -80,39 +67,120 @@ std::string part_yaml(const EnclosingModel& model) {
                      shape_text(model));
 }
 
-std::string reduction_table(const std::vector<Reduction>& bodies) {
-  std::string text;
-  for (const Reduction& body : bodies) {
-    text += fmt::format("{}: hull of {} facets, {} vertices\n  {:<12} {:>6} {:>9} {:>7}\n",
-                        body.name, body.facets, body.vertices, "model", "facets", "error m", "ns");
-    for (std::size_t i = 0; i < body.models.size(); ++i) text += line(body, i);
-    if (body.chosen) text += "# parts, lengths in m\n" + part_yaml(body.models[*body.chosen]);
-    text += "\n";
-  }
-  return text +
-         "error: no point of the model is farther than this from the body; rounded upwards\n"
-         "ns: a tracked query against a box (--time)\n"
-         "*: chosen by --tolerance or --facets\n";
+std::string line(const Reduction& body, std::size_t i) {
+  const ReducedModel& model = body.models[i];
+  const auto time = [&](double QueryTimes::*which) {
+    return model.time ? fmt::format("{:.0f}", *model.time.*which) : std::string("-");
+  };
+  return fmt::format("{} {:<12} {:>6} {:>9.5f} {:>7} {:>7}\n", body.chosen == i ? "*" : " ",
+                     model.name, model.facets() > 0 ? fmt::format("{}", model.facets()) : "-",
+                     rounded_up_error(model.error), time(&QueryTimes::tracked),
+                     time(&QueryTimes::cold));
 }
 
-std::string reduction_json(const std::vector<Reduction>& bodies) {
+std::string cheapest_lines(const Reduction& body, const ReductionOptions& options) {
+  if (options.distances.empty()) return {};
+  const std::vector<Level> levels = levels_of(body);
+  std::string text;
+  for (const double distance : options.distances) {
+    const Watching watching{distance, options.speed};
+    const auto best = cheapest(levels, watching);
+    text += fmt::format("at {:g} m and {:g} m/s: ", distance, options.speed);
+    if (!best) {
+      text += "in every tick, by the body itself\n";
+      continue;
+    }
+    const auto cost = watch_cost(levels[*best], watching);
+    text += fmt::format("{}, {:.3g} looks a second, {:.3g} us\n", label_of(body.models[*best]),
+                        cost->looks_per_s, 1e-3 * cost->ns_per_s);
+  }
+  text += "cheapest:";
+  for (const CheapestFrom& from : cheapest_by_distance(levels, options.speed)) {
+    text += fmt::format(" {} from {:.3g} m,", label_of(body.models[from.level]), from.distance);
+  }
+  text.back() = '\n';
+  return text;
+}
+
+nlohmann::ordered_json json_of(const Reduction& body, std::size_t i) {
+  const ReducedModel& model = body.models[i];
+  nlohmann::ordered_json one{
+      {"model", model.name}, {"facets", model.facets()}, {"error", model.error}};
+  if (model.time) {
+    one["ns"] = model.time->tracked;
+    one["ns_cold"] = model.time->cold;
+  }
+  one["chosen"] = body.chosen == i;
+  one["part"] = parts_yaml(model);
+  return one;
+}
+
+nlohmann::ordered_json cheapest_json(const Reduction& body, const ReductionOptions& options) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  const std::vector<Level> levels = levels_of(body);
+  for (const double distance : options.distances) {
+    const Watching watching{distance, options.speed};
+    nlohmann::ordered_json one{{"distance", distance}, {"speed", options.speed}};
+    if (const auto best = cheapest(levels, watching)) {
+      const auto cost = watch_cost(levels[*best], watching);
+      one["model"] = label_of(body.models[*best]);
+      one["looks_per_s"] = cost->looks_per_s;
+      one["ns_per_s"] = cost->ns_per_s;
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string label_of(const ReducedModel& model) {
+  return model.name == name(ModelKind::kPolyhedron) ? fmt::format("{} facets", model.facets())
+                                                    : model.name;
+}
+
+double rounded_up_error(double error) {
+  return error > 1e-12 ? 1e-5 * std::ceil(1e5 * error) : 0.0;
+}
+
+std::string parts_yaml(const ReducedModel& model) {
+  std::string text;
+  for (const EnclosingModel& part : model.parts) text += part_yaml(part);
+  return text;
+}
+
+std::string reduction_table(const std::vector<Reduction>& bodies, const ReductionOptions& options) {
+  std::string text;
+  for (const Reduction& body : bodies) {
+    text += fmt::format("{}: hull of {} facets, {} vertices\n  {:<12} {:>6} {:>9} {:>7} {:>7}\n",
+                        body.name, body.facets, body.vertices, "model", "facets", "error m", "ns",
+                        "cold");
+    for (std::size_t i = 0; i < body.models.size(); ++i) text += line(body, i);
+    text += cheapest_lines(body, options);
+    if (body.chosen) text += "# parts, lengths in m\n" + parts_yaml(body.models[*body.chosen]);
+    text += "\n";
+  }
+  text +=
+      "error: no point of the model is farther than this from the body; rounded upwards\n"
+      "ns, cold: a query against a box, tracked and not; of parts, all of them (--time)\n"
+      "*: chosen by --tolerance or --facets\n";
+  if (options.distances.empty()) return text;
+  return text +
+         "at: the model by which it costs least to know at all times that a pair at that distance "
+         "beyond a zone's threshold is not inside, with objects that come so far a second\n";
+}
+
+std::string reduction_json(const std::vector<Reduction>& bodies, const ReductionOptions& options) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Reduction& body : bodies) {
     nlohmann::ordered_json models = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < body.models.size(); ++i) {
-      const EnclosingModel& model = body.models[i];
-      nlohmann::ordered_json one{{"model", name(model.kind)},
-                                 {"facets", model.shape.facets.size()},
-                                 {"error", model.error}};
-      if (!body.query_ns.empty()) one["ns"] = body.query_ns[i];
-      one["chosen"] = body.chosen == i;
-      one["part"] = part_yaml(model);
-      models.push_back(std::move(one));
-    }
-    all.push_back({{"body", body.name},
-                   {"facets", body.facets},
-                   {"vertices", body.vertices},
-                   {"models", std::move(models)}});
+    for (std::size_t i = 0; i < body.models.size(); ++i) models.push_back(json_of(body, i));
+    nlohmann::ordered_json one{{"body", body.name},
+                               {"facets", body.facets},
+                               {"vertices", body.vertices},
+                               {"models", std::move(models)}};
+    if (!options.distances.empty()) one["cheapest"] = cheapest_json(body, options);
+    all.push_back(std::move(one));
   }
   return fmt::format("{}\n", all.dump(1));
 }

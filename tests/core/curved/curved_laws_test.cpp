@@ -127,6 +127,24 @@ TEST(CurvedLaws, MovedByTheDistanceTheyTouch) {
   }
 }
 
+TEST(CurvedLaws, TheNormalJoinsTheClosestPointsToWhatTheBoundsAllow) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const DistanceResult r = answer(example_of(seed));
+    if (!(r.lower > 0.0)) continue;
+    const Vec3 off = r.point_on_b - r.point_on_a - r.distance * r.normal;
+    EXPECT_LE(off.norm(), std::sqrt((r.upper - r.lower) * (r.upper + r.lower))) << "seed " << seed;
+  }
+}
+
+TEST(CurvedLaws, TheDeepestPointsAreAsFarApartAlongTheNormalAsTheBodiesAreDeep) {
+  for (int seed = 0; seed < kExamples; ++seed) {
+    const DistanceResult r = answer(example_of(seed));
+    if (!(r.upper < 0.0)) continue;
+    EXPECT_NEAR((r.point_on_b - r.point_on_a).dot(r.normal), r.distance, r.upper - r.lower)
+        << "seed " << seed;
+  }
+}
+
 TEST(CurvedLaws, TrackedIsTheSameTruthAsCold) {
   for (int seed = 0; seed < 60; ++seed) {
     Example e = example_of(seed);

@@ -37,9 +37,7 @@ Panel pairs_panel(const Figures& figures, const std::string& mode) {
   Panel panel{fmt::format("pairs of shapes, {}: largest error of 4,000, m", mode),
               axes_of_errors("1e-8", "1e-4") + limit_line(1e-6, "failure: above 1e-6 m"),
               {}};
-  panel.settings += mode == "tracked"
-                        ? "set key at screen 0.5, 0.515 center bottom horizontal maxrows 1\n"
-                        : "unset key\n";
+  panel.settings += "unset key\n";
   for (const Solver& solver : kSolvers) {
     Curve curve{solver.label, solver.colour, {}, false};
     for (const KindPair& pair : kind_pairs()) {
@@ -85,6 +83,20 @@ Panel crossed_panel(const Figures& figures) {
   return panel;
 }
 
+// The key of both upper panels, between these and the lower one: a plot of nothing.
+std::string key_of_pairs() {
+  std::string entries;
+  for (const Solver& solver : kSolvers) {
+    entries +=
+        fmt::format(", keyentry with points pointsize 0.9 pointtype 7 linecolor rgb '{}' title {}",
+                    solver.colour, plot_text(solver.label));
+  }
+  return "unset logscale\nunset border\nunset tics\nunset xlabel\nunset title\n"
+         "set key center center horizontal maxrows 2\n"
+         "plot [0:1] [0:1] NaN notitle" +
+         entries + "\n";
+}
+
 }  // namespace
 
 Picture curved_picture(const Figures& figures) {
@@ -92,6 +104,7 @@ Picture curved_picture(const Figures& figures) {
   script += "set origin 0, 0.54\n" + panel_script(pairs_panel(figures, "tracked"), 1);
   script += "set origin 0.5, 0.54\n" + panel_script(pairs_panel(figures, "cold"), 2);
   script += "set size 1, 0.5\nset origin 0, 0\n" + panel_script(crossed_panel(figures), 3);
+  script += "set size 1, 0.06\nset origin 0, 0.49\n" + key_of_pairs();
   return {1120, 1100, script + "unset multiplot\n"};
 }
 

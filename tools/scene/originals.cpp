@@ -1,0 +1,139 @@
+#include "tools/scene/originals.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "config/cell_file.hpp"
+#include "config/decomposition/convex_parts.hpp"
+#include "config/decomposition/surface_error.hpp"
+#include "config/mesh_file.hpp"
+#include "config/single_robot_cell.hpp"
+#include "core/shapes.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/geometry/bounding_hull.hpp"
+
+namespace clearance {
+namespace {
+
+using Faults = std::vector<std::string>;
+
+// A hull that reaches no farther beyond its mesh, as a share of its radius, is not split.
+constexpr double kConvexEnough = 0.005;
+
+EnclosingModel part_of(ConvexPolyhedron shape, const Pose& pose) {
+  EnclosingModel part{ModelKind::kPolyhedron, std::move(shape), pose};
+  part.error = part.shape.position_error;
+  return part;
+}
+
+// Nothing where one of the parts is curved, rounded or unbounded.
+std::optional<Original> original_of(const Object& object) {
+  std::vector<Vec3> points;
+  PartsModel own;
+  for (const Part& part : object.parts) {
+    const ConvexPolyhedron& shape = part.shape;
+    if (shape.is_curved() || shape.radius > 0.0 || !shape.bounded()) return std::nullopt;
+    for (const Vec3& p : shape.anchors) points.push_back(transform(part.object_from_part, p));
+    own.error = std::max(own.error, shape.position_error);
+    own.parts.push_back(part_of(shape, part.object_from_part));
+  }
+  ShapeResult hull = polyhedron_from_vertices(points);
+  auto* body = std::get_if<ConvexPolyhedron>(&hull);
+  if (body == nullptr) return std::nullopt;
+  Original original{object.name, std::move(*body), 0.0, {}};
+  if (object.parts.size() == 1) return original;
+  original.hull_error = excess(original.hull, shapes_of(object));
+  original.parts.push_back(std::move(own));
+  return original;
+}
+
+// Nothing: the parts are no more than `already`, or there are none.
+std::optional<PartsModel> split(const TriangleMesh& mesh, const PartLimits& limits,
+                                std::size_t already) {
+  const auto found = convex_parts(mesh, limits);
+  const auto* made = std::get_if<ConvexParts>(&found);
+  if (made == nullptr || made->parts.size() <= already) return std::nullopt;
+  PartsModel model;
+  model.error = made->error;
+  for (const std::vector<Vec3>& vertices : made->parts) {
+    ShapeResult part = polyhedron_from_vertices(vertices);
+    if (!std::holds_alternative<ConvexPolyhedron>(part)) return std::nullopt;
+    model.parts.push_back(part_of(std::get<ConvexPolyhedron>(std::move(part)), Pose{}));
+  }
+  return model;
+}
+
+std::variant<Original, Faults> original_of(const std::filesystem::path& file) {
+  const auto bytes = read_bytes(file);
+  if (const auto* fault = std::get_if<MeshFault>(&bytes)) return Faults{fault->reason};
+  const auto read = read_mesh(std::get<std::string>(bytes), file.extension());
+  if (const auto* fault = std::get_if<MeshFault>(&read)) {
+    return Faults{"'" + file.string() + "' " + fault->reason};
+  }
+  const TriangleMesh& mesh = std::get<TriangleMesh>(read);
+  ShapeResult hull = polyhedron_from_vertices(mesh.vertices);
+  if (const auto* error = std::get_if<ShapeError>(&hull)) {
+    return Faults{"'" + file.string() + "': " + error->reason};
+  }
+  Original original{file.stem(), std::get<ConvexPolyhedron>(std::move(hull)), 0.0, {}};
+  original.hull_error = surface_error({&original.hull, 1}, TriangleTree(mesh));
+  const double enough = kConvexEnough * original.hull.bounding_radius;
+  if (original.hull_error <= enough) return original;
+  std::size_t parts = 1;
+  for (const std::size_t most : {2, 4, 8, 16}) {
+    auto model = split(mesh, {.tolerance = enough, .max_parts = most}, parts);
+    if (!model) break;
+    parts = model->parts.size();
+    original.parts.push_back(std::move(*model));
+  }
+  return original;
+}
+
+std::variant<Scene, Faults> scene_of(const std::filesystem::path& file) {
+  CellResult cell = file.extension() == ".urdf"
+                        ? read_single_robot({.urdf = file}, told_on_stderr())
+                        : read_cell(file, told_on_stderr());
+  if (auto* scene = std::get_if<Scene>(&cell)) return std::move(*scene);
+  Faults texts;
+  for (const CellError& error : std::get<std::vector<CellError>>(cell)) texts.push_back(error.text);
+  return texts;
+}
+
+Faults add_objects(const std::filesystem::path& file, const std::string& only, Originals& all) {
+  auto scene = scene_of(file);
+  if (auto* faults = std::get_if<Faults>(&scene)) return std::move(*faults);
+  bool found = false;
+  for (const Object& object : std::get<Scene>(scene).objects) {
+    if (!only.empty() && object.name != only) continue;
+    found = true;
+    if (auto original = original_of(object)) {
+      all.bodies.push_back(std::move(*original));
+    } else {
+      all.notes.push_back(object.name +
+                          " is left out: it has a part that is curved, rounded or unbounded");
+    }
+  }
+  if (!found) return {"--object " + only + ": there is no such object"};
+  return {};
+}
+
+}  // namespace
+
+std::variant<Originals, Faults> read_originals(std::span<const std::filesystem::path> files,
+                                               const std::string& object) {
+  Originals all;
+  for (const std::filesystem::path& file : files) {
+    const std::string kind = file.extension();
+    if (kind == ".yaml" || kind == ".yml" || kind == ".urdf") {
+      Faults faults = add_objects(file, object, all);
+      if (!faults.empty()) return faults;
+      continue;
+    }
+    auto mesh = original_of(file);
+    if (auto* faults = std::get_if<Faults>(&mesh)) return std::move(*faults);
+    all.bodies.push_back(std::get<Original>(std::move(mesh)));
+  }
+  return all;
+}
+
+}  // namespace clearance
