@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <dds/ddsi/ddsi_serdata.h>
-
 #include "monitor/loop/ports.hpp"
 #include "monitor/wire/convert.hpp"
 
@@ -36,10 +34,7 @@ LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
 
 void LiveSource::advance(Server& server) {
   if (server.viewers() == 0) return;
-  for (const Topic& topic : kTopics) {
-    while (take(topic.kind)) {
-    }
-  }
+  for (const Topic& topic : kTopics) take(topic.kind);
   if (!scene_.robots.empty()) take_from_ros();
   const std::int64_t now_ns = SystemClock().realtime_ns();
   tell_of_the_daemon(server, now_ns);
@@ -47,23 +42,15 @@ void LiveSource::advance(Server& server) {
   frame_.publish(server);
 }
 
-// The bytes as they came: nothing is decoded that is only passed on. True: there may be more.
-bool LiveSource::take(TopicKind kind) {
-  constexpr std::size_t kAtOnce = 64;
-  std::array<ddsi_serdata*, kAtOnce> samples{};
-  std::array<dds_sample_info_t, kAtOnce> infos;
-  const dds_return_t count = check_dds(
-      dds_takecdr(readers_[index(kind)], samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE),
-      "taking samples");
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    if (infos[i].valid_data) {
-      bytes_.resize(ddsi_serdata_size(samples[i]));
-      ddsi_serdata_to_ser(samples[i], 0, bytes_.size(), bytes_.data());
-      frame_.take(kind, infos[i].source_timestamp, bytes_);
-    }
-    ddsi_serdata_unref(samples[i]);
+// The bytes as they came: nothing is decoded that is only passed on.
+void LiveSource::take(TopicKind kind) {
+  while (take_cdr(readers_[index(kind)], taken_) == kMostAtOnce) {
   }
-  return count == kAtOnce;
+  for (const CdrSample& sample : taken_) {
+    sample.copy_to(bytes_);
+    frame_.take(kind, sample.source_ns(), bytes_);
+  }
+  taken_.clear();
 }
 
 // As the daemon does (dds/pose_reader.cpp).

@@ -8,6 +8,7 @@
 #include "config/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
@@ -23,7 +24,7 @@ class LiveSource final : public Source {
   void advance(Server& server) override;
 
  private:
-  bool take(TopicKind kind);
+  void take(TopicKind kind);
   void take_from_ros();
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
@@ -33,6 +34,7 @@ class LiveSource final : public Source {
   PresentTopics present_;
   RosJointStates ros_joints_;
   DataWait wait_;  // for whoever makes readers of topics that appear: nothing waits here
+  std::vector<CdrSample> taken_;
   std::vector<std::byte> bytes_;
   Frame frame_;
 };
