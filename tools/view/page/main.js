@@ -161,6 +161,7 @@ let firstMs, drawnReport, frames = 0;
 const times = [];
 function frame(nowMs) {
   requestAnimationFrame(frame);
+  connection.handWaiting();
   const frozen = drawReadouts(state, track?.playing, nowMs);
   view.draw(state, chosen, frozen, nowMs);
   table.draw(state, chosen, nowMs);

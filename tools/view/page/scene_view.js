@@ -1,6 +1,7 @@
 // The three-dimensional view: camera, lights, bodies, zones, lines; what is clicked.
 import * as THREE from "three";
 import { OrbitControls } from "orbit";
+import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
 import { ZoneShells } from "./zone_shells.js";
@@ -28,9 +29,8 @@ export class SceneView {
     this.bodies = new Bodies(scene);
     this.shells = new ZoneShells(scene);
     this.lines = new PairLines(document.getElementById("labels"), on.pairChosen);
-    this.sun = new THREE.DirectionalLight(0xffffff, 2.1);
-    this.sky = new THREE.HemisphereLight(0xffffff, 0x8a94a3, 1.7);
-    this.world.add(this.sky, this.sun, this.bodies, this.shells, this.lines);
+    this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
+    this.world.add(this.backdrop, this.bodies, this.shells, this.lines);
     this.clicks(canvas);
     new ResizeObserver(() => this.resize()).observe(this.element);
     this.resize();
@@ -48,7 +48,6 @@ export class SceneView {
 
   retheme() {
     ++this.changes;
-    this.renderer.setClearColor(css("--scene"));
     this.bodies.recolour();
     this.shells.recolour();
   }
@@ -72,6 +71,7 @@ export class SceneView {
       material.uniforms.reach.value = sphere.radius;
     }
     this.bodies.refocus();
+    ++this.bodies.stillChanges;
     this.fitted = true;
   }
   // The camera has its place, or there is nothing to be seen yet.
@@ -111,10 +111,12 @@ export class SceneView {
     this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
     if (this.drawn % 30 === 0) this.bodies.refocus();
-    this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
+    this.bodies.lit(this.camera, this.controls.target);
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.shells.update(this.bodies.poses, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size);
+    const still = [this.bodies.stillChanges, this.changes, ...this.camera.matrixWorld.elements].join();
+    this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));
     this.renderer.render(this.world, this.camera);
     this.adapt(nowMs);
   }
