@@ -7,8 +7,8 @@ import { edgesOf, everywhere, Placements, trianglesOf } from "./placements.js";
 import { CUT, edgeMaterial, solidMaterial } from "./solid_material.js";
 
 const MOST_FOCUS = 0.8; // of the cell's radius
-// Hues of groups that move, kept apart from those that say how near: red, amber, green.
-const MOVING = ["#4f8fe8", "#8f7ae5", "#3fa7c4", "#c77fc9", "#6f9a5a", "#b58a5c"];
+// Hues of groups that move, kept apart from those that say how near, and what is not known: red, amber, green, violet.
+const MOVING = ["#4f8fe8", "#a88b6a", "#3fa7c4", "#c77fc9", "#7f8f4f", "#6c86a3"];
 
 export const matrixOf = ([x, y, z, qx, qy, qz, qw]) =>
   new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(qx, qy, qz, qw), new THREE.Vector3(1, 1, 1));
@@ -51,10 +51,10 @@ export class Bodies extends THREE.Group {
       if (!parts.length) return;
       const placements = this.placements[kind], triangles = trianglesOf(parts, meshes);
       const solid = (cut) => everywhere(new THREE.Mesh(triangles, solidMaterial(placements, this.lights, cut)));
-      const edges = everywhere(new THREE.LineSegments(edgesOf(parts, meshes), edgeMaterial(placements, this.edgeColour)));
-      if (kind === 0) return this.add(solid(CUT.nothing), edges);
-      this.still.add(solid(CUT.away), edges);
-      this.veil.add(solid(CUT.ghost));
+      const segments = edgesOf(parts, meshes);
+      const edges = (cut) => everywhere(new THREE.LineSegments(segments, edgeMaterial(placements, this.lights, cut, this.edgeColour)));
+      const groups = kind === 0 ? [[this, CUT.nothing]] : [[this.still, CUT.away], [this.veil, CUT.ghost]];
+      for (const [group, cut] of groups) group.add(solid(cut), edges(cut));
     });
     this.shapes = meshes.map(({ positions, triangles }) => {
       const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(positions, 3)).setIndex(triangles);
@@ -62,6 +62,8 @@ export class Bodies extends THREE.Group {
       shape.computeBoundingSphere();
       return shape;
     });
+    // The middle one of a box's lengths: thin bars are thin, plates are not.
+    this.thickness = this.parts.map(({ mesh }) => this.shapes[mesh].boundingBox.getSize(new THREE.Vector3()).toArray().sort((a, b) => a - b)[1]);
   }
   // Of a part: who has its place, and its number there.
   placedBy(part) {
@@ -113,7 +115,7 @@ export class Bodies extends THREE.Group {
       if (parts.length) colour.set(this.colourOf(object, known));
       for (const part of parts) {
         const [placements, i] = this.placedBy(part);
-        placements.colour(i, colour);
+        placements.colour(i, colour, this.thickness[part]);
       }
     });
     this.edgeColour.value.set(css("--edge"));

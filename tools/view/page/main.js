@@ -7,6 +7,7 @@ import { PairTable } from "./pair_table.js";
 import { savePicture } from "./picture.js";
 import { Plots } from "./plots.js";
 import { drawLegend, drawReadouts } from "./readouts.js";
+import { SeparationRows } from "./separation_rows.js";
 import { SceneView } from "./scene_view.js";
 import { Timeline } from "./timeline.js";
 
@@ -32,9 +33,10 @@ applyTheme();
 
 const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), objectChosen: chooseObject });
 const table = new PairTable(choose, changed);
+const separations = new SeparationRows(choose);
 const plots = new Plots();
 const topics = scene.topics;
-const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, "/tf"], {
+const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf"], {
   open: () => {
     state.connected = true;
     if (asked.time !== undefined && timeline) connection.set("playback.time", asked.time);
@@ -47,6 +49,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
     if (topic === "/tf") view.moved(value);
     else if (topic === topics.distances) state.takeReport(value, ns);
     else if (topic === topics.zones) state.zones.set(value.zone, value);
+    else if (topic === topics.separation) state.separation = value;
     else if (topic === topics.health) state.takeHealth(value, ns);
   },
 });
@@ -165,6 +168,7 @@ function frame(nowMs) {
   const frozen = drawReadouts(state, track?.playing, nowMs);
   view.draw(state, chosen, frozen, nowMs);
   table.draw(state, chosen, nowMs);
+  separations.draw(state, frozen, nowMs);
   plots.draw(state, chosen, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());
   if (state.report && view.fitted) firstMs ??= nowMs;

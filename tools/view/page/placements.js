@@ -2,14 +2,15 @@
 // call, and move at the cost of a texture.
 import * as THREE from "three";
 
-const TEXELS = 5; // four columns of the matrix, the colour
+const TEXELS = 5; // four columns of the matrix, the colour with the part's thickness
 const A_ROW = 128; // parts
 
 // For vertex shaders: `owner` is the part's number.
 export const PLACED = `uniform highp sampler2D placements; attribute float owner;
   vec4 texel(int i) { int part = int(owner); return texelFetch(placements, ivec2(${TEXELS} * (part % ${A_ROW}) + i, part / ${A_ROW}), 0); }
   mat4 placed() { return mat4(texel(0), texel(1), texel(2), texel(3)); }
-  vec3 ownColour() { return texel(4).rgb; }`;
+  vec3 ownColour() { return texel(4).rgb; }
+  float ownSize() { return texel(4).a; }`;
 
 export class Placements {
   constructor(count) {
@@ -25,7 +26,9 @@ export class Placements {
     this.matrices[part].toArray(this.texture.image.data, 4 * TEXELS * part);
     this.texture.needsUpdate = true;
   }
-  colour(part, colour) {
+  // `thickness`: m.
+  colour(part, colour, thickness) {
+    this.texture.image.data[4 * (TEXELS * part + 4) + 3] = thickness;
     colour.toArray(this.texture.image.data, 4 * (TEXELS * part + 4));
     this.texture.needsUpdate = true;
   }
