@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -180,7 +182,8 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
   json found[2];
   for (int i = 0; i < 2; ++i) {
     const View& view = i == 0 ? recorded : computed;
-    ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "1"});
+    ChildProcess client("/usr/bin/env",
+                        {"node", kScripts + "/foxglove.mjs", view.socket(), "time", "1"});
     EXPECT_EQ(client.wait(), 0) << client.output();
     const std::vector<json> said = lines_of(client);
     ASSERT_EQ(said.size(), 1u) << client.output();
@@ -274,7 +277,9 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
   wait_for_poses(own, cell.scene());
   View view(test::with({cell.path()}, dds));
-  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket()});
+  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
+                                       "30", "clearance/catalogue", "clearance/zones", "/tf",
+                                       "/clearance/bodies", "/clearance/closest"});
   EXPECT_EQ(client.wait(), 0) << client.output();
   ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
   const json found = lines_of(client).front();
@@ -285,9 +290,10 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
                   {"schemaName", "clearance::msg::Distances"},
                   {"schemaEncoding", "omgidl"}}));
   EXPECT_EQ(found["channels"]["/tf"]["schemaName"], "tf2_msgs/msg/TFMessage");
-  // 200 Hz come in, 60 Hz go out.
-  EXPECT_GT(found["reports"], 20);
-  EXPECT_LT(found["reports"], 140);
+  // In order, each once, and not all of them: a frame shows the newest.
+  const std::vector<std::uint64_t> cycles = found["cycles"];
+  EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end());
+  EXPECT_GT(cycles.back() - cycles.front(), cycles.size() - 1);
   const json& report = found["first"]["clearance/distances"];
   EXPECT_EQ(report["pairs"].size(), 3u);
   EXPECT_EQ(found["first"]["clearance/catalogue"]["scene"], "small");
@@ -297,9 +303,32 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   EXPECT_EQ(bodies[0]["frame"], "left");
   EXPECT_EQ(bodies[0]["type"], 11);
   EXPECT_EQ(bodies[0]["points"], 36);  // a box: twelve triangles
-  EXPECT_EQ(found["first"]["/tf"]["transforms"].size(), 3u);
-  EXPECT_EQ(found["first"]["/clearance/closest"][0]["type"], 5);
+  EXPECT_EQ(found["last"]["/tf"]["transforms"].size(), 3u);
+  EXPECT_EQ(found["last"]["/clearance/closest"][0]["type"], 5);
   EXPECT_EQ(view.end(), 0);
+}
+
+TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
+  const test::CellFile cell(test::small_cell("small"));
+  const DdsOptions own = test::own_dds();
+  const auto dds = test::dds_arguments(own);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  wait_for_poses(own, cell.scene());
+  View view(test::with({cell.path()}, dds));
+  std::uint64_t last = 0;
+  for (int look = 0; look < 2; ++look) {
+    SCOPED_TRACE(look);
+    ChildProcess client("/usr/bin/env",
+                        {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "5", "/tf"});
+    EXPECT_EQ(client.wait(), 0) << client.output();
+    ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
+    const std::vector<std::uint64_t> cycles = lines_of(client).front()["cycles"];
+    EXPECT_GT(cycles.front(), last);
+    last = cycles.back();
+    // Longer than readers of reports are kept for nobody.
+    if (look == 0) std::this_thread::sleep_for(std::chrono::seconds(7));
+  }
 }
 
 TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
