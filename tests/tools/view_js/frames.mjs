@@ -1,5 +1,5 @@
-// How fast the page draws a cell, and what a frame costs: the daemon, a simulated robot and clearance-view run, and
-// Debian's Chromium, which draws in software, shows the page:
+// How fast the page draws a cell, what a frame costs, and how many frames there are of the same page with an empty scene: the
+// daemon, a simulated robot and clearance-view run, and Debian's Chromium, which draws in software, shows the page:
 //   node frames.mjs BIN CELL SECONDS [WIDTH HEIGHT]
 import { spawn } from "node:child_process";
 import { once } from "node:events";
@@ -27,20 +27,26 @@ const counts = async () => ({
   ...Object.fromEntries((await devtools.send("Performance.getMetrics")).metrics.map(({ name, value }) => [name, value])),
   ...(await page.evaluate(() => ({ frames: window.clearance.stands().frames, drawn: window.clearance.view.drawn, ms: performance.now() }))),
 });
-const before = await counts();
-await page.waitForTimeout(1000 * seconds);
-const after = await counts();
-const passed = (name) => after[name] - before[name];
-const each = (name) => Number(((1000 * passed(name)) / passed("drawn")).toFixed(2));
-console.log(JSON.stringify({
+async function measure() {
+  const before = await counts();
+  await page.waitForTimeout(1000 * seconds);
+  const after = await counts();
+  const passed = (name) => after[name] - before[name];
+  return { each: (name) => Number(((1000 * passed(name)) / passed("drawn")).toFixed(2)), rate: Number(((1000 * passed("drawn")) / passed("ms")).toFixed(1)) };
+}
+const { each, rate } = await measure();
+const found = {
   ...(await page.evaluate(() => ({
     objects: window.clearance.state.scene.objects.length, parts: window.clearance.view.bodies.parts.length,
     pairs: window.clearance.state.report.pairs.length, pixels: [document.getElementById("view").width, document.getElementById("view").height],
     drawCalls: window.clearance.view.renderer.info.render.calls, triangles: window.clearance.view.renderer.info.render.triangles,
   }))),
-  framesPerSecond: Number(((1000 * passed("drawn")) / passed("ms")).toFixed(1)),
+  framesPerSecond: rate,
   scriptMsPerFrame: each("ScriptDuration"), styleAndLayoutMsPerFrame: Number((each("LayoutDuration") + each("RecalcStyleDuration")).toFixed(2)),
   mainThreadMsPerFrame: each("TaskDuration"),
-}, null, 1));
+};
+await page.evaluate(() => window.clearance.view.world.children.forEach((child) => (child.visible = false)));
+await page.evaluate(() => (window.clearance.view.backdrop.update = () => {}));
+console.log(JSON.stringify({ ...found, framesPerSecondOfAnEmptyScene: (await measure()).rate }, null, 1));
 await browser.close();
 for (const child of children) child.kill("SIGTERM");

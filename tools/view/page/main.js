@@ -140,6 +140,7 @@ const actions = {
     const cycle = state.report?.cycle ?? 0;
     const [value, pair] = [element("minimum-value").textContent, element("minimum-pair").textContent];
     const when = timeline ? `${secondsIn().toFixed(3)} s` : new Date(state.timeNs * 1e-6).toISOString();
+    view.redraw();
     savePicture(element("view"), element("labels"), `${scene.name}, cycle ${cycle}, ${when}: ${value}, ${pair}`, `${scene.name}-${cycle}.png`);
   },
   filter: () => element("filter").focus(),

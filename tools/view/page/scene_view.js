@@ -9,6 +9,7 @@ import { css } from "./format.js";
 
 const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
 const CLICK_PIXELS = 5;
+const ROUNDING = 1e-7; // m
 // Where frames take longer than this, ms, they are drawn with fewer pixels, down to so many a pixel of the page.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 
@@ -18,7 +19,7 @@ export class SceneView {
     this.on = on;
     this.element = document.getElementById("scene");
     const canvas = document.getElementById("view");
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.sharpness = Math.min(window.devicePixelRatio, 2);
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.01, 400);
@@ -106,7 +107,8 @@ export class SceneView {
   draw(state, chosen, frozen, nowMs) {
     this.controls.update();
     this.camera.updateMatrixWorld();
-    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, ...this.camera.matrixWorld.elements].join();
+    this.noteCamera();
+    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.cameraChanges].join();
     if (key === this.drawnKey) return (this.drawnMs = undefined);
     this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
@@ -115,10 +117,23 @@ export class SceneView {
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.shells.update(this.bodies.poses, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size);
-    const still = [this.bodies.stillChanges, this.changes, ...this.camera.matrixWorld.elements].join();
+    const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
     this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));
     this.renderer.render(this.world, this.camera);
     this.adapt(nowMs);
+  }
+
+  // Controls at rest move the camera by roundings.
+  noteCamera() {
+    const { elements } = this.camera.matrixWorld;
+    if (this.seenFrom?.every((value, i) => Math.abs(value - elements[i]) < ROUNDING)) return;
+    this.seenFrom = [...elements];
+    this.cameraChanges = (this.cameraChanges ?? 0) + 1;
+  }
+
+  // What can be read off the canvas until the script gives way.
+  redraw() {
+    this.renderer.render(this.world, this.camera);
   }
 
   // Draws once more, and waits until that is done.
