@@ -158,6 +158,54 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   EXPECT_EQ(view.end(), 0);
 }
 
+// A person and a robot that stand 1.7 m apart, until the poses end.
+TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
+  const test::CellFile cell(R"(name: hall
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 300}
+objects:
+  - {name: person, sphere: {radius: 0.2}}
+  - {name: robot, sphere: {radius: 0.1}}
+pairs: [{between: [person, robot], publish: true}]
+zones:
+  - name: people
+    between: [person, robot]
+    enter_below: 0.3
+    leave_above: 0.4
+    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
+                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
+simulation:
+  movers: [{object: person, centre: {xyz: [2, 0, 0]}}, {object: robot}]
+)");
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  View view(test::with({cell.path()}, dds));
+  std::filesystem::remove(pictures() + "/separation.png");
+  ChildProcess page("/usr/bin/env",
+                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "separation"});
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(pictures() + "/separation.png"); },
+                         std::chrono::seconds(100)))
+      << page.output();
+  robot.signal(SIGTERM);
+  EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
+  ASSERT_EQ(lines_of(page).size(), 1u) << page.output();
+  const json shown = lines_of(page).front();
+  EXPECT_EQ(shown["errors"], json::array());
+  const std::vector<std::string> measured = shown["measured"], lost = shown["lost"];
+  ASSERT_EQ(measured.size(), 6u);
+  EXPECT_EQ(measured[0], "people: person – robot");
+  EXPECT_EQ(measured[1], "1700");  // mm
+  // C, and the way of 1.6 m/s while the robot reacts and the pose gets older, up to the age limit.
+  const double protective = std::stod(measured[2]);
+  EXPECT_GE(protective, 260.0);
+  EXPECT_LE(protective, 260.0 + 1.6 * 300.0);
+  EXPECT_NEAR(std::stod(measured[3]), 1700.0 - protective, 1.0);
+  EXPECT_EQ(measured[4], "1.00");
+  EXPECT_THAT(lost, testing::ElementsAre(measured[0], "?", "?", "?", "0.00", "0.00"));
+}
+
 TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
   View view({cell.path(), "--replay", file});
   ChildProcess page("/usr/bin/env",
@@ -171,6 +219,7 @@ TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
   EXPECT_EQ(shown["worst"]["pair"], "left – right");
   const double duration = shown["timeline"]["duration"];
   EXPECT_NEAR(shown["dragged"], 0.73 * duration, 0.05 * duration);
+  EXPECT_EQ(shown["clicked"], "left");
   EXPECT_NEAR(shown["again"], shown["dragged"], 0.002);
   EXPECT_EQ(shown["chosen"], 1);
   EXPECT_GT(said.back()["played"], shown["dragged"]);
