@@ -15,6 +15,7 @@
 #include "monitor/app/program.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/files/temporary_folder.hpp"
 #include "monitor/loop/ports.hpp"
 #include "tools/replay/progress_bar.hpp"
 #include "tools/view/browser.hpp"
@@ -107,43 +108,25 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-// A folder for a recording that is computed here; removed with its content.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "clearance-view-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot make a folder in " + name);
-    folder_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::filesystem::path file() const { return folder_ / "replay.mcap"; }
-
- private:
-  std::filesystem::path folder_;
-};
-
 // Null, after saying why, when the recording cannot be shown.
 std::unique_ptr<Source> recording_source(const Scene& scene, const Arguments& arguments,
-                                         std::optional<Scratch>& scratch, StopSignal& stop) {
+                                         std::optional<TemporaryFolder>& scratch,
+                                         StopSignal& stop) {
   std::filesystem::path file = arguments.recording;
   ProgressBar bar(false);
   if (arguments.offline) {
     scratch.emplace();
+    if (!scratch->error().empty()) throw std::runtime_error(scratch->error());
+    const std::filesystem::path computed = *scratch / "replay.mcap";
     const std::string error = view::replay_into(
-        scene, file, scratch->file(), [&bar](double share) { bar.show(share, "replayed"); },
+        scene, file, computed, [&bar](double share) { bar.show(share, "replayed"); },
         [&stop] { return stop.wait(0); });
     bar.finish();
     if (!error.empty()) {
       print(stderr, "clearance-view: {}\n", error);
       return nullptr;
     }
-    file = scratch->file();
+    file = computed;
   }
   view::Timeline timeline = view::read_timeline(scene, file);
   if (!timeline.error.empty()) {
@@ -252,7 +235,7 @@ int serve(const Arguments& arguments, Server& server, Source& source, StopSignal
 }
 
 int run_view(const Scene& scene, const Arguments& arguments, StopSignal& stop) {
-  std::optional<Scratch> scratch;
+  std::optional<TemporaryFolder> scratch;
   std::unique_ptr<Source> source;
   if (arguments.recording.empty()) {
     route_dds_log();

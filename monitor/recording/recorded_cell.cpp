@@ -1,7 +1,6 @@
 #include "monitor/recording/recorded_cell.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/files/temporary_folder.hpp"
 #include "monitor/mcap/attachments.hpp"
 #include "monitor/mcap/compression.hpp"
 
@@ -18,26 +18,6 @@ namespace {
 
 // No compressed file may become larger.
 constexpr std::size_t kLargestFile = std::size_t{1} << 28;
-
-// A directory under the system's one for temporary files; gone with this.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code fault;
-    std::string name = (std::filesystem::temp_directory_path(fault) / "clearance-XXXXXX").string();
-    if (!fault && ::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code fault;
-    if (!path_.empty()) std::filesystem::remove_all(path_, fault);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Whoever made the recording says where they go: nowhere but under the root.
 bool stays_inside(const std::filesystem::path& name) {
@@ -79,7 +59,7 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
   McapAttachments attachments = read_first_attachments(recording);
   if (!attachments.error.empty()) return failed(recording, attachments.error);
   const TemporaryFolder folder;
-  if (folder.path().empty()) return failed(recording, "no directory for temporary files");
+  if (!folder.error().empty()) return failed(recording, folder.error());
   for (McapAttachment& attachment : attachments.found) {
     const std::string name = attachment.name;
     if (!put_under(folder.path(), std::move(attachment)))

@@ -29,11 +29,12 @@ Vec3 along_arc(const Vec3& a, const Vec3& b, double t) {
 }
 
 // A capsule, or with start == end a sphere: rings of latitude about the axis.
-BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius) {
+BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius, double arc_step) {
   const Vec3 axis = start == end ? Vec3(Vec3::UnitZ()) : Vec3((end - start).normalized());
   const Vec3 across = axis.unitOrthogonal(), third = axis.cross(across);
-  const int around = arc_steps(2.0 * std::numbers::pi), quarter = arc_steps(std::numbers::pi / 2.0);
-  MeshBuilder builder;
+  MeshBuilder builder(arc_step);
+  const int around = builder.arc_steps(2.0 * std::numbers::pi),
+            quarter = builder.arc_steps(std::numbers::pi / 2.0);
   const auto ring = [&](const Vec3& centre, double latitude) {
     std::vector<std::uint32_t> row;
     for (int i = 0; i <= around; ++i) {
@@ -93,7 +94,7 @@ void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radiu
                     MeshBuilder& builder) {
   const Vec3& left = normal_of(body, edge.facet[0]);
   const Vec3& right = normal_of(body, edge.facet[1]);
-  const int steps = arc_steps(angle_between(left, right));
+  const int steps = builder.arc_steps(angle_between(left, right));
   std::vector<std::uint32_t> at_start, at_end;
   for (int i = 0; i <= steps; ++i) {
     const Vec3 normal = along_arc(left, right, static_cast<double>(i) / steps);
@@ -106,8 +107,8 @@ void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radiu
 // One sector of the sphere's patch at a vertex: from its middle to the arc from a to b.
 void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a, const Vec3& b,
                 MeshBuilder& builder) {
-  const int steps = arc_steps(angle_between(a, b));
-  const int rows = arc_steps(std::max(angle_between(middle, a), angle_between(middle, b)));
+  const int steps = builder.arc_steps(angle_between(a, b));
+  const int rows = builder.arc_steps(std::max(angle_between(middle, a), angle_between(middle, b)));
   std::vector<std::uint32_t> inner;
   for (int j = 0; j <= rows; ++j) {
     std::vector<std::uint32_t> row;
@@ -147,11 +148,11 @@ void add_sharp_edges(const ConvexPolyhedron& body, MeshBuilder& builder) {
   }
 }
 
-BodyMesh bounded_mesh(const ConvexPolyhedron& body, double radius) {
+BodyMesh bounded_mesh(const ConvexPolyhedron& body, double radius, double arc_step) {
   if (body.facets.empty()) {
-    return capsule_mesh(body.anchors.front(), body.anchors.back(), radius);
+    return capsule_mesh(body.anchors.front(), body.anchors.back(), radius, arc_step);
   }
-  MeshBuilder builder;
+  MeshBuilder builder(arc_step);
   add_facets(body, radius, builder);
   if (radius > 0.0) {
     for (const Edge& edge : body.edges) add_edge_strip(body, edge, radius, builder);
@@ -175,12 +176,12 @@ ShapeResult cut_off(const ConvexPolyhedron& body, double reach) {
 
 }  // namespace
 
-BodyMesh body_mesh(const ConvexPolyhedron& body, double offset, double reach) {
-  if (body.is_curved()) return curved_mesh(body.curved, body.radius + offset);
-  if (body.bounded()) return bounded_mesh(body, body.radius + offset);
+BodyMesh body_mesh(const ConvexPolyhedron& body, double offset, double reach, double arc_step) {
+  if (body.is_curved()) return curved_mesh(body.curved, body.radius + offset, arc_step);
+  if (body.bounded()) return bounded_mesh(body, body.radius + offset, arc_step);
   const ShapeResult cut = cut_off(body, reach);
   const auto* const bounded = std::get_if<ConvexPolyhedron>(&cut);
-  return bounded == nullptr ? BodyMesh{} : bounded_mesh(*bounded, body.radius + offset);
+  return bounded == nullptr ? BodyMesh{} : bounded_mesh(*bounded, body.radius + offset, arc_step);
 }
 
 }  // namespace clearance

@@ -3,7 +3,7 @@
 // Rounded bodies are tessellated as they are: each facet moved out by the radius, a strip of a
 // cylinder along each edge, a patch of a sphere at each vertex; curved ones by curved_mesh.hpp.
 // Every vertex lies on the surface to a double's rounding, and chords leave it by at most 1 -
-// cos(kArcStep / 2) of the radius: 0.4 %. Nothing that is decided rests on a mesh.
+// cos(arc_step / 2) of the radius: 0.4 % with kArcStep. Nothing that is decided rests on a mesh.
 #pragma once
 
 #include <array>
@@ -24,12 +24,13 @@ struct BodyMesh {
   bool operator==(const BodyMesh&) const = default;
 };
 
-// Arcs are drawn in steps of at most this, rad.
+// What arcs are drawn in steps of unless somebody asks for others, rad.
 inline constexpr double kArcStep = 0.175;
 
 // The body, with its radius enlarged by `offset` (m, >= 0). What is unbounded is cut off by the
-// cube of half width `reach` (m) around the frame's origin; empty when nothing lies in it.
+// cube of half width `reach` (m) around the frame's origin; empty when nothing lies in it. Arcs are
+// cut into steps of at most `arc_step` (rad, > 0).
 [[nodiscard]] BodyMesh body_mesh(const ConvexPolyhedron& body, double offset = 0.0,
-                                 double reach = 20.0);
+                                 double reach = 20.0, double arc_step = kArcStep);
 
 }  // namespace clearance

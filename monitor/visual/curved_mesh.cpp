@@ -21,7 +21,7 @@ struct SurfacePoint {
 // Rows of points from the lowest to the highest, each a turn around the z-axis.
 void add_rows(int rows, const std::function<SurfacePoint(int row, double turn)>& point_of,
               MeshBuilder& builder) {
-  const int around = arc_steps(2.0 * kHalfTurn);
+  const int around = builder.arc_steps(2.0 * kHalfTurn);
   std::vector<std::uint32_t> below;
   for (int row = 0; row < rows; ++row) {
     std::vector<std::uint32_t> points;
@@ -36,7 +36,7 @@ void add_rows(int rows, const std::function<SurfacePoint(int row, double turn)>&
 
 // Each point of the ellipsoid moved out along its normal.
 void add_ellipsoid(const Vec3& semi_axes, double radius, MeshBuilder& builder) {
-  const int steps = arc_steps(kHalfTurn);
+  const int steps = builder.arc_steps(kHalfTurn);
   add_rows(
       steps + 1,
       [&](int row, double turn) {
@@ -57,9 +57,9 @@ struct OutlinePoint {
 
 // Around a circle of the rim, between two directions; the circle's own point where there is no
 // radius around it.
-void add_arc(const Disc& disc, double from, double to, double radius,
+void add_arc(const Disc& disc, double from, double to, double radius, const MeshBuilder& builder,
              std::vector<OutlinePoint>& outline) {
-  const int steps = radius > 0.0 ? arc_steps(to - from) : 1;
+  const int steps = radius > 0.0 ? builder.arc_steps(to - from) : 1;
   for (int i = 0; i <= steps; ++i) {
     const double direction = from + (to - from) * i / steps;
     outline.push_back({disc.radius + radius * std::cos(direction),
@@ -67,18 +67,19 @@ void add_arc(const Disc& disc, double from, double to, double radius,
   }
 }
 
-std::vector<OutlinePoint> outline_of(const std::array<Disc, 2>& discs, double radius) {
+std::vector<OutlinePoint> outline_of(const std::array<Disc, 2>& discs, double radius,
+                                     const MeshBuilder& builder) {
   const auto& [low, high] = discs;
   const double side = std::atan2(low.radius - high.radius, high.height - low.height);
   std::vector<OutlinePoint> outline{{0.0, low.height - radius, -0.5 * kHalfTurn}};
-  add_arc(low, -0.5 * kHalfTurn, side, radius, outline);
-  add_arc(high, side, 0.5 * kHalfTurn, radius, outline);
+  add_arc(low, -0.5 * kHalfTurn, side, radius, builder, outline);
+  add_arc(high, side, 0.5 * kHalfTurn, radius, builder, outline);
   outline.push_back({0.0, high.height + radius, 0.5 * kHalfTurn});
   return outline;
 }
 
 void add_rim(const Disc& disc, MeshBuilder& builder) {
-  const int steps = arc_steps(2.0 * kHalfTurn);
+  const int steps = builder.arc_steps(2.0 * kHalfTurn);
   const auto point = [&](int i) {
     const double turn = 2.0 * kHalfTurn * (i % steps) / steps;
     return Vec3(disc.radius * std::cos(turn), disc.radius * std::sin(turn), disc.height);
@@ -87,7 +88,7 @@ void add_rim(const Disc& disc, MeshBuilder& builder) {
 }
 
 void add_truncated_cone(const std::array<Disc, 2>& discs, double radius, MeshBuilder& builder) {
-  const std::vector<OutlinePoint> outline = outline_of(discs, radius);
+  const std::vector<OutlinePoint> outline = outline_of(discs, radius, builder);
   add_rows(
       static_cast<int>(outline.size()),
       [&](int row, double turn) {
@@ -105,8 +106,8 @@ void add_truncated_cone(const std::array<Disc, 2>& discs, double radius, MeshBui
 
 }  // namespace
 
-BodyMesh curved_mesh(const CurvedShape& shape, double radius) {
-  MeshBuilder builder;
+BodyMesh curved_mesh(const CurvedShape& shape, double radius, double arc_step) {
+  MeshBuilder builder(arc_step);
   if (shape.kind == CurvedShape::Kind::kEllipsoid) {
     add_ellipsoid(shape.semi_axes, radius, builder);
   } else {

@@ -11,13 +11,15 @@
 
 namespace clearance {
 
-// Into how many an arc of this angle, rad, is cut.
-inline int arc_steps(double angle) {
-  return std::max(1, static_cast<int>(std::ceil(angle / kArcStep)));
-}
-
 class MeshBuilder {
  public:
+  // `arc_step`: of an arc, rad.
+  explicit MeshBuilder(double arc_step) : arc_step_(arc_step) {}
+
+  // Into how many an arc of this angle, rad, is cut.
+  [[nodiscard]] int arc_steps(double angle) const {
+    return std::max(1, static_cast<int>(std::ceil(angle / arc_step_)));
+  }
   std::uint32_t add(const Vec3& position, const Vec3& normal) {
     mesh.positions.push_back(position);
     mesh.normals.push_back(normal);
@@ -35,6 +37,9 @@ class MeshBuilder {
   }
 
   BodyMesh mesh;
+
+ private:
+  double arc_step_;
 };
 
 }  // namespace clearance

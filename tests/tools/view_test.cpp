@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -156,6 +158,54 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   EXPECT_EQ(view.end(), 0);
 }
 
+// A person and a robot that stand 1.7 m apart, until the poses end.
+TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
+  const test::CellFile cell(R"(name: hall
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 300}
+objects:
+  - {name: person, sphere: {radius: 0.2}}
+  - {name: robot, sphere: {radius: 0.1}}
+pairs: [{between: [person, robot], publish: true}]
+zones:
+  - name: people
+    between: [person, robot]
+    enter_below: 0.3
+    leave_above: 0.4
+    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
+                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
+simulation:
+  movers: [{object: person, centre: {xyz: [2, 0, 0]}}, {object: robot}]
+)");
+  const auto dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  View view(test::with({cell.path()}, dds));
+  std::filesystem::remove(pictures() + "/separation.png");
+  ChildProcess page("/usr/bin/env",
+                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "separation"});
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(pictures() + "/separation.png"); },
+                         std::chrono::seconds(100)))
+      << page.output();
+  robot.signal(SIGTERM);
+  EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
+  ASSERT_EQ(lines_of(page).size(), 1u) << page.output();
+  const json shown = lines_of(page).front();
+  EXPECT_EQ(shown["errors"], json::array());
+  const std::vector<std::string> measured = shown["measured"], lost = shown["lost"];
+  ASSERT_EQ(measured.size(), 6u);
+  EXPECT_EQ(measured[0], "people: person – robot");
+  EXPECT_EQ(measured[1], "1700");  // mm
+  // C, and the way of 1.6 m/s while the robot reacts and the pose gets older, up to the age limit.
+  const double protective = std::stod(measured[2]);
+  EXPECT_GE(protective, 260.0);
+  EXPECT_LE(protective, 260.0 + 1.6 * 300.0);
+  EXPECT_NEAR(std::stod(measured[3]), 1700.0 - protective, 1.0);
+  EXPECT_EQ(measured[4], "1.00");
+  EXPECT_THAT(lost, testing::ElementsAre(measured[0], "?", "?", "?", "0.00", "0.00"));
+}
+
 TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
   View view({cell.path(), "--replay", file});
   ChildProcess page("/usr/bin/env",
@@ -169,6 +219,7 @@ TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
   EXPECT_EQ(shown["worst"]["pair"], "left – right");
   const double duration = shown["timeline"]["duration"];
   EXPECT_NEAR(shown["dragged"], 0.73 * duration, 0.05 * duration);
+  EXPECT_EQ(shown["clicked"], "left");
   EXPECT_NEAR(shown["again"], shown["dragged"], 0.002);
   EXPECT_EQ(shown["chosen"], 1);
   EXPECT_GT(said.back()["played"], shown["dragged"]);
@@ -180,7 +231,8 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
   json found[2];
   for (int i = 0; i < 2; ++i) {
     const View& view = i == 0 ? recorded : computed;
-    ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "1"});
+    ChildProcess client("/usr/bin/env",
+                        {"node", kScripts + "/foxglove.mjs", view.socket(), "time", "1"});
     EXPECT_EQ(client.wait(), 0) << client.output();
     const std::vector<json> said = lines_of(client);
     ASSERT_EQ(said.size(), 1u) << client.output();
@@ -236,10 +288,11 @@ double least_in(const json& curve) {
   return least;
 }
 
+// To times between ticks: a report less than a microsecond later is the one that is meant.
 TEST_F(ViewOfARecording, AJumpBringsTheZonesAndTheHistoryOfItsMoment) {
   View view({cell.path(), "--replay", file});
-  ChildProcess client("/usr/bin/env",
-                      {"node", kScripts + "/jump.mjs", view.socket(), "1.1", "0.3", "0.9", "0.5"});
+  ChildProcess client("/usr/bin/env", {"node", kScripts + "/jump.mjs", view.socket(), "1.1024",
+                                       "0.3021", "0.9023", "0.5022"});
   EXPECT_EQ(client.wait(), 0) << client.output();
   const std::vector<json> said = lines_of(client);
   ASSERT_EQ(said.size(), 4u) << client.output();
@@ -274,7 +327,9 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
   wait_for_poses(own, cell.scene());
   View view(test::with({cell.path()}, dds));
-  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket()});
+  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
+                                       "30", "clearance/catalogue", "clearance/zones", "/tf",
+                                       "/clearance/bodies", "/clearance/closest"});
   EXPECT_EQ(client.wait(), 0) << client.output();
   ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
   const json found = lines_of(client).front();
@@ -285,9 +340,10 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
                   {"schemaName", "clearance::msg::Distances"},
                   {"schemaEncoding", "omgidl"}}));
   EXPECT_EQ(found["channels"]["/tf"]["schemaName"], "tf2_msgs/msg/TFMessage");
-  // 200 Hz come in, 60 Hz go out.
-  EXPECT_GT(found["reports"], 20);
-  EXPECT_LT(found["reports"], 140);
+  // In order, each once, and not all of them: a frame shows the newest.
+  const std::vector<std::uint64_t> cycles = found["cycles"];
+  EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end());
+  EXPECT_GT(cycles.back() - cycles.front(), cycles.size() - 1);
   const json& report = found["first"]["clearance/distances"];
   EXPECT_EQ(report["pairs"].size(), 3u);
   EXPECT_EQ(found["first"]["clearance/catalogue"]["scene"], "small");
@@ -297,9 +353,32 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   EXPECT_EQ(bodies[0]["frame"], "left");
   EXPECT_EQ(bodies[0]["type"], 11);
   EXPECT_EQ(bodies[0]["points"], 36);  // a box: twelve triangles
-  EXPECT_EQ(found["first"]["/tf"]["transforms"].size(), 3u);
-  EXPECT_EQ(found["first"]["/clearance/closest"][0]["type"], 5);
+  EXPECT_EQ(found["last"]["/tf"]["transforms"].size(), 3u);
+  EXPECT_EQ(found["last"]["/clearance/closest"][0]["type"], 5);
   EXPECT_EQ(view.end(), 0);
+}
+
+TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
+  const test::CellFile cell(test::small_cell("small"));
+  const DdsOptions own = test::own_dds();
+  const auto dds = test::dds_arguments(own);
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  wait_for_poses(own, cell.scene());
+  View view(test::with({cell.path()}, dds));
+  std::uint64_t last = 0;
+  for (int look = 0; look < 2; ++look) {
+    SCOPED_TRACE(look);
+    ChildProcess client("/usr/bin/env",
+                        {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "5", "/tf"});
+    EXPECT_EQ(client.wait(), 0) << client.output();
+    ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
+    const std::vector<std::uint64_t> cycles = lines_of(client).front()["cycles"];
+    EXPECT_GT(cycles.front(), last);
+    last = cycles.back();
+    // Longer than readers of reports are kept for nobody.
+    if (look == 0) std::this_thread::sleep_for(std::chrono::seconds(7));
+  }
 }
 
 TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {

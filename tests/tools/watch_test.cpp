@@ -86,6 +86,31 @@ TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
   EXPECT_NE(summary.find("left - right, at cycle "), std::string::npos) << summary;
 }
 
+// In a terminal, which `script` plays: the screen is not printed otherwise.
+TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
+  const test::CellFile cell(test::small_cell("small"));
+  const auto dds = test::dds_arguments(test::own_dds());
+  std::string command = test::kWatch;
+  for (const std::string& word : dds) command += " " + word;
+  ChildProcess watch("/usr/bin/env", {"TERM=xterm", "script", "-qfec", command, "/dev/null"});
+  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
+  const std::string live = watch.output();
+  EXPECT_EQ(live.find("was "), std::string::npos) << live;
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0);
+  ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced has ended "); })) << watch.output();
+  // The same line goes on: "minimum", "was", the figure, with colours between them.
+  EXPECT_TRUE(eventually([&] {
+    const std::string output = watch.output();
+    const std::size_t ended = output.find("clearanced has ended ");
+    const std::size_t minimum = output.find("minimum ", ended);
+    const std::size_t was = output.find("was ", minimum);
+    return was != std::string::npos && was < output.find(" m  ", minimum);
+  })) << watch.output();
+}
+
 TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
   const test::CellFile cell(test::small_cell("small"));
   const auto dds = test::dds_arguments(test::own_dds());

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <dds/dds.h>
-#include <dds/ddsi/ddsi_serdata.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
@@ -26,7 +26,6 @@ namespace {
 
 // Two seconds at 1 kHz, in case the disk stalls.
 constexpr std::int32_t kDepth = 2048;
-constexpr std::size_t kAtOnce = 64;         // samples for each call
 constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other topics are checked
 
 // Readers of all topics; what they take goes into the recording byte for byte.
@@ -65,44 +64,19 @@ class Subscription {
   // In the order of the table, so that poses stand before the reports that used them.
   void take_all() {
     for (const Topic& topic : kTopics) {
-      while (take(topic.kind)) {
+      while (taken_.size() < kMostWaiting && take_cdr(readers_[index(topic.kind)], taken_) > 0) {
       }
       // Cyclone returns waiting samples instance by instance; this restores the order of sending.
-      std::ranges::stable_sort(taken_, {}, &Taken::source_ns);
+      std::ranges::stable_sort(taken_, {}, &CdrSample::source_ns);
       const std::int64_t now_ns = dds_time();
-      for (const Taken& taken : taken_) {
-        record(topic.kind, now_ns, taken);
-        ddsi_serdata_unref(taken.sample);
-      }
+      for (const CdrSample& taken : taken_) record(topic.kind, now_ns, taken);
       taken_.clear();
     }
   }
 
  private:
-  struct Taken {
-    std::int64_t source_ns;
-    ddsi_serdata* sample;
-  };
-
-  bool take(TopicKind kind) {
-    std::array<ddsi_serdata*, kAtOnce> samples{};
-    std::array<dds_sample_info_t, kAtOnce> infos;
-    const dds_return_t count = check_dds(
-        dds_takecdr(readers_[index(kind)], samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE),
-        "taking samples");
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) {
-        taken_.push_back({infos[i].source_timestamp, samples[i]});
-      } else {
-        ddsi_serdata_unref(samples[i]);
-      }
-    }
-    return count > 0 && taken_.size() < kMostWaiting;
-  }
-
-  void record(TopicKind kind, std::int64_t now_ns, const Taken& taken) {
-    bytes_.resize(ddsi_serdata_size(taken.sample));
-    ddsi_serdata_to_ser(taken.sample, 0, bytes_.size(), bytes_.data());
+  void record(TopicKind kind, std::int64_t now_ns, const CdrSample& taken) {
+    taken.copy_to(bytes_);
     ++counts_[index(kind)];
     const bool decoded = look_into(kind);
     const bool is_report = decoded && kind == TopicKind::kDistances;
@@ -110,12 +84,12 @@ class Subscription {
       return;
     }
     if (is_report && !keeps_pairs(options_, report_->cycle)) {
-      write_without_pairs(kind, *report_, now_ns, taken.source_ns);
+      write_without_pairs(kind, *report_, now_ns, taken.source_ns());
     } else if (decoded && kind == TopicKind::kSeparation &&
                !keeps_pairs(options_, separation_->cycle)) {
-      write_without_pairs(kind, *separation_, now_ns, taken.source_ns);
+      write_without_pairs(kind, *separation_, now_ns, taken.source_ns());
     } else {
-      writer_.write(kind, now_ns, taken.source_ns, std::span<const std::byte>(bytes_));
+      writer_.write(kind, now_ns, taken.source_ns(), std::span<const std::byte>(bytes_));
     }
     if (scene_ == nullptr) return;
     if (kind == TopicKind::kPoses) scene_->take(*batch_);
@@ -154,7 +128,7 @@ class Subscription {
   SceneChannels* scene_;
   std::array<dds_entity_t, kTopics.size()> readers_{};
   std::array<std::uint64_t, kTopics.size()> counts_{};
-  std::vector<Taken> taken_;
+  std::vector<CdrSample> taken_;
   std::vector<std::byte> bytes_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;

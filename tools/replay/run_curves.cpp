@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "monitor/build_info/build_info.hpp"
 #include "monitor/files/file_error.hpp"
+#include "monitor/files/temporary_folder.hpp"
 #include "monitor/pair_name.hpp"
 #include "tools/replay/pictures.hpp"
 #include "tools/replay/report_page.hpp"
@@ -22,27 +22,6 @@ namespace {
 constexpr std::size_t kMostPairs = 4;
 // Moments nearer to each other than this are one, s.
 constexpr double kSameMoment = 0.05;
-
-// A folder that is removed with what is in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "clearance-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::vector<std::string> expectations_of(const ReplayArguments& arguments) {
   std::vector<std::string> all;
@@ -63,7 +42,7 @@ std::vector<std::string> expectations_of(const ReplayArguments& arguments) {
 // When each of these pairs was nearest, nearest first, without those that are one moment.
 std::vector<PicturedMoment> moments_of(const Scene& scene, const RunSeries& series,
                                        const std::vector<std::size_t>& places,
-                                       const Folder& folder) {
+                                       const TemporaryFolder& folder) {
   std::vector<PicturedMoment> all;
   for (const std::size_t place : places) {
     const NearestTick& nearest = series.nearest(place);
@@ -111,7 +90,8 @@ std::string RunCurves::write(const OfflineReplay& replay) const {
 }
 
 std::string RunCurves::write_report(const OfflineReplay& replay) const {
-  const Folder folder;
+  const TemporaryFolder folder;
+  if (!folder.error().empty()) return folder.error();
   const auto places = series_.choose(arguments_.plot_pairs, kMostPairs);
   ReportPage page{.recording = arguments_.recording(),
                   .cell = arguments_.cell.empty() ? "as the recording keeps it" : arguments_.cell,

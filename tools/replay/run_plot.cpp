@@ -24,10 +24,10 @@ std::string data_of(const RunSeries& series, std::span<const std::size_t> places
   std::string text;
   for (std::size_t i = 0; i < places.size(); ++i) {
     text += fmt::format("$pair{} << EOD\n", i);
-    const auto& curve = series.of(places[i]);
-    for (std::size_t k = 0; k < curve.size(); ++k) {
-      text += fmt::format("{:.6f} {} {} {}\n", series.times_s()[k], number(1e3 * curve[k].distance),
-                          number(1e3 * curve[k].lower), number(curve[k].closing_speed));
+    for (std::size_t k = 0; k < series.stretches(); ++k) {
+      const StretchOfPair& pair = series.of(places[i], k);
+      text += fmt::format("{:.6f} {} {} {}\n", series.time_s(k), number(1e3 * pair.distance),
+                          number(1e3 * pair.lower), number(pair.closing_speed));
     }
     text += "EOD\n";
   }

@@ -2,68 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace clearance {
 namespace {
 
 constexpr std::size_t kMostStretches = 2400;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr std::int64_t kShortestNs = 1'000'000;
 
-// fmin and fmax pass over a NaN.
-void merge(StretchOfPair& into, const StretchOfPair& other) {
-  into.distance = std::fmin(into.distance, other.distance);
-  into.lower = std::fmin(into.lower, other.lower);
-  into.closing_speed = std::fmax(into.closing_speed, other.closing_speed);
+std::vector<std::uint32_t> published(const Scene& scene) {
+  std::vector<std::uint32_t> pairs;
+  for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
+    if (scene.pairs[pair].publish) pairs.push_back(pair);
+  }
+  return pairs;
 }
 
 }  // namespace
 
-RunSeries::RunSeries(const Scene& scene) : scene_(scene), visit_of_(scene.zones.size(), -1) {
-  for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
-    if (scene.pairs[pair].publish) pairs_.push_back(pair);
-  }
-  curves_.resize(pairs_.size());
-  nearest_.resize(pairs_.size());
+// fmin and fmax pass over a NaN.
+void merge(const StretchOfPair& later, StretchOfPair& into) {
+  into.distance = std::fmin(into.distance, later.distance);
+  into.lower = std::fmin(into.lower, later.lower);
+  into.closing_speed = std::fmax(into.closing_speed, later.closing_speed);
 }
+
+void merge(const StretchOfRun& /*later*/, StretchOfRun& /*into*/) {}
+
+RunSeries::RunSeries(const Scene& scene)
+    : scene_(scene),
+      pairs_(published(scene)),
+      curves_(pairs_.size(), kMostStretches, kShortestNs),
+      nearest_(pairs_.size()),
+      visit_of_(scene.zones.size(), -1) {}
 
 void RunSeries::add(const ReplayedTick& tick) {
   const Report& report = tick.report;
   if (ticks_++ == 0) first_ns_ = report.now_ns;
   last_s_ = 1e-9 * static_cast<double>(report.now_ns - first_ns_);
-  if (in_stretch_ == 0) begin_stretch();
+  const std::span<StretchOfPair> stretch = curves_.add({report.now_ns - first_ns_});
   for (std::size_t place = 0; place < report.pairs.size(); ++place) {
-    add_pair(place, report.pairs[place]);
+    add_pair(place, report.pairs[place], stretch[place]);
   }
   add_zones(report);
-  in_stretch_ = (in_stretch_ + 1) % stride_;
 }
 
-void RunSeries::begin_stretch() {
-  if (times_s_.size() == kMostStretches) halve();
-  times_s_.push_back(last_s_);
-  for (auto& curve : curves_) curve.push_back({kNaN, kNaN, kNaN});
-}
-
-// Two stretches become one.
-void RunSeries::halve() {
-  for (std::size_t i = 0; i < kMostStretches / 2; ++i) times_s_[i] = times_s_[2 * i];
-  times_s_.resize(kMostStretches / 2);
-  for (auto& curve : curves_) {
-    for (std::size_t i = 0; i < kMostStretches / 2; ++i) {
-      curve[i] = curve[2 * i];
-      merge(curve[i], curve[2 * i + 1]);
-    }
-    curve.resize(kMostStretches / 2);
-  }
-  stride_ *= 2;
-}
-
-void RunSeries::add_pair(std::size_t place, const PairReport& pair) {
+void RunSeries::add_pair(std::size_t place, const PairReport& pair, StretchOfPair& stretch) {
   if (pair.status >= PairStatus::kStale) return;
-  merge(curves_[place].back(), {static_cast<float>(pair.distance), static_cast<float>(pair.lower),
-                                static_cast<float>(pair.closing_speed)});
+  merge({static_cast<float>(pair.distance), static_cast<float>(pair.lower),
+         static_cast<float>(pair.closing_speed)},
+        stretch);
   NearestTick& nearest = nearest_[place];
   if (std::isnan(pair.distance) || (nearest.known && nearest.distance <= pair.distance)) return;
   nearest = {true, last_s_, pair.distance, pair.lower, pair.upper};

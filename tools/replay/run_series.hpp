@@ -3,20 +3,28 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "config/scene.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "tools/plot/stretches.hpp"
 
 namespace clearance {
 
 // Of one stretch; NaN where nothing was known in it.
 struct StretchOfPair {
-  float distance, lower;  // m, the least
-  float closing_speed;    // m/s, the largest
+  float distance = std::numeric_limits<float>::quiet_NaN(), lower = distance;  // m, the least
+  float closing_speed = distance;                                              // m/s, the largest
 };
+struct StretchOfRun {
+  std::int64_t begin_ns = 0;  // after the first tick
+};
+// As Stretches asks for it.
+void merge(const StretchOfPair& later, StretchOfPair& into);
+void merge(const StretchOfRun& later, StretchOfRun& into);
 
 // The tick in which a pair was nearest.
 struct NearestTick {
@@ -37,10 +45,14 @@ class RunSeries {
 
   void add(const ReplayedTick& tick);
 
-  [[nodiscard]] const std::vector<double>& times_s() const noexcept { return times_s_; }
-  // One a stretch; `place`: into the list of published pairs.
-  [[nodiscard]] const std::vector<StretchOfPair>& of(std::size_t place) const {
-    return curves_[place];
+  // How many stretches there are, when each began, and what was of a pair in it; `place`: into the
+  // list of published pairs.
+  [[nodiscard]] std::size_t stretches() const noexcept { return curves_.heads().size(); }
+  [[nodiscard]] double time_s(std::size_t stretch) const {
+    return 1e-9 * static_cast<double>(curves_.heads()[stretch].begin_ns);
+  }
+  [[nodiscard]] const StretchOfPair& of(std::size_t place, std::size_t stretch) const {
+    return curves_.cells(stretch)[place];
   }
   [[nodiscard]] const std::vector<std::uint32_t>& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const NearestTick& nearest(std::size_t place) const { return nearest_[place]; }
@@ -53,21 +65,18 @@ class RunSeries {
       const std::vector<std::pair<std::string, std::string>>& objects, std::size_t most) const;
 
  private:
-  void begin_stretch();
-  void halve();
-  void add_pair(std::size_t place, const PairReport& pair);
+  void add_pair(std::size_t place, const PairReport& pair, StretchOfPair& stretch);
   void add_zones(const Report& report);
 
   const Scene& scene_;
   std::vector<std::uint32_t> pairs_;
-  std::vector<std::vector<StretchOfPair>> curves_;
+  Stretches<StretchOfRun, StretchOfPair> curves_;
   std::vector<NearestTick> nearest_;
-  std::vector<double> times_s_;
   std::vector<ZoneVisit> visits_;
   std::vector<std::int64_t> visit_of_;  // by zone: into visits_; -1: not active
   std::int64_t first_ns_ = 0;
   double last_s_ = 0.0;
-  std::uint64_t ticks_ = 0, stride_ = 1, in_stretch_ = 0;
+  std::uint64_t ticks_ = 0;
 };
 
 }  // namespace clearance

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
@@ -77,15 +76,13 @@ std::vector<std::string> command(const std::filesystem::path& profile, int width
 
 Browser::Browser(int width, int height, std::function<void()> meanwhile)
     : meanwhile_(std::move(meanwhile)) {
-  std::string folder = (std::filesystem::temp_directory_path() / "clearance-view-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) fail("making a folder for the browser");
-  profile_ = folder;
+  if (!profile_.error().empty()) throw std::runtime_error(profile_.error());
   std::array<int, 2> to{}, from{};
   if (pipe2(to.data(), O_CLOEXEC) != 0 || pipe2(from.data(), O_CLOEXEC) != 0) {
     fail("making pipes for the browser");
   }
   pid_ = fork();
-  if (pid_ == 0) become_browser(command(profile_, width, height), to[0], from[1]);
+  if (pid_ == 0) become_browser(command(profile_.path(), width, height), to[0], from[1]);
   close(to[0]);
   close(from[1]);
   to_browser_ = to[1];
@@ -106,8 +103,6 @@ Browser::~Browser() {
     kill(pid_, SIGTERM);
     waitpid(pid_, nullptr, 0);
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(profile_, ignored);
 }
 
 void Browser::fail(const std::string& what) const {

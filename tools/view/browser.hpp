@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "monitor/files/temporary_folder.hpp"
+
 namespace clearance::view {
 
 // One page of one browser. Every call throws std::runtime_error with what was tried when the
@@ -33,7 +35,7 @@ class Browser {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::function<void()> meanwhile_;
-  std::filesystem::path profile_;
+  TemporaryFolder profile_;  // outlives the browser, which writes there
   pid_t pid_ = -1;
   int to_browser_ = -1, from_browser_ = -1;
   std::string received_, session_;

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <dds/ddsi/ddsi_serdata.h>
+#include <algorithm>
+#include <utility>
 
 #include "monitor/loop/ports.hpp"
 #include "monitor/wire/convert.hpp"
@@ -12,6 +13,14 @@ namespace {
 
 // No report for this long: the daemon hangs, or the machine does. As clearance-watch.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
+
+// Readers stay for so long after the last viewer has gone: a page that is loaded again.
+constexpr std::int64_t kLingerNs = 5'000'000'000;
+
+// What every message tells anew is read only while somebody looks. Of poses the last must not be
+// missed: an object that seldom moves tells it once.
+constexpr std::array kOnDemand = {TopicKind::kDistances, TopicKind::kSeparation,
+                                  TopicKind::kGradients};
 
 // A reader of reports needs no more than the newest of each 1/60 s; of poses as many as a source
 // sends meanwhile, since the report names the batch that it used.
@@ -29,17 +38,21 @@ LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
       wait_(participant_, {}),
       frame_(scene) {
   for (const Topic& topic : kTopics) {
-    readers_[index(topic.kind)] =
-        participant_.reader(topic.kind, scene.topics.*topic.name, depth_of(topic.kind));
+    if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
 }
 
 void LiveSource::advance(Server& server) {
-  if (server.viewers() == 0) return;
-  for (const Topic& topic : kTopics) {
-    while (take(topic.kind)) {
-    }
+  const std::int64_t steady_ns = SystemClock().monotonic_ns();
+  if (server.viewers() == 0) {
+    if (steady_ns - watched_ns_ > kLingerNs) leave(server);
+    return;
   }
+  watched_ns_ = steady_ns;
+  for (const TopicKind kind : kOnDemand) {
+    if (kind == TopicKind::kDistances || server.is_wanted(channel(kind))) join(kind);
+  }
+  for (const Topic& topic : kTopics) take(topic.kind);
   if (!scene_.robots.empty()) take_from_ros();
   const std::int64_t now_ns = SystemClock().realtime_ns();
   tell_of_the_daemon(server, now_ns);
@@ -47,23 +60,36 @@ void LiveSource::advance(Server& server) {
   frame_.publish(server);
 }
 
-// The bytes as they came: nothing is decoded that is only passed on. True: there may be more.
-bool LiveSource::take(TopicKind kind) {
-  constexpr std::size_t kAtOnce = 64;
-  std::array<ddsi_serdata*, kAtOnce> samples{};
-  std::array<dds_sample_info_t, kAtOnce> infos;
-  const dds_return_t count = check_dds(
-      dds_takecdr(readers_[index(kind)], samples.data(), kAtOnce, infos.data(), DDS_ANY_STATE),
-      "taking samples");
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    if (infos[i].valid_data) {
-      bytes_.resize(ddsi_serdata_size(samples[i]));
-      ddsi_serdata_to_ser(samples[i], 0, bytes_.size(), bytes_.data());
-      frame_.take(kind, infos[i].source_timestamp, bytes_);
-    }
-    ddsi_serdata_unref(samples[i]);
+void LiveSource::join(TopicKind kind) {
+  dds_entity_t& reader = readers_[index(kind)];
+  if (reader != 0) return;
+  reader = participant_.reader(kind, scene_.topics.*topic(kind).name, depth_of(kind));
+}
+
+// Whoever looks next must not be shown the last report of before.
+void LiveSource::leave(Server& server) {
+  for (const TopicKind kind : kOnDemand) {
+    dds_entity_t& reader = readers_[index(kind)];
+    if (reader == 0) continue;
+    check_dds(dds_delete(std::exchange(reader, 0)), "deleting a reader");
+    server.forget(channel(kind));
   }
-  return count == kAtOnce;
+  server.forget(kTransforms);
+  server.forget(kClosest);
+  heard_ = false;
+}
+
+// The bytes as they came: nothing is decoded that is only passed on.
+void LiveSource::take(TopicKind kind) {
+  if (readers_[index(kind)] == 0) return;
+  while (take_cdr(readers_[index(kind)], taken_) == kMostAtOnce) {
+  }
+  for (const CdrSample& sample : taken_) {
+    sample.copy_to(bytes_);
+    frame_.take(kind, sample.source_ns(), bytes_);
+  }
+  heard_ = heard_ || (kind == TopicKind::kDistances && !taken_.empty());
+  taken_.clear();
 }
 
 // As the daemon does (dds/pose_reader.cpp).
@@ -80,10 +106,9 @@ void LiveSource::take_from_ros() {
 // The same states as clearance-watch tells apart.
 void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
   const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
-  const bool any = frame_.report_time_ns() != 0;
   const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_.report_time_ns());
   std::string text;
-  if (!any) {
+  if (!heard_) {
     text = fmt::format("waiting for clearanced on {}", participant_.where());
   } else if (writers_there(reader) == 0) {
     text = "clearanced has ended";
@@ -94,7 +119,7 @@ void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
   } else if (frame_.revision() != 0 && frame_.revision() != scene_.revision) {
     text = "clearanced runs another cell than the one shown here";
   }
-  server.set_status("daemon", any ? 2 : 1, text);
+  server.set_status("daemon", heard_ ? 2 : 1, text);
 }
 
 }  // namespace clearance::view

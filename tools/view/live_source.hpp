@@ -8,6 +8,7 @@
 #include "config/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
@@ -19,22 +20,28 @@ class LiveSource final : public Source {
   // Throws DdsError. `scene` must outlive it.
   LiveSource(const Scene& scene, const DdsOptions& dds);
 
-  // Without viewers nothing is taken: readers keep the newest.
+  // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
+  // reports.
   void advance(Server& server) override;
 
  private:
-  bool take(TopicKind kind);
+  void join(TopicKind kind);
+  void leave(Server& server);
+  void take(TopicKind kind);
   void take_from_ros();
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   const Scene& scene_;
   Participant participant_;
-  std::array<dds_entity_t, kTopics.size()> readers_{};
+  std::array<dds_entity_t, kTopics.size()> readers_{};  // 0: there is none
   PresentTopics present_;
   RosJointStates ros_joints_;
   DataWait wait_;  // for whoever makes readers of topics that appear: nothing waits here
+  std::vector<CdrSample> taken_;
   std::vector<std::byte> bytes_;
   Frame frame_;
+  bool heard_ = false;           // a report has come since somebody looks
+  std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC
 };
 
 }  // namespace clearance::view

@@ -11,9 +11,9 @@ namespace {
 
 using Piece = RunHistory::Piece;
 
-constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
 // Distances that are kept: 64 MB. An hour of 162 pairs is then kept in pieces of 64 ms.
 constexpr std::size_t kMostDistances = 1 << 24;
+constexpr std::int64_t kShortestNs = 4'000'000;
 
 bool is_known(const clearance_msg_PairDistance& pair) {
   return pair.status < static_cast<std::uint8_t>(PairStatus::kStale);
@@ -33,7 +33,17 @@ Piece piece_of(const clearance_msg_Distances& report, std::int64_t log_ns) {
   return piece;
 }
 
-void merge(const Piece& later, Piece& piece) {
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+std::size_t published(const Scene& scene) {
+  return static_cast<std::size_t>(std::ranges::count_if(scene.pairs, &ObjectPair::publish));
+}
+
+}  // namespace
+
+void merge(const RunHistory::Piece& later, RunHistory::Piece& piece) {
   piece.tick_us = std::fmax(piece.tick_us, later.tick_us);
   if (!(std::isnan(piece.distance) || later.distance < piece.distance)) return;
   piece.time_ns = std::isnan(later.distance) ? piece.time_ns : later.time_ns;
@@ -42,74 +52,45 @@ void merge(const Piece& later, Piece& piece) {
   piece.pair = later.pair;
 }
 
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+void merge(const RunHistory::Least& later, RunHistory::Least& least) {
+  least.distance = std::fmin(least.distance, later.distance);
 }
 
-}  // namespace
-
-RunHistory::RunHistory(const Scene& scene) {
+RunHistory::RunHistory(const Scene& scene)
+    : run_(published(scene), kMostDistances / std::max<std::size_t>(published(scene), 8),
+           kShortestNs) {
+  std::uint32_t columns = 0;
   for (const ObjectPair& pair : scene.pairs) {
-    column_of_.push_back(pair.publish ? static_cast<std::uint32_t>(columns_++) : kNotPublished);
+    column_of_.push_back(pair.publish ? columns++ : kNotPublished);
   }
 }
 
 void RunHistory::take(const clearance_msg_Distances& report, std::int64_t log_ns) {
-  const Piece piece = piece_of(report, log_ns);
-  if (pieces_.empty() || number_of(log_ns) > number_of(pieces_.back().begin_ns)) {
-    if ((pieces_.size() + 1) * std::max<std::size_t>(columns_, 8) > kMostDistances) halve();
-    pieces_.push_back(piece);
-    distances_.resize(pieces_.size() * columns_, kNotKnown);
-  } else {
-    merge(piece, pieces_.back());
-  }
-  take_pairs(report);
-}
-
-void RunHistory::take_pairs(const clearance_msg_Distances& report) {
-  const std::span<float> least = row(pieces_.size() - 1);
+  const std::span<Least> least = run_.add(piece_of(report, log_ns));
   for (const auto& pair : std::span(report.pairs._buffer, report.pairs._length)) {
     const std::uint32_t column =
         pair.pair < column_of_.size() ? column_of_[pair.pair] : kNotPublished;
     if (column == kNotPublished || !is_known(pair)) continue;
-    least[column] = std::fmin(least[column], static_cast<float>(pair.distance));
+    merge(Least{static_cast<float>(pair.distance)}, least[column]);
   }
-}
-
-// Pieces of twice the length: of two that fall together the least.
-void RunHistory::halve() {
-  piece_ns_ *= 2;
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < pieces_.size(); ++i) {
-    if (number_of(pieces_[i].begin_ns) > number_of(pieces_[kept].begin_ns)) {
-      pieces_[++kept] = pieces_[i];
-      std::ranges::copy(row(i), row(kept).begin());
-      continue;
-    }
-    merge(pieces_[i], pieces_[kept]);
-    std::ranges::transform(row(kept), row(i), row(kept).begin(),
-                           [](float a, float b) { return std::fmin(a, b); });
-  }
-  pieces_.resize(kept + 1);
-  distances_.resize(pieces_.size() * columns_);
 }
 
 Piece RunHistory::least() const {
   Piece least;
-  for (const Piece& piece : pieces_) merge(piece, least);
+  for (const Piece& piece : run_.heads()) merge(piece, least);
   return least;
 }
 
 std::vector<Piece> RunHistory::pieces(std::size_t most) const {
   std::vector<Piece> merged;
-  if (pieces_.empty()) return merged;
-  const std::int64_t begin_ns = pieces_.front().begin_ns;
-  const double span = static_cast<double>(pieces_.back().begin_ns - begin_ns) + 1.0;
+  if (run_.heads().empty()) return merged;
+  const std::int64_t begin_ns = run_.heads().front().begin_ns;
+  const double span = static_cast<double>(run_.heads().back().begin_ns - begin_ns) + 1.0;
   const auto number = [&](const Piece& piece) {
     return std::floor(static_cast<double>(piece.begin_ns - begin_ns) / span *
                       static_cast<double>(most));
   };
-  for (const Piece& piece : pieces_) {
+  for (const Piece& piece : run_.heads()) {
     if (!merged.empty() && number(piece) == number(merged.back())) {
       merge(piece, merged.back());
     } else {
@@ -119,13 +100,12 @@ std::vector<Piece> RunHistory::pieces(std::size_t most) const {
   return merged;
 }
 
-float RunHistory::least_of(std::uint32_t pair, std::size_t first, std::size_t last) const {
-  float least = kNotKnown;
+double RunHistory::least_of(std::uint32_t pair, std::size_t first, std::size_t last) const {
+  Least least;
   const std::uint32_t column = pair < column_of_.size() ? column_of_[pair] : kNotPublished;
-  if (column == kNotPublished) return least;
-  for (std::size_t i = first; i < last; ++i)
-    least = std::fmin(least, distances_[i * columns_ + column]);
-  return least;
+  if (column == kNotPublished) return least.distance;
+  for (std::size_t i = first; i < last; ++i) merge(run_.cells(i)[column], least);
+  return least.distance;
 }
 
 std::string RunHistory::window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const {
@@ -134,16 +114,17 @@ std::string RunHistory::window(std::int64_t end_ns, std::span<const std::uint32_
                         {"lower", nlohmann::json::array()},
                         {"tick", nlohmann::json::array()},
                         {"pairs", nlohmann::json::object()}};
-  const auto first = std::ranges::upper_bound(pieces_, end_ns - kWindowNs, {}, &Piece::begin_ns);
-  const auto last = std::ranges::upper_bound(pieces_, end_ns, {}, &Piece::begin_ns);
-  const auto from = static_cast<std::size_t>(first - pieces_.begin()),
-             to = static_cast<std::size_t>(last - pieces_.begin());
+  const auto first =
+      std::ranges::upper_bound(run_.heads(), end_ns - kWindowNs, {}, &Piece::begin_ns);
+  const auto last = std::ranges::upper_bound(run_.heads(), end_ns, {}, &Piece::begin_ns);
+  const auto from = static_cast<std::size_t>(first - run_.heads().begin()),
+             to = static_cast<std::size_t>(last - run_.heads().begin());
   const std::size_t together = (to - from) / kMostPoints + 1;
   for (std::size_t i = from; i < to; i += together) {
     const std::size_t end = std::min(to, i + together);
-    Piece piece = pieces_[i];
-    for (std::size_t j = i + 1; j < end; ++j) merge(pieces_[j], piece);
-    all["s"].push_back(1e-9 * static_cast<double>(piece.time_ns - pieces_.front().begin_ns));
+    Piece piece = run_.heads()[i];
+    for (std::size_t j = i + 1; j < end; ++j) merge(run_.heads()[j], piece);
+    all["s"].push_back(1e-9 * static_cast<double>(piece.time_ns - run_.heads().front().begin_ns));
     all["distance"].push_back(number(piece.distance));
     all["lower"].push_back(number(piece.lower));
     all["tick"].push_back(number(piece.tick_us));

@@ -11,6 +11,7 @@
 
 #include "clearance.h"
 #include "config/scene.hpp"
+#include "tools/plot/stretches.hpp"
 
 namespace clearance::view {
 
@@ -29,6 +30,11 @@ class RunHistory {
     double tick_us = distance;  // the longest from telling a tick its time to its report
   };
 
+  // Of a published pair, m; NaN where it was not known.
+  struct Least {
+    float distance = std::numeric_limits<float>::quiet_NaN();
+  };
+
   explicit RunHistory(const Scene& scene);
 
   // Reports in the order of their log times.
@@ -44,23 +50,16 @@ class RunHistory {
   [[nodiscard]] std::string window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const;
 
  private:
-  [[nodiscard]] std::int64_t number_of(std::int64_t time_ns) const {
-    return (time_ns - pieces_.front().begin_ns) / piece_ns_;
-  }
-  [[nodiscard]] std::span<float> row(std::size_t piece) {
-    return std::span(distances_).subspan(piece * columns_, columns_);
-  }
-  void take_pairs(const clearance_msg_Distances& report);
-  void halve();
   // Of the pieces from `first` to before `last`, m; NaN: of no published pair, or never known.
-  [[nodiscard]] float least_of(std::uint32_t pair, std::size_t first, std::size_t last) const;
+  [[nodiscard]] double least_of(std::uint32_t pair, std::size_t first, std::size_t last) const;
 
   static constexpr std::uint32_t kNotPublished = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> column_of_;  // by pair
-  std::size_t columns_ = 0;
-  std::int64_t piece_ns_ = 4'000'000;  // doubled whenever there are too many
-  std::vector<Piece> pieces_;
-  std::vector<float> distances_;  // a row a piece, a column a published pair: the least, m
+  Stretches<Piece, Least> run_;           // a column a published pair
 };
+
+// As Stretches asks for it.
+void merge(const RunHistory::Piece& later, RunHistory::Piece& into);
+void merge(const RunHistory::Least& later, RunHistory::Least& into);
 
 }  // namespace clearance::view

@@ -1,6 +1,7 @@
 #include "tools/view/scene_json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +15,10 @@ using nlohmann::json;
 
 // More parts than these around a group are no picture of a zone any more.
 constexpr std::size_t kMostShells = 120;
+
+// Round parts that are drawn as finely as one alone; more of them are drawn more coarsely, so that
+// the cell has about as many triangles, down to steps of kCoarsest (rad).
+constexpr double kMostFine = 30.0, kCoarsest = 0.6;
 
 // Six digits: micrometres in a cell of a metre; text of a third of the length.
 double rounded(double value) { return std::round(value * 1e6) * 1e-6; }
@@ -45,11 +50,25 @@ json mesh_json(const BodyMesh& mesh) {
   return all;
 }
 
+double arc_step_of(const Scene& scene) {
+  double round = 0.0;
+  for (const Object& object : scene.objects) {
+    round += static_cast<double>(std::ranges::count_if(object.parts, [](const Part& part) {
+      return part.shape.is_curved() || part.shape.radius > 0.0;
+    }));
+  }
+  // The triangles of a part grow with the square of its steps.
+  return std::clamp(kArcStep * std::sqrt(round / kMostFine), kArcStep, kCoarsest);
+}
+
 // Numbers meshes as they come; equal ones have one number.
 class Meshes {
  public:
-  std::size_t number_of(const BodyMesh& mesh) {
-    json found = mesh_json(mesh);
+  explicit Meshes(const Scene& scene) : arc_step_(arc_step_of(scene)) {}
+
+  // Of this body, its radius enlarged by `offset`, m.
+  std::size_t number_of(const ConvexPolyhedron& shape, double offset = 0.0) {
+    json found = mesh_json(body_mesh(shape, offset, kReach, arc_step_));
     const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
     if (is_new) list_.push_back(std::move(found));
     return entry->second;
@@ -57,6 +76,8 @@ class Meshes {
   [[nodiscard]] json take() { return std::move(list_); }
 
  private:
+  static constexpr double kReach = 20.0;  // of what is drawn of an unbounded body, m
+  double arc_step_;
   std::map<std::string, std::size_t> numbers_;
   json list_ = json::array();
 };
@@ -85,7 +106,7 @@ json parts_json(const Scene& scene, Meshes& meshes) {
         const Facet& plane = part.shape.facets.front();
         entry["plane"] = {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset};
       } else {
-        entry["mesh"] = meshes.number_of(body_mesh(part.shape));
+        entry["mesh"] = meshes.number_of(part.shape);
         entry["unbounded"] = !part.shape.bounded();
       }
       list.push_back(std::move(entry));
@@ -116,10 +137,9 @@ json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
     for (const Part& part : object.parts) {
       if (!part.shape.bounded()) continue;
       if (list.size() == kMostShells) return json::array();
-      list.push_back(
-          {{"object", i},
-           {"pose", pose_json(part.object_from_part)},
-           {"mesh", meshes.number_of(body_mesh(part.shape, zone.enter_below + object.margin))}});
+      list.push_back({{"object", i},
+                      {"pose", pose_json(part.object_from_part)},
+                      {"mesh", meshes.number_of(part.shape, zone.enter_below + object.margin)}});
     }
   }
   return list;
@@ -141,14 +161,15 @@ json zones_json(const Scene& scene, Meshes& meshes) {
 }  // namespace
 
 std::string scene_json(const Scene& scene) {
-  Meshes meshes;
+  Meshes meshes(scene);
   json all = {{"name", scene.name},
               {"revision", std::to_string(scene.revision)},
               {"rate_hz", scene.rate_hz},
               {"topics",
                {{"distances", scene.topics.distances},
                 {"zones", scene.topics.zones},
-                {"health", scene.topics.health}}},
+                {"health", scene.topics.health},
+                {"separation", scene.topics.separation}}},
               {"objects", objects_json(scene)},
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},

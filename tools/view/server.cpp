@@ -330,6 +330,10 @@ void Server::publish(const Message& message) {
   for (Viewer* const viewer : std::set(state_->viewers)) viewer->send(message);
 }
 
+void Server::forget(ChannelId channel) {
+  std::erase_if(state_->latest, [=](const auto& entry) { return entry.first.first == channel; });
+}
+
 void Server::set_time(std::int64_t ns) {
   for (Viewer* const viewer : std::set(state_->viewers)) viewer->send_time(ns);
 }

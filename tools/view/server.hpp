@@ -51,6 +51,8 @@ class Server {
 
   // Keeps the message for viewers that come later, and sends it to all that have subscribed.
   void publish(const Message& message);
+  // Viewers that come later are not sent what was published on this channel.
+  void forget(ChannelId channel);
   void set_time(std::int64_t ns);
   // Shown until it is replaced or, by an empty text, taken back.
   void set_status(const std::string& id, int level, const std::string& text);

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 
 #include "monitor/report.hpp"
+#include "tools/watch/number_text.hpp"
+#include "tools/watch/separation_lines.hpp"
 
 namespace clearance::watch {
 namespace {
@@ -41,36 +42,6 @@ Style status_style(std::uint8_t status) {
 
 bool is_stale(const clearance_msg_PairDistance& pair) {
   return static_cast<PairStatus>(pair.status) == PairStatus::kStale;
-}
-
-// Right-aligned, whatever it is: fmt puts what is not finite to the left.
-std::string aligned(double value, int precision, int width) {
-  const std::string text = std::isnan(value) ? "unknown" : fmt::format("{:.{}f}", value, precision);
-  return fmt::format("{:>{}}", text, width);
-}
-
-std::string metres(double value) { return aligned(value, 4, 9); }
-
-std::string point(const clearance_msg_Vector3& p) {
-  return fmt::format("({} {} {})", aligned(p.x, 3, 7), aligned(p.y, 3, 7), aligned(p.z, 3, 7));
-}
-
-// Seven columns; contacts more than a quarter of an hour away are not shown.
-std::string contact_time(double seconds) {
-  if (std::isnan(seconds)) return "unknown";
-  return seconds < 1000.0 ? fmt::format("{:7.2f}", seconds) : "      -";
-}
-
-// Seven columns, with its sign.
-std::string speed(double metres_per_second) {
-  return std::isnan(metres_per_second) ? "unknown" : fmt::format("{:+7.3f}", metres_per_second);
-}
-
-// "closing +0.512 m/s  contact in    0.98 s".
-std::string approach(const clearance_msg_PairDistance& pair) {
-  if (std::isnan(pair.closing_speed)) return "closing at an unknown speed";
-  return fmt::format("closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
-                     contact_time(pair.time_to_contact));
 }
 
 double seconds_of(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
@@ -208,29 +179,6 @@ void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
         .add("  ");
   }
   if (feed.zones().empty()) line.add("none");
-}
-
-// "people: scaling 0.43, up to 0.51 m/s, 0.120 m above S_p, person - hand".
-std::string separation_text(const Feed& feed, const clearance_msg_ZoneSeparation& zone) {
-  const std::string name = feed.zone_name(zone.zone), pair = feed.pair_name(zone.pair);
-  const auto validity = static_cast<SeparationValidity>(zone.validity);
-  if (validity == SeparationValidity::kUnknown)
-    return fmt::format("{}: not known, scaling 0, {}", name, pair);
-  return fmt::format("{}: scaling {:.2f}, robot up to {:.2f} m/s, {:.3f} m {} S_p, {}{}", name,
-                     zone.scaling, zone.speed_limit, std::abs(zone.remaining),
-                     zone.remaining < 0.0 ? "below" : "above", pair,
-                     validity == SeparationValidity::kAssumed ? ", by stated speeds" : "");
-}
-
-void add_separation(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
-  const clearance_msg_Separation* separation = feed.separation();
-  if (separation == nullptr) return;
-  for (std::uint32_t i = 0; i < separation->zones._length; ++i) {
-    const clearance_msg_ZoneSeparation& zone = separation->zones._buffer[i];
-    lines.emplace_back(width)
-        .add("keep off  ", Style::kDim)
-        .add(separation_text(feed, zone), zone.scaling < 1.0 ? Style::kAlarm : Style::kGood);
-  }
 }
 
 void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& context,
@@ -379,10 +327,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   for (const auto& [id, zone] : feed.zones()) {
     if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
   }
-  if (const auto* separation = feed.separation()) {
-    for (std::uint32_t i = 0; i < separation->zones._length; ++i)
-      text += fmt::format("  {}", separation_text(feed, separation->zones._buffer[i]));
-  }
+  for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
                         health->tick_p50_us, health->tick_p999_us, health->tick_max_us,

@@ -1,39 +1,50 @@
-// Foxglove's own client: subscribes to every channel, decodes a message of each by its schema, counts the reports of two
-// seconds, and sets a parameter: node foxglove.mjs URL [TIME]
+// Foxglove's own client: subscribes to every channel and decodes the messages by their schemas, of a daemon until it has
+// REPORTS reports and a message of each topic; of a recording, it sets the time and waits until that stands there:
+//   node foxglove.mjs URL reports REPORTS TOPICS...
+//   node foxglove.mjs URL time TIME
 import protocol from "@foxglove/ws-protocol";
 import WebSocket from "ws";
 
 import { markersOf, plain, readerOf } from "./decode.mjs";
 
 const { FoxgloveClient } = protocol;
-const [url, time] = process.argv.slice(2);
+const [url, what, figure, ...topics] = process.argv.slice(2);
+const STANDS = 20; // frames without a message
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-const found = { channels: {}, first: {}, last: {}, reports: 0, times: 0, statuses: [] };
+const found = { channels: {}, first: {}, last: {}, cycles: [], statuses: [] };
 const channels = new Map();
 
 client.on("serverInfo", ({ name, capabilities }) => Object.assign(found, { name, capabilities }));
 client.on("error", (error) => { throw error; });
 client.on("status", ({ level, message }) => found.statuses.push({ level, message }));
-client.on("time", () => (found.times += 1));
+let quiet = 0;
+client.on("time", () => {
+  quiet += 1;
+  if (what === "time" && found.parameters && found.last["clearance/distances"] && quiet > STANDS) say();
+});
 client.on("advertise", (advertised) => {
   for (const { id, topic, encoding, schemaName, schema, schemaEncoding } of advertised) {
     found.channels[topic] = { encoding, schemaName, schemaEncoding };
     channels.set(client.subscribe(id), { topic, reader: readerOf(schemaName, schemaEncoding, schema) });
   }
-  if (time !== undefined) client.setParameters([{ name: "playback.time", value: Number(time) }], "set");
+  if (what === "time") client.setParameters([{ name: "playback.time", value: Number(figure) }], "set");
 });
 client.on("parameterValues", ({ parameters, id }) => {
-  if (id === "set") found.parameters = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+  if (id !== "set") return;
+  found.parameters = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+  quiet = 0;
 });
 client.on("message", ({ subscriptionId, data }) => {
   const { topic, reader } = channels.get(subscriptionId);
   const message = reader.readMessage(data);
-  if (topic.endsWith("distances")) found.reports += 1;
+  quiet = 0;
+  if (topic.endsWith("distances")) found.cycles.push(message.cycle);
   found.last[topic] = message.markers ? markersOf(message) : message;
   found.first[topic] ??= found.last[topic];
+  if (what === "reports" && found.cycles.length >= Number(figure) && topics.every((each) => found.last[each])) say();
 });
 
-setTimeout(() => {
+function say() {
   console.log(JSON.stringify(found, plain));
   process.exit(0);
-}, 2000);
+}

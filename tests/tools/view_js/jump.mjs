@@ -9,11 +9,19 @@ const { FoxgloveClient } = protocol;
 const [url, ...times] = process.argv.slice(2);
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
 const readers = new Map(), last = {};
+const STANDS = 20; // frames without a message
+let quiet = 0, stands;
+client.on("time", () => {
+  quiet += 1;
+  if (quiet > STANDS) stands?.();
+});
+client.on("parameterValues", ({ id }) => (quiet = id === "set" ? 0 : quiet));
 
 client.on("error", (error) => { throw error; });
 client.on("message", ({ subscriptionId, data }) => {
   const { topic, reader } = readers.get(subscriptionId);
   last[topic] = reader.readMessage(data);
+  quiet = 0;
 });
 await new Promise((done) => client.on("advertise", (channels) => {
   for (const { id, topic, schemaName, schema, schemaEncoding } of channels) {
@@ -24,8 +32,10 @@ await new Promise((done) => client.on("advertise", (channels) => {
 }));
 
 for (const time of times.map(Number)) {
+  quiet = -Infinity; // until it is set
+  const there = new Promise((done) => (stands = done));
   client.setParameters([{ name: "playback.time", value: time }], "set");
-  await new Promise((done) => setTimeout(done, 700));
+  await there;
   const history = await (await fetch(new URL(`/history.json?end=${time}&pairs=2`, url.replace("ws", "http")))).json();
   console.log(JSON.stringify({ time, zone: last["clearance/zones"], cycle: last["clearance/distances"].cycle, history }, plain));
 }

@@ -1,5 +1,5 @@
 // Opens clearance-view's page in Debian's Chromium and says what it shows, a line of JSON a step:
-//   node page.mjs URL FOLDER live|recording
+//   node page.mjs URL FOLDER live|recording|separation
 // Pictures go into FOLDER.
 import { chromium } from "playwright-core";
 
@@ -48,10 +48,34 @@ async function live() {
   say({ ended: await alarm(), minimum: await minimum(), frozen: await page.$eval("#scene", ({ classList }) => classList.contains("frozen")) });
 }
 
+// What the table of separations says once it knows.
+async function separation() {
+  await page.waitForFunction(() => /\d/.test(document.querySelector("#separation tbody td:nth-child(3)")?.textContent ?? ""));
+  const cells = (name) => page.$$eval(`#separation ${name}`, (all) => all.map(({ textContent }) => textContent));
+  await picture("separation");
+  const measured = await cells("tbody td");
+  await page.waitForFunction(() => document.querySelector("#separation tbody tr").className === "lost");
+  say({ heads: await cells("th"), measured, lost: await cells("tbody td"), errors });
+}
+
 // The recording stands still where the page says.
 const settled = (time) => page.waitForFunction((at) => window.clearance?.isAt(at), time);
 const standsStill = () => page.waitForFunction(() => window.clearance?.isAt(parseFloat(document.getElementById("time").textContent)));
 const shownTime = () => page.$eval("#time", ({ textContent }) => parseFloat(textContent));
+
+// Clicks where the middle of an object is; what the table is then filtered by.
+async function clickOn(name) {
+  const at = await page.evaluate((object) => {
+    const { bodies, camera, size } = window.clearance.view;
+    const middle = bodies.bounds(({ name }) => name === object).getCenter(camera.position.clone()).project(camera);
+    const box = document.getElementById("view").getBoundingClientRect();
+    return [box.left + (0.5 + 0.5 * middle.x) * size.width, box.top + (0.5 - 0.5 * middle.y) * size.height];
+  }, name);
+  await page.keyboard.press("Escape");
+  await page.evaluate(() => (document.getElementById("labels").hidden = true));
+  await page.mouse.click(...at);
+  return page.$eval("#filter", ({ value }) => value);
+}
 
 async function recording() {
   await settled(0);
@@ -79,17 +103,20 @@ async function recording() {
   const dragged = Number(new URL(share).searchParams.get("t"));
   await page.keyboard.press("w");
   await settled(closest.time);
+  const clicked = await clickOn("left");
   await page.goto(share);
   await settled(dragged);
   await picture("shared-link");
-  say({ timeline, worst, dragged, share, again: await shownTime(), chosen: await page.$$eval("tr.chosen", (rows) => rows.length), errors });
+  say({ timeline, worst, dragged, share, clicked, again: await shownTime(), chosen: await page.$$eval("tr.chosen", (rows) => rows.length), errors });
   await page.keyboard.press("Space");
   await page.waitForFunction((time) => parseFloat(document.getElementById("time").textContent) > time + 0.1, dragged);
   say({ played: await shownTime(), framesPerSecond: await page.evaluate(() => window.clearance.framesPerSecond()) });
 }
 
 try {
-  await (what === "live" ? page.goto(url).then(live) : page.goto(`${url}?t=0`).then(recording));
+  if (what === "live") await page.goto(url).then(live);
+  else if (what === "separation") await page.goto(url).then(separation);
+  else await page.goto(`${url}?t=0`).then(recording);
 } catch (error) {
   const stands = await page.evaluate(() => ({ ...window.clearance?.stands(), shown: { ...document.getElementById("minimum").dataset } })).catch(({ message }) => message);
   say({ failed: error.stack, errors, stands });

@@ -103,7 +103,7 @@ export class CellState {
       found.push({ level: "lost", text: `${report.stale} pairs stale, ${report.unknown} unknown${names.length ? `: ${names.join(", ")}` : ""}` });
     }
     if (this.overrun && Math.abs(this.timeNs - this.overrun.ns) * 1e-9 < TOLD_FOR_S) {
-      found.push({ level: "near", text: `${this.overrun.count} overruns in the last second, longest tick ${(this.overrun.us / 1000).toFixed(2)} ms` });
+      found.push({ level: "near", text: `${this.overrun.count} ${this.overrun.count === 1 ? "overrun" : "overruns"} in the last second, longest tick ${(this.overrun.us / 1000).toFixed(2)} ms` });
     }
     return found;
   }

@@ -15,6 +15,7 @@ export class Connection {
 
   connect() {
     this.subscriptions = [];
+    this.waiting = undefined;
     this.socket = new WebSocket(this.url, ["foxglove.websocket.v1"]);
     this.socket.binaryType = "arraybuffer";
     this.socket.onmessage = ({ data }) => (typeof data === "string" ? this.text(JSON.parse(data)) : this.binary(new DataView(data)));
@@ -64,6 +65,17 @@ export class Connection {
     if (view.getUint8(0) === 2) return this.on.time(ns(1));
     const subscription = this.subscriptions[view.getUint32(1, true)];
     if (!subscription) return;
-    this.on.message(subscription.topic, subscription.decode(new DataView(view.buffer, 13)), ns(5));
+    const message = { subscription, bytes: new DataView(view.buffer, 13), ns: ns(5) };
+    if (subscription.decode === transforms) this.waiting = message;
+    else this.hand(message);
+  }
+  hand({ subscription, bytes, ns }) {
+    this.on.message(subscription.topic, subscription.decode(bytes), ns);
+  }
+
+  // Poses of a large cell are many: they are decoded when a frame needs them, the newest only.
+  handWaiting() {
+    if (this.waiting) this.hand(this.waiting);
+    this.waiting = undefined;
   }
 }

@@ -7,6 +7,7 @@ import { PairTable } from "./pair_table.js";
 import { savePicture } from "./picture.js";
 import { Plots } from "./plots.js";
 import { drawLegend, drawReadouts } from "./readouts.js";
+import { SeparationRows } from "./separation_rows.js";
 import { SceneView } from "./scene_view.js";
 import { Timeline } from "./timeline.js";
 
@@ -32,9 +33,10 @@ applyTheme();
 
 const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), objectChosen: chooseObject });
 const table = new PairTable(choose, changed);
+const separations = new SeparationRows(choose);
 const plots = new Plots();
 const topics = scene.topics;
-const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, "/tf"], {
+const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf"], {
   open: () => {
     state.connected = true;
     if (asked.time !== undefined && timeline) connection.set("playback.time", asked.time);
@@ -47,6 +49,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
     if (topic === "/tf") view.moved(value);
     else if (topic === topics.distances) state.takeReport(value, ns);
     else if (topic === topics.zones) state.zones.set(value.zone, value);
+    else if (topic === topics.separation) state.separation = value;
     else if (topic === topics.health) state.takeHealth(value, ns);
   },
 });
@@ -137,6 +140,7 @@ const actions = {
     const cycle = state.report?.cycle ?? 0;
     const [value, pair] = [element("minimum-value").textContent, element("minimum-pair").textContent];
     const when = timeline ? `${secondsIn().toFixed(3)} s` : new Date(state.timeNs * 1e-6).toISOString();
+    view.redraw();
     savePicture(element("view"), element("labels"), `${scene.name}, cycle ${cycle}, ${when}: ${value}, ${pair}`, `${scene.name}-${cycle}.png`);
   },
   filter: () => element("filter").focus(),
@@ -161,9 +165,11 @@ let firstMs, drawnReport, frames = 0;
 const times = [];
 function frame(nowMs) {
   requestAnimationFrame(frame);
+  connection.handWaiting();
   const frozen = drawReadouts(state, track?.playing, nowMs);
   view.draw(state, chosen, frozen, nowMs);
   table.draw(state, chosen, nowMs);
+  separations.draw(state, frozen, nowMs);
   plots.draw(state, chosen, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());
   if (state.report && view.fitted) firstMs ??= nowMs;

@@ -5,6 +5,7 @@ import { css, mm, put } from "./format.js";
 import { isKnown } from "./pair_status.js";
 
 const MOST_LINES = 64, MOST_LABELS = 4;
+const AGAIN_MS = 100; // texts; their places follow every frame
 const WIDTH = 0.0016, POINT = 0.0042; // of the distance to the camera
 export const COLOUR = { inside: "--alarm", leaving: "--near", outside: "--good", free: "--accent", lost: "--lost" };
 
@@ -70,11 +71,13 @@ export class PairLines extends THREE.Group {
 
   // Labels lie beside the middles of their lines, from the top down, and below each other where they would overlap.
   label(state, chosen, camera, { width, height }) {
+    const isDue = performance.now() - (this.filledMs ?? 0) > AGAIN_MS;
+    if (isDue) this.filledMs = performance.now();
     const placed = this.shown.slice(0, MOST_LABELS).map(({ pair, a, b, level }, i) => {
       const element = (this.pool[i] ??= this.makeLabel());
       const at = a.clone().lerp(b, 0.5).project(camera);
       element.hidden = at.z > 1 || Math.abs(at.x) > 1.05 || Math.abs(at.y) > 1.05;
-      this.fill(element, pair, level, state, chosen, i > 0);
+      if (isDue || Number(element.dataset.pair) !== pair.pair) this.fill(element, pair, level, state, chosen, i > 0);
       return { element, x: Math.min((at.x * 0.5 + 0.5) * width + 14, width - 250), y: (0.5 - at.y * 0.5) * height - 18 };
     }).filter(({ element }) => !element.hidden).sort((one, other) => one.y - other.y);
     placed.forEach((label, i) => {

@@ -97,10 +97,15 @@ export function drawLegend() {
   }));
 }
 
-let healthDrawnMs = 0;
+// Whether what is shown is not what is. Text is set as often as it can be read: laying it out costs a slow browser more
+// than the scene does.
+const AGAIN_MS = 66;
+let drawnMs = 0, healthDrawnMs = 0, frozen = false;
 export function drawReadouts(state, playing, nowMs) {
+  if (nowMs - drawnMs < AGAIN_MS) return frozen;
+  drawnMs = nowMs;
   const alarms = state.alarms();
-  const frozen = alarms.some((alarm) => alarm.frozen);
+  frozen = alarms.some((alarm) => alarm.frozen);
   drawAlarm(alarms);
   drawState(state, frozen, playing);
   drawMinimum(state, frozen);

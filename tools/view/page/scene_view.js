@@ -1,6 +1,7 @@
 // The three-dimensional view: camera, lights, bodies, zones, lines; what is clicked.
 import * as THREE from "three";
 import { OrbitControls } from "orbit";
+import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
 import { ZoneShells } from "./zone_shells.js";
@@ -8,6 +9,7 @@ import { css } from "./format.js";
 
 const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
 const CLICK_PIXELS = 5;
+const ROUNDING = 1e-7; // m
 // Where frames take longer than this, ms, they are drawn with fewer pixels, down to so many a pixel of the page.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 
@@ -17,7 +19,7 @@ export class SceneView {
     this.on = on;
     this.element = document.getElementById("scene");
     const canvas = document.getElementById("view");
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.sharpness = Math.min(window.devicePixelRatio, 2);
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.01, 400);
@@ -28,9 +30,8 @@ export class SceneView {
     this.bodies = new Bodies(scene);
     this.shells = new ZoneShells(scene);
     this.lines = new PairLines(document.getElementById("labels"), on.pairChosen);
-    this.sun = new THREE.DirectionalLight(0xffffff, 2.1);
-    this.sky = new THREE.HemisphereLight(0xffffff, 0x8a94a3, 1.7);
-    this.world.add(this.sky, this.sun, this.bodies, this.shells, this.lines);
+    this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
+    this.world.add(this.backdrop, this.bodies, this.shells, this.lines);
     this.clicks(canvas);
     new ResizeObserver(() => this.resize()).observe(this.element);
     this.resize();
@@ -48,7 +49,6 @@ export class SceneView {
 
   retheme() {
     ++this.changes;
-    this.renderer.setClearColor(css("--scene"));
     this.bodies.recolour();
     this.shells.recolour();
   }
@@ -72,6 +72,7 @@ export class SceneView {
       material.uniforms.reach.value = sphere.radius;
     }
     this.bodies.refocus();
+    ++this.bodies.stillChanges;
     this.fitted = true;
   }
   // The camera has its place, or there is nothing to be seen yet.
@@ -106,17 +107,33 @@ export class SceneView {
   draw(state, chosen, frozen, nowMs) {
     this.controls.update();
     this.camera.updateMatrixWorld();
-    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, ...this.camera.matrixWorld.elements].join();
+    this.noteCamera();
+    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.cameraChanges].join();
     if (key === this.drawnKey) return (this.drawnMs = undefined);
     this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
     if (this.drawn % 30 === 0) this.bodies.refocus();
-    this.sun.position.copy(this.camera.position).add(new THREE.Vector3(-1, 0.5, 2.5));
+    this.bodies.lit(this.camera, this.controls.target);
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.shells.update(this.bodies.poses, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size);
+    const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
+    this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));
     this.renderer.render(this.world, this.camera);
     this.adapt(nowMs);
+  }
+
+  // Controls at rest move the camera by roundings.
+  noteCamera() {
+    const { elements } = this.camera.matrixWorld;
+    if (this.seenFrom?.every((value, i) => Math.abs(value - elements[i]) < ROUNDING)) return;
+    this.seenFrom = [...elements];
+    this.cameraChanges = (this.cameraChanges ?? 0) + 1;
+  }
+
+  // What can be read off the canvas until the script gives way.
+  redraw() {
+    this.renderer.render(this.world, this.camera);
   }
 
   // Draws once more, and waits until that is done.

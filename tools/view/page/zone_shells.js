@@ -1,21 +1,20 @@
 // Zones as shells: the bodies of one group of a zone, enlarged by what the zone is entered below. Like glass: seen at
 // their rims, faint until the zone is active.
 import * as THREE from "three";
-import { batch, matrixOf } from "./bodies.js";
+import { matrixOf } from "./bodies.js";
 import { css } from "./format.js";
+import { everywhere, PLACED, Placements, trianglesOf } from "./placements.js";
 
-const material = () => new THREE.ShaderMaterial({
-  uniforms: { colour: { value: new THREE.Color() }, strength: { value: 0.2 } },
+const material = (placements) => new THREE.ShaderMaterial({
+  uniforms: { placements: { value: placements.texture }, colour: { value: new THREE.Color() }, strength: { value: 0.2 } },
   transparent: true,
   depthWrite: false,
-  vertexShader: `#include <common>
-    #include <batching_pars_vertex>
+  vertexShader: `${PLACED}
     varying vec3 normalSeen, seen;
     void main() {
-      #include <batching_vertex>
-      mat4 placed = viewMatrix * batchingMatrix;
-      vec4 at = placed * vec4(position, 1.0);
-      normalSeen = mat3(placed) * normal;
+      mat4 inView = viewMatrix * placed();
+      vec4 at = inView * vec4(position, 1.0);
+      normalSeen = mat3(inView) * normal;
       seen = -at.xyz;
       gl_Position = projectionMatrix * at;
     }`,
@@ -25,6 +24,8 @@ const material = () => new THREE.ShaderMaterial({
       gl_FragColor = vec4(colour, strength * (0.1 + pow(1.0 - facing, 3.0)));
     }`,
 });
+
+const world = new THREE.Matrix4(); // used again and again
 
 export class ZoneShells extends THREE.Group {
   constructor(scene) {
@@ -36,10 +37,11 @@ export class ZoneShells extends THREE.Group {
 
   shellsOf(parts, meshes) {
     if (!parts.length) return undefined;
-    const solid = batch(parts, meshes, material());
+    const placements = new Placements(parts.length);
+    const solid = everywhere(new THREE.Mesh(trianglesOf(parts, meshes), material(placements)));
     solid.renderOrder = 5;
     this.add(solid);
-    return { solid, parts, local: parts.map(({ pose }) => matrixOf(pose)) };
+    return { solid, placements, parts, local: parts.map(({ pose }) => matrixOf(pose)) };
   }
 
   // To where the objects are; `states` as CellState.zoneStates().
@@ -47,8 +49,7 @@ export class ZoneShells extends THREE.Group {
     if (!this.visible) return;
     this.shells.forEach((shells, zone) => {
       shells?.parts.forEach(({ object }, i) => {
-        shells.solid.setVisibleAt(i, poses[object] !== undefined);
-        if (poses[object]) shells.solid.setMatrixAt(i, poses[object].clone().multiply(shells.local[i]));
+        shells.placements.place(i, poses[object] && world.multiplyMatrices(poses[object], shells.local[i]));
       });
       if (this.active[zone] !== Boolean(states[zone].active)) {
         this.active[zone] = Boolean(states[zone].active);

@@ -1,0 +1,71 @@
+// The stretches of a run, against all that was ever added.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tools/plot/stretches.hpp"
+
+namespace clearance {
+namespace {
+
+struct Head {
+  std::int64_t begin_ns = 0;
+  int added = 1;
+};
+struct Cell {
+  double least = std::numeric_limits<double>::infinity();
+};
+void merge(const Head& later, Head& into) { into.added += later.added; }
+void merge(const Cell& later, Cell& into) { into.least = std::min(into.least, later.least); }
+
+struct Added {
+  std::int64_t time_ns;
+  double value[2];
+};
+
+TEST(Stretches, HoldOfEachTimeTheLeastThatWasAddedHoweverLongTheRunIs) {
+  std::mt19937_64 random(7);
+  std::uniform_int_distribution<std::int64_t> pause(0, 30);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (const int count : {1, 2, 8, 9, 1000}) {
+    SCOPED_TRACE(count);
+    Stretches<Head, Cell> run(2, 8, 3);
+    std::vector<Added> all;
+    std::int64_t time_ns = 1'000'000;
+    for (int i = 0; i < count; ++i, time_ns += pause(random)) {
+      all.push_back({time_ns, {any(random), any(random)}});
+      const std::span<Cell> cells = run.add({.begin_ns = time_ns});
+      for (std::size_t column = 0; column < 2; ++column) {
+        merge(Cell{all.back().value[column]}, cells[column]);
+      }
+    }
+    ASSERT_LE(run.heads().size(), 8u);
+    auto next = all.begin();
+    for (std::size_t stretch = 0; stretch < run.heads().size(); ++stretch) {
+      ASSERT_NE(next, all.end());
+      EXPECT_EQ(run.heads()[stretch].begin_ns, next->time_ns);
+      const auto end = next + run.heads()[stretch].added;
+      for (std::size_t column = 0; column < 2; ++column) {
+        double least = std::numeric_limits<double>::infinity();
+        for (auto each = next; each != end; ++each) least = std::min(least, each->value[column]);
+        EXPECT_EQ(run.cells(stretch)[column].least, least);
+      }
+      next = end;
+    }
+    EXPECT_EQ(next, all.end());
+  }
+}
+
+TEST(Stretches, KeepApartWhatTheyHaveRoomFor) {
+  Stretches<Head, Cell> run(0, 100, 10);
+  for (std::int64_t i = 0; i < 100; ++i) run.add({.begin_ns = 10 * i});
+  EXPECT_EQ(run.heads().size(), 100u);
+  run.add({.begin_ns = 1000});
+  EXPECT_EQ(run.heads().size(), 51u);
+}
+
+}  // namespace
+}  // namespace clearance

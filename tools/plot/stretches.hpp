@@ -1,0 +1,75 @@
+// A run of any length, in as many stretches of time as there is room for: what curves are drawn
+// from. When all are in use, each becomes twice as long, and those that fall together are joined.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace clearance {
+
+// Of each stretch a Head, whose `begin_ns` is when what came first in it was, and a row of Cells,
+// which begin as Cell{}. merge(later, into), found by their namespace, joins two Heads or Cells.
+template <class Head, class Cell>
+class Stretches {
+ public:
+  // `most` stretches, at least 2, the first of them `length_ns` > 0 long, with `columns` cells
+  // each.
+  Stretches(std::size_t columns, std::size_t most, std::int64_t length_ns)
+      : columns_(columns), most_(most), length_ns_(length_ns) {}
+
+  // Takes what is of a time not before the last one into its stretch, whose cells are returned.
+  std::span<Cell> add(const Head& head) {
+    for (;; halve()) {
+      if (!heads_.empty() && number_of(head) <= number_of(heads_.back())) {
+        merge(head, heads_.back());
+        break;
+      }
+      if (heads_.size() < most_) {
+        heads_.push_back(head);
+        cells_.resize(heads_.size() * columns_);
+        break;
+      }
+    }
+    return cells_of(heads_.size() - 1);
+  }
+
+  [[nodiscard]] const std::vector<Head>& heads() const noexcept { return heads_; }
+  [[nodiscard]] std::span<const Cell> cells(std::size_t stretch) const {
+    return std::span(cells_).subspan(stretch * columns_, columns_);
+  }
+
+ private:
+  [[nodiscard]] std::int64_t number_of(const Head& head) const {
+    return (head.begin_ns - heads_.front().begin_ns) / length_ns_;
+  }
+  [[nodiscard]] std::span<Cell> cells_of(std::size_t stretch) {
+    return std::span(cells_).subspan(stretch * columns_, columns_);
+  }
+
+  void halve() {
+    length_ns_ *= 2;
+    std::size_t kept = 0;
+    for (std::size_t i = 1; i < heads_.size(); ++i) {
+      const bool joins = number_of(heads_[i]) == number_of(heads_[kept]);
+      const std::span<Cell> from = cells_of(i), into = cells_of(joins ? kept : kept + 1);
+      if (joins) {
+        merge(heads_[i], heads_[kept]);
+        for (std::size_t column = 0; column < columns_; ++column) merge(from[column], into[column]);
+      } else {
+        heads_[++kept] = heads_[i];
+        for (std::size_t column = 0; column < columns_; ++column) into[column] = from[column];
+      }
+    }
+    heads_.resize(kept + 1);
+    cells_.resize(heads_.size() * columns_);
+  }
+
+  std::size_t columns_, most_;
+  std::int64_t length_ns_;
+  std::vector<Head> heads_;
+  std::vector<Cell> cells_;  // a row a stretch
+};
+
+}  // namespace clearance

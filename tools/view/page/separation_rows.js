@@ -1,0 +1,42 @@
+// Speed and separation monitoring, a row a zone that asks for it: what is left of the distance between a person and the
+// robot when the protective separation distance S_p is taken off, and how fast the robot may be.
+import { mm, put } from "./format.js";
+
+const VALIDITY = ["not known", "by stated speeds", "measured"];
+const AGAIN_MS = 125;
+const FIGURES = 5; // cells of a row behind the zone and the pair
+
+const metresPerSecond = (value) => (value === Infinity ? "any" : Number.isFinite(value) ? value.toFixed(2) : "?");
+
+// Of a zone: [texts of the figures, class]; `pairs`: of the message.
+function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pairs) {
+  const { clearance, protective_distance } = pairs.find((each) => each.zone === zone && each.pair === pair) ?? {};
+  if (validity === 0) return [["?", "?", "?", "0.00", "0.00"], "lost"];
+  return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit)], scaling < 1 ? "alarm" : ""];
+}
+
+export class SeparationRows {
+  // `choose(pair)` is called for a row that is clicked. Hidden where no zone of the cell has a separation.
+  constructor(choose) {
+    this.choose = choose;
+    this.section = document.getElementById("separation");
+    this.body = this.section.querySelector("tbody");
+  }
+
+  draw({ separation, scene, pairs }, frozen, nowMs) {
+    if (nowMs - this.drawnMs < AGAIN_MS) return;
+    this.drawnMs = nowMs;
+    this.section.hidden = !separation?.zones.length;
+    if (this.section.hidden) return;
+    this.section.classList.toggle("old", frozen);
+    separation.zones.forEach((zone, i) => {
+      const row = this.body.rows[i] ?? this.body.insertRow();
+      const [figures, kind] = figuresOf(zone, separation.pairs);
+      while (row.cells.length < 1 + FIGURES) row.insertCell();
+      row.className = kind;
+      row.title = `${pairs[zone.pair].name}: ${VALIDITY[zone.validity]}`;
+      row.onclick = () => this.choose(zone.pair, false);
+      [`${scene.zones[zone.zone].name}: ${pairs[zone.pair].name}`, ...figures].forEach((text, cell) => put(row.cells[cell], text));
+    });
+  }
+}

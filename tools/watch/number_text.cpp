@@ -1,0 +1,39 @@
+#include "tools/watch/number_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace clearance::watch {
+namespace {
+
+// Right-aligned, whatever it is: fmt puts what is not finite to the left.
+std::string aligned(double value, int precision, int width) {
+  const std::string text = std::isnan(value) ? "unknown" : fmt::format("{:.{}f}", value, precision);
+  return fmt::format("{:>{}}", text, width);
+}
+
+}  // namespace
+
+std::string metres(double value) { return aligned(value, 4, 9); }
+
+std::string point(const clearance_msg_Vector3& p) {
+  return fmt::format("({} {} {})", aligned(p.x, 3, 7), aligned(p.y, 3, 7), aligned(p.z, 3, 7));
+}
+
+std::string contact_time(double seconds) {
+  if (std::isnan(seconds)) return "unknown";
+  return seconds < 1000.0 ? fmt::format("{:7.2f}", seconds) : "      -";
+}
+
+std::string speed(double metres_per_second) {
+  return std::isnan(metres_per_second) ? "unknown" : fmt::format("{:+7.3f}", metres_per_second);
+}
+
+std::string approach(const clearance_msg_PairDistance& pair) {
+  if (std::isnan(pair.closing_speed)) return "closing at an unknown speed";
+  return fmt::format("closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
+                     contact_time(pair.time_to_contact));
+}
+
+}  // namespace clearance::watch

@@ -1,0 +1,22 @@
+// Numbers of a report as clearance-watch writes them: in columns of the same width, whatever they
+// are; "unknown" for what is not a number.
+#pragma once
+
+#include <string>
+
+#include "clearance.h"
+
+namespace clearance::watch {
+
+// Nine columns, to 0.1 mm.
+[[nodiscard]] std::string metres(double value);
+// "(  1.000   0.250  -0.500)", m.
+[[nodiscard]] std::string point(const clearance_msg_Vector3& p);
+// Seven columns; contacts more than a quarter of an hour away are not shown.
+[[nodiscard]] std::string contact_time(double seconds);
+// Seven columns, with its sign.
+[[nodiscard]] std::string speed(double metres_per_second);
+// "closing +0.512 m/s  contact in    0.98 s".
+[[nodiscard]] std::string approach(const clearance_msg_PairDistance& pair);
+
+}  // namespace clearance::watch
