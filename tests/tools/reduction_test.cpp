@@ -73,6 +73,20 @@ TEST_F(Reduction, AHullIsAsFarFromAnLAsItsHypotenuseAndTwoPartsAreTheL) {
   }
 }
 
+TEST_F(Reduction, AHullAroundTwoBlocksIsHalfAsFarFromThemAsTheyAreApart) {
+  std::ofstream(file("two.yaml"))
+      << "name: two\nunits: {length: m, angle: rad}\nobjects:\n"
+         "  - name: blocks\n    parts:\n      - box: {size: [1, 1, 1]}\n"
+         "      - {box: {size: [1, 1, 1]}, pose: {xyz: [2, 0, 0]}}\n"
+         "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], "
+         "offset: -5}}\npairs: [{between: [blocks, floor]}]\n";
+  ASSERT_EQ(run({"--reduce", file("two.yaml"), "--object", "blocks", "--json"}), 0) << output_;
+  const json body = json::parse(output_).at(0);
+  EXPECT_GE(model(body, "hull")["error"].get<double>(), 0.5);
+  EXPECT_LE(model(body, "hull")["error"].get<double>(), 0.5 * 1.02 + 1e-5);
+  EXPECT_LE(model(body, "2 parts")["error"].get<double>(), 1e-12);
+}
+
 TEST_F(Reduction, PartsThatWereChosenMakeACell) {
   const json body = reduced({"--tolerance", "0.05"});
   const json parts = model(body, "2 parts");

@@ -28,7 +28,7 @@ struct ReductionOptions {
 struct ReducedModel {
   std::string name;
   std::vector<EnclosingModel> parts;
-  double error = kInfinity;        // m: no point of it is farther than this from the body
+  double error = kInfinity;        // m: no point of its surface is farther from the body
   std::optional<QueryTimes> time;  // where it was measured
 
   [[nodiscard]] std::size_t facets() const;

@@ -161,7 +161,7 @@ std::string reduction_table(const std::vector<Reduction>& bodies, const Reductio
     text += "\n";
   }
   text +=
-      "error: no point of the model is farther than this from the body; rounded upwards\n"
+      "error: no point of the model's surface is farther than this from the body; rounded upwards\n"
       "ns, cold: a query against a box, tracked and not; of parts, all of them (--time)\n"
       "*: chosen by --tolerance or --facets\n";
   if (options.distances.empty()) return text;

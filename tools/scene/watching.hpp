@@ -3,11 +3,11 @@
 //
 // The monitor's broad phase looks at a pair, proves it to be so far apart, and leaves it alone
 // until both objects have moved by what is left above the level that matters (§4.6; its allowance,
-// see monitor/broad_phase/README.md). At distance D beyond that level a model of error e proves D -
-// e at least. With objects that come V a second together, the pair is looked at V / (D - e - u)
-// times a second, u being what the broad phase takes off for what is urgent. So a level of c a
-// query costs c V / (D - e - u): as seen from the point (D - u, 0) of a plot of c against e, the
-// cheapest level is the one towards which the slope is least.
+// see monitor/broad_phase/README.md). At distance D beyond that level a model of error e proves
+// D - e at least. With objects that come V a second together, as fast as the cell states, the pair
+// is looked at V / (D - e - u) times a second, u being what the broad phase takes off for what is
+// urgent. So a level of c a query costs c V / (D - e - u): as seen from the point (D - u, 0) of a
+// plot of c against e, the cheapest level is the one towards which the slope is least.
 #pragma once
 
 #include <optional>
