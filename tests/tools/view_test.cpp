@@ -8,12 +8,12 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
+#include "tests/tools/running_view.hpp"
 
 namespace clearance {
 namespace {
@@ -21,20 +21,11 @@ namespace {
 using nlohmann::json;
 using test::ChildProcess;
 using test::eventually;
+using test::kView;
+using test::lines_of;
+using test::View;
 
-const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
 const std::string kScripts = CLEARANCE_VIEW_JS;
-
-// The lines of JSON that a script has printed.
-std::vector<json> lines_of(const ChildProcess& script) {
-  std::vector<json> lines;
-  std::istringstream text(script.output());
-  for (std::string line; std::getline(text, line);) {
-    const json value = json::parse(line, nullptr, false);
-    if (value.is_object()) lines.push_back(value);
-  }
-  return lines;
-}
 
 // What stays after the run, to be looked at: a folder in the build.
 std::string pictures() {
@@ -53,29 +44,6 @@ void wait_for_poses(const DdsOptions& dds, const Scene& scene) {
     if ((*report)->minimum_known && (*report)->unknown == 0) return;
   }
 }
-
-// A viewer on a free port.
-class View {
- public:
-  explicit View(const std::vector<std::string>& arguments)
-      : process_(kView, test::with(arguments, {"--port", "0"})) {
-    EXPECT_TRUE(eventually([&] { return process_.wrote("http://127.0.0.1:"); }))
-        << process_.output();
-    const std::string output = process_.output();
-    address_ = output.substr(output.find("http://"));
-    address_ = address_.substr(0, address_.find('\n'));
-  }
-  [[nodiscard]] std::string page() const { return address_; }
-  [[nodiscard]] std::string socket() const { return "ws" + address_.substr(4); }
-  int end() {
-    process_.signal(SIGTERM);
-    return process_.wait();
-  }
-
- private:
-  ChildProcess process_;
-  std::string address_;
-};
 
 const std::string kTwoArms = std::string(CLEARANCE_SOURCE) + "/config/cells/two_arms.yaml";
 
