@@ -82,6 +82,17 @@ TEST(BodyMesh, OfACapsuleAndASphereLiesOnThem) {
   EXPECT_NEAR(volume(sphere), 4.0 / 3.0 * std::numbers::pi * 0.008, 0.02 * 0.0335);
 }
 
+TEST(BodyMesh, OfCoarserStepsHasFewerTrianglesAndLiesOnTheBodyAsWell) {
+  const Vec3 centre(0.1, 0.2, 0.3);
+  const auto sphere = [&](double arc_step) {
+    return body_mesh(made(point(centre, 0.2)), 0.0, 20.0, arc_step);
+  };
+  const BodyMesh fine = sphere(kArcStep), coarse = sphere(3.0 * kArcStep);
+  EXPECT_TRUE(is_closed(coarse));
+  EXPECT_LT(8 * coarse.triangles.size(), fine.triangles.size() * 2);
+  for (const Vec3& p : coarse.positions) EXPECT_NEAR((p - centre).norm(), 0.2, 1e-12);
+}
+
 // Chords cut off less than a hundredth.
 TEST(BodyMesh, OfCurvedBodiesIsClosedAndOfTheirVolume) {
   constexpr double kPi = std::numbers::pi;

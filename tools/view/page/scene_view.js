@@ -9,6 +9,7 @@ import { css } from "./format.js";
 
 const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
 const CLICK_PIXELS = 5;
+const LARGE = 500; // parts: from there on only what stands still has smooth outlines, which costs nothing a frame
 const ROUNDING = 1e-7; // m
 // Where frames take longer than this, ms, they are drawn with fewer pixels, down to so many a pixel of the page.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
@@ -19,7 +20,7 @@ export class SceneView {
     this.on = on;
     this.element = document.getElementById("scene");
     const canvas = document.getElementById("view");
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: scene.parts.length < LARGE });
     this.sharpness = Math.min(window.devicePixelRatio, 2);
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.01, 400);

@@ -1,0 +1,52 @@
+// clearance-view as a test starts it, and what the scripts of view_js print.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+
+inline const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
+
+// The lines of JSON that a script has printed.
+inline std::vector<nlohmann::json> lines_of(const ChildProcess& script) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream text(script.output());
+  for (std::string line; std::getline(text, line);) {
+    const auto value = nlohmann::json::parse(line, nullptr, false);
+    if (value.is_object()) lines.push_back(value);
+  }
+  return lines;
+}
+
+// A viewer on a free port.
+class View {
+ public:
+  explicit View(const std::vector<std::string>& arguments)
+      : process_(kView, with(arguments, {"--port", "0"})) {
+    EXPECT_TRUE(eventually([&] { return process_.wrote("http://127.0.0.1:"); }))
+        << process_.output();
+    const std::string output = process_.output();
+    address_ = output.substr(output.find("http://"));
+    address_ = address_.substr(0, address_.find('\n'));
+  }
+  [[nodiscard]] std::string page() const { return address_; }
+  [[nodiscard]] std::string socket() const { return "ws" + address_.substr(4); }
+  int end() {
+    process_.signal(SIGTERM);
+    return process_.wait();
+  }
+
+ private:
+  ChildProcess process_;
+  std::string address_;
+};
+
+}  // namespace clearance::test
