@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,6 +22,9 @@ struct RobotCellOptions {
   std::string group;       // of all links; empty: the robot's name
   double max_speed = 0.0;  // m/s; 0: not stated
   double age_limit_ms = 20.0;
+  // The cell's keys `tolerance`, m, and `max_parts`: into how fine parts meshes are split.
+  std::optional<double> mesh_tolerance;
+  std::optional<unsigned> max_parts;
   // The root link, and what fixed joints join to it, is fixed at the origin of the world. Otherwise
   // every link moves, and its pose has to arrive.
   bool fixed_base = false;

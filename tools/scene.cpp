@@ -240,6 +240,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(positive_number())
       ->capture_default_str()
       ->needs(urdf);
+  app.add_option("--mesh-tolerance", robot.mesh_tolerance,
+                 "How far the convex parts of a mesh should reach beyond it at most, m; 0.005 "
+                 "otherwise")
+      ->check(positive_number())
+      ->needs(urdf);
+  app.add_option("--max-parts", robot.max_parts,
+                 "Parts of a mesh at most; 24 otherwise; 1: one hull around each")
+      ->check(CLI::Range(1u, 64u))
+      ->needs(urdf);
   app.add_flag("--fixed-base", robot.fixed_base,
                "The root link stands at the world's origin, and no pose arrives for it")
       ->needs(urdf);

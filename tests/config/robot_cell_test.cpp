@@ -16,6 +16,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kUrdf = R"(<?xml version="1.0"?>
 <robot name="little">
@@ -114,6 +115,13 @@ TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
       ElementsAre(
           HasSubstr("left out: frame"),
           "2 disabled pairs left out: 1 named twice, 1 with a link without collision shapes"));
+}
+
+TEST_F(RobotCellFile, LimitsOfMeshesAreWritten) {
+  EXPECT_THAT(cell().yaml, Not(HasSubstr("tolerance")));
+  options_.mesh_tolerance = 0.002;
+  options_.max_parts = 7;
+  EXPECT_THAT(cell().yaml, HasSubstr("  tolerance: 0.002\n  max_parts: 7\n"));
 }
 
 TEST_F(RobotCellFile, ACylinderIsACylinder) {

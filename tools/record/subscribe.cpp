@@ -141,10 +141,10 @@ class Subscription {
 };
 
 void show(const Subscription& subscription, const RecordingWriter& writer, const char* end) {
-  print(stderr, "{} poses, {} distances, {} zones, {} health; {:.1f} MB{}",
-        subscription.count(TopicKind::kPoses), subscription.count(TopicKind::kDistances),
-        subscription.count(TopicKind::kZones), subscription.count(TopicKind::kHealth),
-        static_cast<double>(writer.bytes()) * 1e-6, end);
+  print(stderr, "{} poses, {} joint states, {} distances, {} zones, {} health; {:.1f} MB{}",
+        subscription.count(TopicKind::kPoses), subscription.count(TopicKind::kJointStates),
+        subscription.count(TopicKind::kDistances), subscription.count(TopicKind::kZones),
+        subscription.count(TopicKind::kHealth), static_cast<double>(writer.bytes()) * 1e-6, end);
 }
 
 // Records until it is stopped, the time is up, or the file cannot be written.
@@ -207,6 +207,15 @@ int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSi
   }
   for (const std::string& gap : subscription.gaps()) {
     print(stderr, "clearance-record: {}\n", gap);
+  }
+  const std::uint64_t inputs =
+      subscription.count(TopicKind::kPoses) + subscription.count(TopicKind::kJointStates);
+  if (subscription.count(TopicKind::kDistances) > 0 && inputs == 0 &&
+      writer.holds(TopicKind::kPoses)) {
+    print(
+        stderr,
+        "clearance-record: it holds reports and nothing that they were made from, so it can be "
+        "shown and not replayed. What comes from ROS 2 the daemon records: clearanced --record\n");
   }
   if (subscription.total() > 0) return kOk;
   print(stderr,
