@@ -94,16 +94,16 @@ TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
   start();
   RosFrames first(client), other(second);
   ASSERT_TRUE(first.is_heard() && other.is_heard());
+  const auto both = [&] {
+    first.send({{"map", "box_link", {1, 0, 0}}});
+    other.send({{"map", "box_link", {2, 0, 0}}});
+  };
   EXPECT_TRUE(step_until(
-      5,
-      [&] {
-        first.send({{"map", "box_link", {1, 0, 0}}});
-        other.send({{"map", "box_link", {2, 0, 0}}});
-      },
+      5, both,
       logged("frame 'box_link' is sent by two publishers: transforms of the one that came later "
              "are not used")))
       << daemon->output();
-  EXPECT_TRUE(is("box", PairStatus::kConverged));
+  EXPECT_TRUE(step_until(5, both, [&] { return is("box", PairStatus::kConverged); }));
   EXPECT_TRUE(step_until(
       5,
       [&] {
