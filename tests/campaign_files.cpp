@@ -1,5 +1,6 @@
 // Seeded campaign: damaged files of every kind that a person or a network hands in. Cells, URDF and
-// SRDF, meshes, pose logs, recordings and cases are mutated and read as the programs read them.
+// SRDF, planning scenes, meshes, pose logs, recordings and cases are mutated and read as the
+// programs read them.
 //
 // Oracle: reading ends, in a value or in a fault that says something; a crash ends the campaign and
 // leaves the damaged file in the folder that it printed. tests/config holds what a good answer is.
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "config/cell_file.hpp"
+#include "config/planning_scene.hpp"
 #include "config/robot_cell.hpp"
 #include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -40,7 +42,7 @@ const char* const kUrdf = R"(<robot name="little">
   <link name="head"><collision><geometry><sphere radius="0.12"/></geometry></collision></link>
   <link name="frame"/>
   <joint name="a" type="fixed"><origin xyz="0 0 0.05" rpy="0 0 1.5"/><parent link="foot"/><child link="mast"/></joint>
-  <joint name="b" type="revolute"><parent link="mast"/><child link="frame"/></joint>
+  <joint name="b" type="revolute"><parent link="mast"/><child link="frame"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
   <joint name="c" type="fixed"><parent link="frame"/><child link="head"/></joint>
 </robot>
 )";
@@ -57,6 +59,40 @@ objects:
 pairs:
   - {between: [hand, box]}
 zones: [{name: stop, between: [hand, box], enter_below: 0.1, leave_above: 0.2}]
+)";
+const char* const kRobotCell = R"(name: bench
+units: {length: m, angle: rad}
+robots: [{name: little, urdf: robot.urdf}]
+pairs: [{between: [little, little]}]
+)";
+const char* const kScene = R"(shelf
+* board
+0 0 1
+0 0 0 1
+2
+box
+2 1 0.1
+0 0 0
+0 0 0 1
+0.2 0.4 0.6 0.8
+mesh
+4 4
+0 0 0
+0.1 0 0
+0 0.1 0
+0 0 0.1
+0 2 1
+0 1 3
+0 3 2
+1 2 3
+0 0 0
+0 0 0 1
+0 0 0 0
+1
+grasp
+0 0 0.1
+0 0 0 1
+.
 )";
 const char* const kCase =
     R"({"id": 1, "a": {"vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}, "b": {"halfspaces": [[1,0,0,1],[-1,0,0,1],[0,1,0,1],[0,-1,0,1],[0,0,1,1],[0,0,-1,1]], "radius": 0.5}, "pose_a": [0,0,0,1,0,0,0], "pose_b": [3,0,0,1,0,0,0]})";
@@ -109,6 +145,14 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
        [&](const auto& file) { return is_robot(file, folder / "good.srdf"); }},
       {"srdf", "robot.srdf", kSrdf,
        [&](const auto& file) { return is_robot(folder / "good.urdf", file); }},
+      {"urdf of a cell", "robot.urdf", kUrdf,
+       [&folder](const auto&) {
+         return std::holds_alternative<Scene>(parse_cell(kRobotCell, folder / "cell.yaml"));
+       }},
+      {"planning scene", "shelf.scene", kScene,
+       [](const auto& file) {
+         return std::holds_alternative<PlanningScene>(read_planning_scene(read_text(file)));
+       }},
       {"pose log", "log.csv", pose_log(),
        [&folder, scene](const auto& file) {
          return record_csv(file, folder / "out.mcap", &scene).error.empty();
