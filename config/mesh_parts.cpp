@@ -15,6 +15,9 @@ namespace {
 // anew.
 constexpr int kMethod = 2;
 
+// A hull that is found sooner is found anew at every start, s.
+constexpr double kWorthKeeping = 0.1;
+
 // Of all that decides on the parts.
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
@@ -100,8 +103,11 @@ std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
     return MeshRefusal{MeshRefusal::Kind::kNotSolid, std::move(error->reason)};
   }
   auto& parts = std::get<ConvexParts>(made);
-  if (parts.is_hull) return std::move(parts);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  if (parts.is_hull) {
+    if (took.count() > kWorthKeeping) cache_.keep(path.filename().string(), key, parts);
+    return std::move(parts);
+  }
   const std::filesystem::path kept = cache_.keep(path.filename().string(), key, parts);
   say(fmt::format(
       "{}: {} part{}, {:.1f} mm, in {:.1f} s; {}", path.filename().string(), parts.parts.size(),
@@ -130,9 +136,12 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
   if (bodies->error > use.limits.tolerance) {
     say(fmt::format(
         "warning: {}: its {} part{} reach {:.1f} mm beyond it, more than the tolerance "
-        "of {:g} mm: raise max_parts (now {}) or tolerance",
+        "of {:g} mm: raise {} in the cell (clearance-scene --from-urdf writes one)",
         path.filename().string(), bodies->shapes.size(), bodies->shapes.size() == 1 ? "" : "s",
-        1e3 * bodies->error, 1e3 * use.limits.tolerance, use.limits.max_parts));
+        1e3 * bodies->error, 1e3 * use.limits.tolerance,
+        bodies->shapes.size() < use.limits.max_parts
+            ? std::string("tolerance")
+            : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts)));
   }
   if (bodies->shapes.size() > 1) {
     for (const ConvexPolyhedron& shape : bodies->shapes) revision_.add(bytes_of(shape.anchors));

@@ -196,7 +196,9 @@ PlanningScene read(Words& words) {
     if (mark == ".") break;
     if (mark != "*") {
       words.fail(
-          fmt::format("found '{}'; expected '* NAME' of an object, or '.' at the end", mark));
+          fmt::format("found '{}'; expected '* NAME' of an object, or '.' at the end, as in a "
+                      ".scene file (YAML is not read)",
+                      mark));
     }
     scene.objects.push_back(read_object(words));
     if (scene.objects.back().parts.empty()) scene.objects.pop_back();

@@ -189,6 +189,15 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
 
 // A robot of frames only would give a cell that watches nothing.
 void read_links(XmlReader& xml, UrdfRobot& robot) {
+  for (const XMLElement* at = xml.root()->FirstChildElement(); at != nullptr;
+       at = at->NextSiblingElement()) {
+    if (!std::string_view(at->Name()).starts_with("xacro:")) continue;
+    xml.report(*at,
+               fmt::format("found <{}>; expected a URDF: expand it first (xacro R.urdf.xacro > "
+                           "R.urdf)",
+                           at->Name()));
+    return;
+  }
   std::set<std::string> names;
   bool any_shape = false;
   for (const XMLElement* at : children(*xml.root(), "link")) {

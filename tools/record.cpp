@@ -61,6 +61,11 @@ int run(int argc, char** argv, StopSignal& stop) {
                  "are named joint_states")
       ->allow_extra_args(false)
       ->needs(bag);
+  app.add_option("--joint", arguments.joints,
+                 "NAME=POSITION: a joint that the bag or joint log does not have stays there (rad "
+                 "or m); repeatable")
+      ->allow_extra_args(false)
+      ->needs(cell);
   app.add_option("--seconds", arguments.seconds,
                  "Stop after this many seconds; otherwise on Ctrl-C")
       ->check(positive_number())

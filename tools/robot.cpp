@@ -77,7 +77,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.1, 10000.0))
       ->capture_default_str();
   app.add_option("--seconds", arguments.seconds,
-                 "Stop after this time; 0: run until a signal comes")
+                 "Stop after this time; 0: run until a signal comes, or the log of --joints ends")
       ->check(number_from_zero());
   app.add_option("--source", arguments.robot.source, "Name of this source, 1 to 32 bytes")
       ->check([](const std::string& name) {
@@ -176,7 +176,10 @@ int run(int argc, char** argv, StopSignal& signal) {
     print(stderr, "clearance-robot: {}\n", log.error());
     return kBadCell;
   }
-  if (arguments.seconds == 0.0) arguments.seconds = log.seconds();
+  if (arguments.seconds == 0.0) {
+    arguments.seconds = log.seconds();
+    spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);
+  }
   return run_robot(
       *scene, arguments, [&log](double t_s, auto& joints) { log.at(t_s, joints); }, signal);
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+
 #include "config/spelling.hpp"
 #include "monitor/wire/joint_names.hpp"
 
@@ -35,6 +38,24 @@ std::vector<std::string> joint_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const JointVariable& variable : scene.variables) names.push_back(variable.name);
   return names;
+}
+
+std::string read_joint_positions(const std::vector<std::string>& texts,
+                                 std::map<std::string, double>& positions) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    double position = 0.0;
+    const char* const end = text.data() + text.size();
+    const bool is_number = equals != std::string::npos && equals > 0 &&
+                           std::from_chars(text.data() + equals + 1, end, position).ptr == end &&
+                           equals + 1 < text.size() && std::isfinite(position);
+    if (!is_number)
+      return fmt::format("--joint: found '{}'; expected NAME=POSITION, in rad or m", text);
+    if (!positions.emplace(text.substr(0, equals), position).second) {
+      return fmt::format("--joint: '{}' is given twice", text.substr(0, equals));
+    }
+  }
+  return {};
 }
 
 void note_unheard(const Scene& scene, const std::vector<bool>& heard,

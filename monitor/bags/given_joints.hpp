@@ -27,6 +27,10 @@ class GivenJoints {
   std::string error_;
 };
 
+// NAME=POSITION each, rad or m, no name twice. Returns what is wrong with one; empty: nothing.
+[[nodiscard]] std::string read_joint_positions(const std::vector<std::string>& texts,
+                                               std::map<std::string, double>& positions);
+
 // Of all variables, as joint states name them.
 [[nodiscard]] std::vector<std::string> joint_names(const Scene& scene);
 

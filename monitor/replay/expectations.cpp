@@ -61,7 +61,11 @@ bool Expectations::all_seen(const Monitor& monitor) {
 std::vector<std::string> Expectations::check(const Report& report, const Monitor& monitor,
                                              bool judge) {
   std::vector<std::string> broken;
-  if (!all_seen(monitor) || !judge) return broken;
+  if (!judge) return broken;
+  if (!all_seen(monitor)) {
+    if (const auto what = certainly_near(monitor)) broken.push_back(*what);
+    return broken;
+  }
   judged_ = true;
   if (const auto what = check_distance(report, monitor)) broken.push_back(*what);
   for (NoZone& expected : no_zone_) {
@@ -71,6 +75,19 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
     broken.push_back(entered(scene_, expected.zone, zone));
   }
   return broken;
+}
+
+// Of the pairs that are known.
+std::optional<std::string> Expectations::certainly_near(const Monitor& monitor) {
+  if (!min_distance_ || distance_broken_) return std::nullopt;
+  for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+    const PairReport pair = monitor.pair(p);
+    if (!(pair.upper < *min_distance_)) continue;
+    distance_broken_ = true;
+    return fmt::format("{} is {} apart, at least {} expected", pair_name(scene_, p),
+                       metres(pair.distance), metres(*min_distance_));
+  }
+  return std::nullopt;
 }
 
 // The bound over all pairs decides; only where it fails is a pair looked for to name it.

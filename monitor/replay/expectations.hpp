@@ -23,8 +23,8 @@ class Expectations {
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
-  // To be called for every tick; judges only if told, and not before all moving objects have been
-  // seen. What is broken for the first time, a sentence each.
+  // To be called for every tick; judges only if told. Before all moving objects have been seen only
+  // a pair that is certainly too near counts. What is broken for the first time, a sentence each.
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
                                                bool judge);
 
@@ -40,6 +40,7 @@ class Expectations {
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
                                                           const Monitor& monitor);
+  [[nodiscard]] std::optional<std::string> certainly_near(const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_sweep(const Report& report,
                                                        const Monitor& monitor);
 

@@ -66,7 +66,14 @@ ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& 
       tolerance_(tolerance.value_or(kReferenceTolerance)),
       bounds_tolerance_(tolerance.value_or(0.0)) {
   const PairIds ids = pair_ids(scene);
-  CsvTable table(file, kColumns);
+  std::array<std::string_view, 4> columns = kColumns;
+  const std::vector<std::string> there = csv_column_names(file);
+  const auto has = [&](std::string_view name) {
+    return std::ranges::find(there, name) != there.end();
+  };
+  // As clearance-replay --csv calls it.
+  if (!has(columns[kTime]) && has("now_ns")) columns[kTime] = "now_ns";
+  CsvTable table(file, columns);
   Value value;
   while (table.next() && table.time_ns(kTime, value.t_ns) &&
          table.number(kDistance, value.distance)) {

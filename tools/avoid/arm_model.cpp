@@ -21,7 +21,8 @@ ArmModel::ArmModel(const Scene& scene, const std::string& end_link)
     : robot_(only_robot(scene)), states_(scene.variables.size()), kinematics_(scene.robots) {
   const auto end = std::ranges::find(robot_.links, end_link, &RobotLink::name);
   if (end == robot_.links.end()) {
-    throw std::invalid_argument(fmt::format("the robot has no link '{}'", end_link));
+    throw std::invalid_argument(fmt::format(
+        "the robot has no link '{}'; --end-link names the one that follows the path", end_link));
   }
   end_ = static_cast<std::uint32_t>(end - robot_.links.begin());
   for (std::uint32_t link = end_; link > 0; link = robot_.joints[link - 1].parent) {

@@ -17,6 +17,7 @@ struct RecordArguments {
   std::string from_csv;                   // empty: record from DDS, or
   std::string from_bag;                   // this
   std::vector<std::string> joint_topics;  // of the bag
+  std::vector<std::string> joints;        // NAME=POSITION: those that a log does not have
   double seconds = 0.0;                   // 0: until stopped
   bool scene = false;                     // the scene for 3D viewers as well; only with a cell
   bool force = false;

@@ -3,6 +3,7 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/bags/given_joints.hpp"
 #include "monitor/recording/log_recording.hpp"
 #include "tools/record/arguments.hpp"
 
@@ -10,9 +11,14 @@ namespace clearance {
 
 int record_from_log(const RecordArguments& arguments, const std::string& log, const Scene& scene,
                     StopSignal& stop) {
+  InputLogOptions options{.joint_topics = arguments.joint_topics};
+  if (const auto wrong = read_joint_positions(arguments.joints, options.joints); !wrong.empty()) {
+    print(stderr, "clearance-record: {}\n", wrong);
+    return kUsage;
+  }
   const LogRecordingResult result =
-      record_log(log, arguments.out, scene, {.joint_topics = arguments.joint_topics, .joints = {}},
-                 arguments.recording.options(arguments.force), [&stop] { return stop.wait(0); });
+      record_log(log, arguments.out, scene, options, arguments.recording.options(arguments.force),
+                 [&stop] { return stop.wait(0); });
   for (const std::string& note : result.notes) {
     print(stderr, "clearance-record: {}\n", note);
   }

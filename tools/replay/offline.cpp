@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/bags/robot_description.hpp"
 #include "monitor/dds/robot_description.hpp"
@@ -69,27 +69,6 @@ std::optional<CellResult> find_cell(const ReplayArguments& arguments) {
   std::optional<CellResult> cell = recorded_cell(arguments.recording(), found, told_on_stderr());
   if (!cell) say("the recording holds no cell: give one with --cell");
   return cell;
-}
-
-// NAME=POSITION, each once. False, after saying why, where one is not.
-bool read_joints(const std::vector<std::string>& texts, std::map<std::string, double>& joints) {
-  for (const std::string& text : texts) {
-    const std::size_t equals = text.rfind('=');
-    double position = 0.0;
-    const char* const end = text.data() + text.size();
-    const bool is_number = equals != std::string::npos && equals > 0 &&
-                           std::from_chars(text.data() + equals + 1, end, position).ptr == end &&
-                           equals + 1 < text.size() && std::isfinite(position);
-    if (!is_number) {
-      say(fmt::format("--joint: found '{}'; expected NAME=POSITION, in rad or m", text));
-      return false;
-    }
-    if (!joints.emplace(text.substr(0, equals), position).second) {
-      say(fmt::format("--joint: '{}' is given twice", text.substr(0, equals)));
-      return false;
-    }
-  }
-  return true;
 }
 
 OfflineReplayOptions options_of(const ReplayArguments& arguments) {
@@ -196,7 +175,17 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
 
 int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) {
   std::map<std::string, double> joints;
-  if (!read_joints(arguments.joints, joints)) return kUsage;
+  if (const auto wrong = read_joint_positions(arguments.joints, joints); !wrong.empty()) {
+    say(wrong);
+    return kUsage;
+  }
+  if (!joints.empty() && !is_input_log(arguments.recording())) {
+    say(
+        fmt::format("--joint is for bags and joint logs, and {} is a recording of Clearance; "
+                    "clearance-record --joint puts such a joint into it",
+                    arguments.recording()));
+    return kUsage;
+  }
   if (arguments.evaluate_all || !arguments.reference.empty()) {
     scene.evaluate_all = true;
     scene.budget = std::numeric_limits<std::uint32_t>::max();
