@@ -16,6 +16,7 @@
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/chapter5/rows.hpp"
+#include "tools/bench/nearness.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
@@ -47,6 +48,9 @@ constexpr const char* kHelp =
     "  point/HOW/FAMILY   the nearest point of an ellipsoid: dominant, as-printed, newton; errors "
     "are\n"
     "                     shares of the size\n"
+    "  nearness/cold/KIND/GAP  60 pairs of a curved kind just so far apart, in larger semi-axes; "
+    "also\n"
+    "                     nearness/tracked/...\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
@@ -119,6 +123,7 @@ void register_all(const std::vector<std::filesystem::path>& more_cells) {
   register_variants();
   register_adjacency();
   register_chapter5();
+  register_nearness();
   register_peers();
   std::vector<std::filesystem::path> cells = cells_in(CLEARANCE_CELLS);
   cells.insert(cells.end(), more_cells.begin(), more_cells.end());
