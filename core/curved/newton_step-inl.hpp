@@ -7,9 +7,9 @@
 // K n = 0 and w.n = d. So nothing is brought to unit length before the certificate.
 //
 // Of bodies that touch nearly, K + d is all but singular along n: its determinant is what rounding
-// leaves. So that determinant is not used, but what is known of the step: that it is across x. And
-// where K is shifted by anything but d, along n or across it, w is lifted along n by the
-// difference, which comes to the same step.
+// leaves. There it is not used, but what is known of the step: that it is across x. And where K is
+// shifted by anything but d, along n or across it, w is lifted along n by the difference, which
+// comes to the same step.
 #if defined(CLEARANCE_CORE_NEWTON_STEP) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON_STEP
 #undef CLEARANCE_CORE_NEWTON_STEP
@@ -26,9 +26,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Several pieces whose distance is less than this share of their curvature would have weights that
-// are rounding.
-inline constexpr double kNearlySingular = 0x1p-16;
+// Bodies whose distance is less than this share of their curvature touch nearly: the determinant
+// has lost ten bits, and several pieces would have weights that are rounding.
+inline constexpr double kNearlySingular = 0x1p-10;
 
 template <class RoundnessA, class RoundnessB>
 class NewtonStep {
@@ -113,13 +113,16 @@ class NewtonStep {
     Symmetric4 m = hessian(pieces);
     trace = HWY_NAMESPACE::trace(m);
     const double apart = least * per_square_;
-    const bool singular = pieces.count() > 1 && shift_ < kNearlySingular * trace;
+    const bool singular = shift_ < kNearlySingular * trace;
+    careful_ = singular || shift_ != apart;
     lift_ = spread(0.0);
-    if (HWY_UNLIKELY(shift_ != apart || singular)) lift(m, x, singular ? trace : shift_, apart);
-    const Symmetric4 c = cofactors(m);
+    if (HWY_UNLIKELY(careful_)) {
+      lift(m, x, singular && pieces.count() > 1 ? trace : shift_, apart);
+    }
+    const Cofactors c = cofactors(m);
     if (pieces.count() == 3 && meet_all(pieces, x, c)) return;
     if (pieces.count() == 2 && meet(pieces, x, c)) return;
-    next = as_long_as(x, c * (pieces.apart[0] + lift_));
+    set_next(x, c.matrix * (pieces.apart[0] + lift_), c);
   }
   // The shift along x becomes `along`.
   HWY_INLINE void lift(Symmetric4& m, Vec4 x, double along, double apart) {
@@ -127,14 +130,14 @@ class NewtonStep {
     m = {m.main + more * x, m.beside + more * yzx(x)};
     lift_ = (along - apart) * x;
   }
-  // Of the same length along x as x.
-  [[nodiscard]] HWY_INLINE Vec4 as_long_as(Vec4 x, Vec4 y) const {
-    return spread(square / dot(x, y)) * y;
+  // `y`: the step's end, times the determinant.
+  HWY_INLINE void set_next(Vec4 x, Vec4 y, const Cofactors& c) {
+    next = HWY_LIKELY(!careful_) ? y / c.determinant : spread(square / dot(x, y)) * y;
   }
   // Of two: to where both are equal. False: one of them is left.
-  HWY_INLINE bool meet(PlacedPieces& pieces, Vec4 x, const Symmetric4& c) {
+  HWY_INLINE bool meet(PlacedPieces& pieces, Vec4 x, const Cofactors& c) {
     const Vec4 between = pieces.apart[1] - pieces.apart[0];
-    const Vec4 own = c * (pieces.apart[0] + lift_), across = c * between;
+    const Vec4 own = c.matrix * (pieces.apart[0] + lift_), across = c.matrix * between;
     const double part = -dot(between, own) / dot(between, across);
     if (!(part > 0.0)) {
       pieces.drop(1);
@@ -146,13 +149,13 @@ class NewtonStep {
     }
     pieces.weight[0] = 1.0 - part;
     pieces.weight[1] = part;
-    next = as_long_as(x, own + part * across);
+    set_next(x, own + part * across, c);
     return true;
   }
   // Of three. False: two of them are left, and what comes of these is done.
-  bool meet_all(PlacedPieces& pieces, Vec4 x, const Symmetric4& c) {
+  bool meet_all(PlacedPieces& pieces, Vec4 x, const Cofactors& c) {
     const Vec4 u = pieces.apart[1] - pieces.apart[0], v = pieces.apart[2] - pieces.apart[0];
-    const Vec4 own = c * (pieces.apart[0] + lift_), of_u = c * u, of_v = c * v;
+    const Vec4 own = c.matrix * (pieces.apart[0] + lift_), of_u = c.matrix * u, of_v = c.matrix * v;
     const double uu = dot(u, of_u), uv = dot(u, of_v), vv = dot(v, of_v);
     const double to_u = -dot(u, own), to_v = -dot(v, own), area = uu * vv - uv * uv;
     const double part_u = (to_u * vv - to_v * uv) / area, part_v = (uu * to_v - uv * to_u) / area;
@@ -172,6 +175,7 @@ class NewtonStep {
   const RoundnessA round_a_;
   const RoundnessB round_b_;
   double per_square_ = 1.0, shift_ = 0.0;
+  bool careful_ = false;
   Vec4 lift_{};  // of `apart`
 };
 

@@ -29,10 +29,15 @@ HWY_INLINE Vec4 operator*(const Symmetric4& m, Vec4 v) {
 }
 HWY_INLINE double trace(const Symmetric4& m) { return sum3(m.main); }
 
-// Its inverse times its determinant.
-HWY_INLINE Symmetric4 cofactors(const Symmetric4& m) {
+// Its inverse times its determinant, and that determinant in each of the first three lanes.
+struct Cofactors {
+  Symmetric4 matrix;
+  Vec4 determinant;
+};
+HWY_INLINE Cofactors cofactors(const Symmetric4& m) {
   const Vec4 y = yzx(m.main), z = zxy(m.main), yz = yzx(m.beside), zx = zxy(m.beside);
-  return {y * z - yz * yz, yz * zx - m.beside * z};
+  const Symmetric4 c{y * z - yz * yz, yz * zx - m.beside * z};
+  return {c, (m.main * c.main + m.beside * c.beside) + zx * zxy(c.beside)};
 }
 
 // A polyhedron's vertices.
