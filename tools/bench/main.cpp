@@ -55,6 +55,7 @@ constexpr const char* kHelp =
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
     "                     no two of which have a shape in common, batch/own/single/... one by one\n"
+    "                     batch/curved/A-B, batch/curved/single/A-B of curved bodies\n"
     "  overlap/tracked/KIND/HOW, overlap/cold/...  how deep: boxes, links, f10, v10, f40, v40;\n"
     "                     shallow, half, near, nearer, middle (tools/README.md); no reference\n"
     "  variant/WHICH/...  the thesis's active-set iteration, uncertified: base, dual, consistent,\n"
