@@ -5,6 +5,11 @@
 // Directions are of any length: for x = l n, the distance along n and radii of curvature are by 1/l
 // and 1/l^2 what they are along n, and a step (K + d)^-1 w leads from n to n + s as it is, because
 // K n = 0 and w.n = d. So nothing is brought to unit length before the certificate.
+//
+// Of bodies that touch nearly, K + d is all but singular along n: its determinant is what rounding
+// leaves. There it is not used, but what is known of the step: that it is across x. And where K is
+// shifted by anything but d, along n or across it, w is lifted along n by the difference, which
+// comes to the same step.
 #if defined(CLEARANCE_CORE_NEWTON_STEP) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON_STEP
 #undef CLEARANCE_CORE_NEWTON_STEP
@@ -20,6 +25,10 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
+
+// Bodies whose distance is less than this share of their curvature touch nearly: the determinant
+// has lost ten bits, and several pieces would have weights that are rounding.
+inline constexpr double kNearlySingular = 0x1p-10;
 
 template <class RoundnessA, class RoundnessB>
 class NewtonStep {
@@ -101,21 +110,34 @@ class NewtonStep {
   }
 
   HWY_INLINE void solve_once(PlacedPieces& pieces, Vec4 x) {
-    const Symmetric4 m = hessian(pieces);
+    Symmetric4 m = hessian(pieces);
     trace = HWY_NAMESPACE::trace(m);
-    const Cofactors c = cofactors(m);
-    if (HWY_LIKELY(pieces.count() == 1)) {
-      next = (c.matrix * pieces.apart[0]) / c.determinant;
-      return;
+    const double apart = least * per_square_;
+    const bool singular = shift_ < kNearlySingular * trace;
+    careful_ = singular || shift_ != apart;
+    lift_ = spread(0.0);
+    if (HWY_UNLIKELY(careful_)) {
+      lift(m, x, singular && pieces.count() > 1 ? trace : shift_, apart);
     }
+    const Cofactors c = cofactors(m);
     if (pieces.count() == 3 && meet_all(pieces, x, c)) return;
-    if (pieces.count() == 2 && meet(pieces, c)) return;
-    next = (c.matrix * pieces.apart[0]) / c.determinant;
+    if (pieces.count() == 2 && meet(pieces, x, c)) return;
+    set_next(x, c.matrix * (pieces.apart[0] + lift_), c);
+  }
+  // The shift along x becomes `along`.
+  HWY_INLINE void lift(Symmetric4& m, Vec4 x, double along, double apart) {
+    const Vec4 more = spread((along - shift_) * per_square_) * x;
+    m = {m.main + more * x, m.beside + more * yzx(x)};
+    lift_ = (along - apart) * x;
+  }
+  // `y`: the step's end, times the determinant.
+  HWY_INLINE void set_next(Vec4 x, Vec4 y, const Cofactors& c) {
+    next = HWY_LIKELY(!careful_) ? y / c.determinant : spread(square / dot(x, y)) * y;
   }
   // Of two: to where both are equal. False: one of them is left.
-  HWY_INLINE bool meet(PlacedPieces& pieces, const Cofactors& c) {
+  HWY_INLINE bool meet(PlacedPieces& pieces, Vec4 x, const Cofactors& c) {
     const Vec4 between = pieces.apart[1] - pieces.apart[0];
-    const Vec4 own = c.matrix * pieces.apart[0], across = c.matrix * between;
+    const Vec4 own = c.matrix * (pieces.apart[0] + lift_), across = c.matrix * between;
     const double part = -dot(between, own) / dot(between, across);
     if (!(part > 0.0)) {
       pieces.drop(1);
@@ -127,20 +149,20 @@ class NewtonStep {
     }
     pieces.weight[0] = 1.0 - part;
     pieces.weight[1] = part;
-    next = (own + part * across) / c.determinant;
+    set_next(x, own + part * across, c);
     return true;
   }
   // Of three. False: two of them are left, and what comes of these is done.
   bool meet_all(PlacedPieces& pieces, Vec4 x, const Cofactors& c) {
     const Vec4 u = pieces.apart[1] - pieces.apart[0], v = pieces.apart[2] - pieces.apart[0];
-    const Vec4 own = c.matrix * pieces.apart[0], of_u = c.matrix * u, of_v = c.matrix * v;
+    const Vec4 own = c.matrix * (pieces.apart[0] + lift_), of_u = c.matrix * u, of_v = c.matrix * v;
     const double uu = dot(u, of_u), uv = dot(u, of_v), vv = dot(v, of_v);
     const double to_u = -dot(u, own), to_v = -dot(v, own), area = uu * vv - uv * uv;
     const double part_u = (to_u * vv - to_v * uv) / area, part_v = (uu * to_v - uv * to_u) / area;
     const double part = 1.0 - part_u - part_v, smallest = std::min({part, part_u, part_v});
     if (!(smallest > 0.0)) {
       pieces.drop(smallest == part_u ? 1 : (smallest == part_v ? 2 : 0));
-      return meet(pieces, c);
+      return meet(pieces, x, c);
     }
     pieces.weight[0] = part;
     pieces.weight[1] = part_u;
@@ -153,6 +175,8 @@ class NewtonStep {
   const RoundnessA round_a_;
   const RoundnessB round_b_;
   double per_square_ = 1.0, shift_ = 0.0;
+  bool careful_ = false;
+  Vec4 lift_{};  // of `apart`
 };
 
 }  // namespace clearance::HWY_NAMESPACE

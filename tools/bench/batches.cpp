@@ -164,6 +164,10 @@ void register_batches() {
                               target);
     }
   }
+  for (const std::string load : {"ellipsoid-ellipsoid", "cylinder-link"}) {
+    register_fleet<Batched>(fmt::format("batch/curved/{}", load), load, 0);
+    register_fleet<OneByOne>(fmt::format("batch/curved/single/{}", load), load, 0);
+  }
   for (const std::string load : {"boxes", "links"}) {
     register_fleet<Batched>(fmt::format("batch/own/{}", load), load, 0, Shapes::kOfTheirOwn);
     register_fleet<OneByOne>(fmt::format("batch/own/single/{}", load), load, 0,

@@ -16,6 +16,7 @@
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/chapter5/rows.hpp"
+#include "tools/bench/nearness.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/report/report.hpp"
@@ -47,10 +48,14 @@ constexpr const char* kHelp =
     "  point/HOW/FAMILY   the nearest point of an ellipsoid: dominant, as-printed, newton; errors "
     "are\n"
     "                     shares of the size\n"
+    "  nearness/cold/KIND/GAP  60 pairs of a curved kind just so far apart, in larger semi-axes; "
+    "also\n"
+    "                     nearness/tracked/...\n"
     "  interval/N/f2      the same with a cold start every N queries\n"
     "  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one,\n"
     "                     batch/AVX2/... with that instruction set; batch/own/... 1,024 bodies\n"
     "                     no two of which have a shape in common, batch/own/single/... one by one\n"
+    "                     batch/curved/A-B, batch/curved/single/A-B of curved bodies\n"
     "  overlap/tracked/KIND/HOW, overlap/cold/...  how deep: boxes, links, f10, v10, f40, v40;\n"
     "                     shallow, half, near, nearer, middle (tools/README.md); no reference\n"
     "  variant/WHICH/...  the thesis's active-set iteration, uncertified: base, dual, consistent,\n"
@@ -119,6 +124,7 @@ void register_all(const std::vector<std::filesystem::path>& more_cells) {
   register_variants();
   register_adjacency();
   register_chapter5();
+  register_nearness();
   register_peers();
   std::vector<std::filesystem::path> cells = cells_in(CLEARANCE_CELLS);
   cells.insert(cells.end(), more_cells.begin(), more_cells.end());
