@@ -48,12 +48,13 @@ void change(CurvedCase& c, Bytes& bytes) {
   }
 }
 
-// What 50 digits are enough for.
+// A body, and one that 50 digits are enough for.
 bool has_truth(CurvedCase& c) {
   for (const double* x : numbers_of(c)) {
     if (!(std::abs(*x) < 1e6)) return false;
   }
   for (oracle::CurvedBody* body : {&c.a, &c.b}) {
+    if (!(body->radius >= 0.0)) return false;
     if (body->shape.kind == CurvedShape::Kind::kEllipsoid &&
         !(body->shape.semi_axes.minCoeff() > 1e-9)) {
       return false;
