@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
+
+#include "config/file_lock.hpp"
 
 namespace clearance {
 namespace {
@@ -125,8 +128,17 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
   if (file.refusal) return *file.refusal;
   const std::string key = key_of(use, file.bytes);
   if (const auto made = made_.find(key); made != made_.end()) return made->second;
-  std::optional<MeshParts> bodies;
-  if (const auto kept = cache_.find(path.filename().string(), key)) bodies = bodies_of(*kept);
+  const std::string name = path.filename().string();
+  const auto kept_bodies = [&]() -> std::optional<MeshParts> {
+    const auto kept = cache_.find(name, key);
+    return kept ? bodies_of(*kept) : std::nullopt;
+  };
+  std::optional<MeshParts> bodies = kept_bodies();
+  std::optional<FileLock> lock;
+  if (!bodies) {
+    lock.emplace(path, [&] { say(fmt::format("{}: another program splits it ...", name)); });
+    if (lock->waited()) bodies = kept_bodies();
+  }
   if (!bodies) {
     auto split_now = split(use, key, file);
     if (auto* refusal = std::get_if<MeshRefusal>(&split_now)) return std::move(*refusal);

@@ -5,8 +5,13 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
 #include <string>
+#include <thread>
 
+#include "config/file_lock.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -16,6 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // A cell with an L of sheet bars, and what reading it told.
 class PartsOfMeshes : public testing::Test {
@@ -35,7 +41,10 @@ class PartsOfMeshes : public testing::Test {
     const std::string text = cell_text(sections);
     told_.clear();
     CellOptions options;
-    options.tell = [this](const std::string& line) { told_ += line + "\n"; };
+    options.tell = [this](const std::string& line) {
+      told_ += line + "\n";
+      if (told_to_) told_to_(line);
+    };
     options.mesh_errors = &mesh_errors_;
     CellResult result = parse_cell(text, folder_ / "cell.yaml", options);
     if (auto* scene = std::get_if<Scene>(&result)) return std::move(*scene);
@@ -59,6 +68,7 @@ class PartsOfMeshes : public testing::Test {
 
   test::ScratchFolder folder_;
   std::string told_, errors_;
+  std::function<void(const std::string&)> told_to_;
   std::map<std::string, double> mesh_errors_;
 };
 
@@ -113,6 +123,27 @@ TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
   only_file(folder_ / "cache/clearance/parts");
   read();
   EXPECT_THAT(told_, IsEmpty());
+}
+
+// clearanced and clearance-robot are started together on a new cell.
+TEST_F(PartsOfMeshes, AreMadeByOneProgramAtATime) {
+  const Scene first = read();
+  const auto made = only_file(folder_ / "cell.yaml.parts");
+  const std::string text = test::read_text(made);
+  std::filesystem::remove(made);
+  std::promise<void> waits;
+  auto other = std::make_unique<FileLock>(folder_ / "l.obj", [] {});
+  std::thread program([&] {
+    told_to_ = [&](const std::string& line) {
+      if (line == "l.obj: another program splits it ...") waits.set_value();
+    };
+    EXPECT_EQ(anchors(first), anchors(read()));
+  });
+  waits.get_future().wait();
+  test::write_text(made, text);
+  other.reset();
+  program.join();
+  EXPECT_THAT(told_, Not(HasSubstr("parts, ")));
 }
 
 TEST_F(PartsOfMeshes, AreUsedEvenWhereNothingCanBeKept) {
