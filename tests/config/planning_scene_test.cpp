@@ -105,7 +105,9 @@ TEST(PlanningScene, SaysWhatItMakesOfMeshesAndPlanes) {
 }
 
 TEST(PlanningScene, FaultsAreNamedWithTheirLine) {
-  EXPECT_EQ(fault_of(""), "1: found ''; expected '* NAME' of an object, or '.' at the end");
+  EXPECT_EQ(fault_of(""),
+            "1: found ''; expected '* NAME' of an object, or '.' at the end, as in a "
+            ".scene file (YAML is not read)");
   EXPECT_THAT(fault_of("s\n* a\n1\nocttree\n"), HasSubstr("4: found the shape 'octtree'"));
   EXPECT_THAT(fault_of("s\n* a\n1\nbox\n1 1 wide\n"),
               HasSubstr("5: found 'wide'; expected the size of a box in m"));
