@@ -83,6 +83,9 @@ async function recording() {
   const closest = timeline.moments.find(({ kind }) => kind === "closest");
   await page.click("#worst");
   await settled(closest.time);
+  // The least distance is a report's own, so that report is the one to be shown.
+  await page.waitForFunction(() => Math.abs(window.clearance.stands().report - window.clearance.stands().time) < 1e6);
+  await settled(closest.time);
   const worst = await minimum();
   await picture("worst-moment");
   // A report further; back, where the worst is the last.
@@ -91,13 +94,14 @@ async function recording() {
   // Not always the next cycle: a busy machine leaves reports out of a recording.
   await page.waitForFunction(([cycle, by]) => (Number(document.getElementById("minimum").dataset.cycle) - cycle) * by > 0, [worst.cycle, further]);
   await page.click("#pair-table tbody tr:first-child");
-  const before = await shownTime();
   const box = await (await page.$("#track")).boundingBox();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 20);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.75 * box.width, box.y + 20, { steps: 4 });
   await page.mouse.up();
-  await page.waitForFunction((time) => Math.abs(parseFloat(document.getElementById("time").textContent) - time) > 0.05, before);
+  // Places on the way are shown as well, and one of them may stand still for a moment: the last one is near 0.73 of the recording.
+  await page.waitForFunction(([time, near]) => Math.abs(parseFloat(document.getElementById("time").textContent) - time) < near,
+    [0.73 * timeline.duration, 0.05 * timeline.duration]);
   await standsStill();
   const share = await page.evaluate(() => { document.getElementById("share").click(); return location.href; });
   const dragged = Number(new URL(share).searchParams.get("t"));
