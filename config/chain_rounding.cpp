@@ -87,7 +87,7 @@ void account_for(const ChainError& error, Object& object) {
   // Twice the arm: what asks for the error at run time takes a sphere around the parts for them.
   object.pose_error = kRounded * (error.shift + 2.0 * error.turn * reach);
   for (Part& part : object.parts) {
-    ConvexPolyhedron& shape = part.shape;
+    ConvexBody& shape = part.shape;
     shape.position_error += object.pose_error;
     shape.error_bound_as_a += object.pose_error;
     shape.error_bound_as_b += object.pose_error;

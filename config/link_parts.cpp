@@ -47,7 +47,7 @@ std::optional<std::variant<MeshParts, ShapeError>> LinkParts::shapes_of(
   const auto one = [](ShapeResult made) -> std::variant<MeshParts, ShapeError> {
     if (auto* error = std::get_if<ShapeError>(&made)) return std::move(*error);
     MeshParts parts;
-    parts.shapes.push_back(std::get<ConvexPolyhedron>(std::move(made)));
+    parts.shapes.push_back(std::get<ConvexBody>(std::move(made)));
     return parts;
   };
   if (const auto* shape = std::get_if<UrdfBox>(&collision.shape)) {

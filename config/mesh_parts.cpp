@@ -47,7 +47,7 @@ std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
   MeshParts bodies{{}, parts.error};
   for (const auto& vertices : parts.parts) {
     ShapeResult made = polyhedron_from_vertices(vertices);
-    auto* body = std::get_if<ConvexPolyhedron>(&made);
+    auto* body = std::get_if<ConvexBody>(&made);
     if (body == nullptr) return std::nullopt;
     bodies.shapes.push_back(std::move(*body));
   }
@@ -156,7 +156,7 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
             : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts)));
   }
   if (bodies->shapes.size() > 1) {
-    for (const ConvexPolyhedron& shape : bodies->shapes) revision_.add(bytes_of(shape.anchors));
+    for (const ConvexBody& shape : bodies->shapes) revision_.add(bytes_of(shape.anchors));
   }
   return made_.emplace(key, *std::move(bodies)).first->second;
 }

@@ -31,7 +31,7 @@ struct MeshUse {
 
 // What certainly contains the mesh, and how far beyond it that reaches, m (ConvexParts::error).
 struct MeshParts {
-  std::vector<ConvexPolyhedron> shapes;
+  std::vector<ConvexBody> shapes;
   double error = 0.0;
 };
 

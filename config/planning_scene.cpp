@@ -147,8 +147,7 @@ Part read_part(Words& words, std::size_t place) {
     words.fail(fmt::format("found a {} that is not a solid convex body: {}; expected one", kind,
                            error->reason));
   }
-  Part part{fmt::format("{}{}", kind, place), std::get<ConvexPolyhedron>(std::move(shape)),
-            words.pose()};
+  Part part{fmt::format("{}{}", kind, place), std::get<ConvexBody>(std::move(shape)), words.pose()};
   for (int i = 0; i < 4; ++i) static_cast<void>(words.number("a colour r g b a"));
   return part;
 }

@@ -15,7 +15,7 @@
 #include "config/separation.hpp"
 #include "config/simulation.hpp"
 #include "config/topics.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -23,7 +23,7 @@ namespace clearance {
 // One convex piece of an object, with its place in the object's frame.
 struct Part {
   std::string name;
-  ConvexPolyhedron shape;
+  ConvexBody shape;
   Pose object_from_part;
 };
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 

@@ -105,7 +105,7 @@ std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_kind(const 
   if (!result) return std::nullopt;
   if (auto* error = std::get_if<ShapeError>(&*result)) return std::move(*error);
   MeshParts one;
-  one.shapes.push_back(std::get<ConvexPolyhedron>(std::move(*result)));
+  one.shapes.push_back(std::get<ConvexBody>(std::move(*result)));
   return one;
 }
 
@@ -132,7 +132,7 @@ std::optional<double> ShapeReader::read_rounding(MapReader& map) const {
 
 // What was made, with that radius around it.
 std::optional<ShapeResult> ShapeReader::rounded(std::optional<double> rounding, ShapeResult made) {
-  auto* body = std::get_if<ConvexPolyhedron>(&made);
+  auto* body = std::get_if<ConvexBody>(&made);
   if (!rounding) return std::nullopt;
   return body == nullptr ? std::move(made) : rounded_by(*rounding, std::move(*body));
 }
@@ -352,10 +352,10 @@ std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_mesh(const 
   use.file = *file;
   auto parts = mesh_parts(use, *file_node, node);
   if (!parts || std::holds_alternative<ShapeError>(*parts)) return parts;
-  for (ConvexPolyhedron& shape : std::get<MeshParts>(*parts).shapes) {
+  for (ConvexBody& shape : std::get<MeshParts>(*parts).shapes) {
     ShapeResult round = rounded_by(*rounding, std::move(shape));
     if (auto* error = std::get_if<ShapeError>(&round)) return std::move(*error);
-    shape = std::get<ConvexPolyhedron>(std::move(round));
+    shape = std::get<ConvexBody>(std::move(round));
   }
   return parts;
 }

@@ -18,8 +18,8 @@ namespace clearance {
 struct NamedShape {
   std::string kind;  // the key: "box"
   const YamlNode* node;
-  std::vector<ConvexPolyhedron> shapes;  // one; of a mesh the parts that contain it
-  double mesh_error = 0.0;               // how far these reach beyond the mesh, m
+  std::vector<ConvexBody> shapes;  // one; of a mesh the parts that contain it
+  double mesh_error = 0.0;         // how far these reach beyond the mesh, m
 };
 
 // `tolerance` and `max_parts` of a map, over what is there.

@@ -25,7 +25,7 @@ class DistanceBatch {
  public:
   // The bodies must outlive the batch. All memory is allocated here: about 1 kB a pair, 64 bytes a
   // body, and 120 kB. Indices must be below bodies.size(); a body may be in any number of pairs.
-  DistanceBatch(std::span<const ConvexPolyhedron* const> bodies, std::span<const BodyPair> pairs);
+  DistanceBatch(std::span<const ConvexBody* const> bodies, std::span<const BodyPair> pairs);
   ~DistanceBatch();
   DistanceBatch(DistanceBatch&&) noexcept;
   DistanceBatch& operator=(DistanceBatch&&) noexcept;

@@ -7,7 +7,7 @@
 // frame A, in metres.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/pose.hpp"
 
@@ -25,12 +25,12 @@ struct DistanceOptions {
 static_assert(sizeof(DistanceOptions) == 16 && alignof(DistanceOptions) == 8);
 
 // noexcept, no heap, deterministic. Any state is accepted.
-[[nodiscard]] DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult distance(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose& a_from_b, TrackingState& state,
                                       const DistanceOptions& options = {}) noexcept;
 
 // The same for relative_pose(world_from_a, world_from_b), to the bit, and faster.
-[[nodiscard]] DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult distance(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) noexcept;
 

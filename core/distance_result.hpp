@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 

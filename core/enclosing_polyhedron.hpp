@@ -10,14 +10,14 @@
 #include <optional>
 #include <span>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
 
 // A body in a frame that it shares with others.
 struct PlacedShape {
-  const ConvexPolyhedron* shape = nullptr;
+  const ConvexBody* shape = nullptr;
   Pose frame_from_shape;
 };
 static_assert(sizeof(PlacedShape) == 128 && alignof(PlacedShape) == 64);
@@ -28,15 +28,15 @@ struct EnclosingOptions {
 };
 
 // Nothing when there are no bodies, or one is unbounded. Deterministic.
-[[nodiscard]] std::optional<ConvexPolyhedron> enclosing_polyhedron(
-    std::span<const PlacedShape> bodies, const EnclosingOptions& options = {});
+[[nodiscard]] std::optional<ConvexBody> enclosing_polyhedron(std::span<const PlacedShape> bodies,
+                                                             const EnclosingOptions& options = {});
 
 // How far a model that holds all bodies reaches beyond them, at most: no point of `model` is
 // farther from the nearest of the bodies, m. So no distance from the model is smaller by more than
 // this than the distance from the bodies. Of one body to a rounding: the farthest point is a
 // vertex then. Of several within 2 %, unless that takes too long: tetrahedra are split where the
 // vertices leave the most open. `model`: bounded and solid; `bodies`: at least one.
-[[nodiscard]] double excess(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies);
+[[nodiscard]] double excess(const ConvexBody& model, std::span<const PlacedShape> bodies);
 
 // The same of a sphere, from the body that reaches deepest around its centre; exact for one body.
 [[nodiscard]] double excess_of_sphere(const Vec3& centre, double radius,

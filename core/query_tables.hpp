@@ -1,4 +1,4 @@
-// What a ConvexPolyhedron keeps beside its features, so that queries find it in the order in which
+// What a ConvexBody keeps beside its features, so that queries find it in the order in which
 // they read it.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-struct ConvexPolyhedron;
+struct ConvexBody;
 
 // Rows of vectors, one row a feature, as vector registers read them: a row of n vectors is its n x,
 // then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end.
@@ -117,11 +117,11 @@ class StartTable {
   std::array<std::int32_t, kCells> cells_{};
 };
 
-// Fills all that ConvexPolyhedron says is made by it from the rest, and keeps no memory to spare.
+// Fills all that ConvexBody says is made by it from the rest, and keeps no memory to spare.
 // The factories' last step.
-void add_query_tables(ConvexPolyhedron& body);
+void add_query_tables(ConvexBody& body);
 
 // Bytes that a body takes, all of its tables included; what the allocator adds is not.
-[[nodiscard]] std::size_t footprint(const ConvexPolyhedron& body) noexcept;
+[[nodiscard]] std::size_t footprint(const ConvexBody& body) noexcept;
 
 }  // namespace clearance

@@ -12,7 +12,7 @@
 #include <string>
 #include <variant>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -34,7 +34,7 @@ struct ShapeError {
       reason;  // e.g. "the half-spaces have no common interior: rows 2 and 5 face each other"
 };
 
-using ShapeResult = std::variant<ConvexPolyhedron, ShapeError>;
+using ShapeResult = std::variant<ConvexBody, ShapeError>;
 
 // The intersection, bounded or not. Refused: non-finite rows, zero normals, empty or flat
 // intersections, and no rows at all. A row with zero normal and offset >= 0 is refused too: it says
@@ -72,6 +72,6 @@ using ShapeResult = std::variant<ConvexPolyhedron, ShapeError>;
 
 // The same body with this radius around it, whatever it had before: a rounded box, hull or
 // cylinder. Refused: a radius that is not from 0 to kLargestCoordinate.
-[[nodiscard]] ShapeResult rounded_by(double radius, ConvexPolyhedron body);
+[[nodiscard]] ShapeResult rounded_by(double radius, ConvexBody body);
 
 }  // namespace clearance

@@ -19,27 +19,27 @@ constexpr double kAim = 0.85, kLowerAim = 0.9;
 constexpr int kAims = 3;
 
 struct Bodies {
-  std::vector<ConvexPolyhedron> parts;
+  std::vector<ConvexBody> parts;
   double error = kInfinity;
   bool is_hull = false;
 };
 
 ConvexParts vertices_of(const Bodies& bodies) {
   ConvexParts result{{}, bodies.error, bodies.is_hull};
-  for (const ConvexPolyhedron& part : bodies.parts) {
+  for (const ConvexBody& part : bodies.parts) {
     result.parts.emplace_back();
     for (const Vertex& vertex : part.vertices) result.parts.back().push_back(vertex.position);
   }
   return result;
 }
 
-Bodies judged(std::vector<ConvexPolyhedron> parts, const TriangleTree& tree) {
+Bodies judged(std::vector<ConvexBody> parts, const TriangleTree& tree) {
   const double error = surface_error(parts, tree);
   return {std::move(parts), error, false};
 }
 
 // One part where that is near enough, without facets that it can do without.
-Bodies one_part(ConvexPolyhedron hull, const TriangleTree& tree, double tolerance) {
+Bodies one_part(ConvexBody hull, const TriangleTree& tree, double tolerance) {
   Bodies whole = judged({std::move(hull)}, tree);
   whole.is_hull = true;
   if (whole.parts[0].facets.size() <= kFacetsOfOne) return whole;
@@ -69,7 +69,7 @@ std::variant<ConvexParts, ShapeError> convex_parts(const TriangleMesh& mesh,
   ShapeResult hull = polyhedron_from_vertices(mesh.vertices);
   if (auto* error = std::get_if<ShapeError>(&hull)) return std::move(*error);
   const TriangleTree tree(mesh);
-  Bodies bodies = one_part(std::get<ConvexPolyhedron>(std::move(hull)), tree, limits.tolerance);
+  Bodies bodies = one_part(std::get<ConvexBody>(std::move(hull)), tree, limits.tolerance);
   if (bodies.error > limits.tolerance && limits.max_parts > 1) {
     begin();
     Bodies split = several_parts(mesh, tree, limits);

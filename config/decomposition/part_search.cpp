@@ -25,7 +25,7 @@ constexpr std::size_t kPiecesAPart = 3;
 // Of a body's size: more than clipping and rounding can move a point, and nothing to a distance.
 constexpr double kMargin = 0x1p-30;
 
-std::vector<Vec3> vertices_of(const ConvexPolyhedron& body) {
+std::vector<Vec3> vertices_of(const ConvexBody& body) {
   std::vector<Vec3> vertices;
   for (const Vertex& vertex : body.vertices) vertices.push_back(vertex.position);
   return vertices;
@@ -43,15 +43,15 @@ std::vector<Vec3> thickened(const std::vector<Vec3>& points, double by) {
   return corners;
 }
 
-std::optional<ConvexPolyhedron> body_of(const std::vector<Vec3>& points) {
+std::optional<ConvexBody> body_of(const std::vector<Vec3>& points) {
   ShapeResult made = polyhedron_from_vertices(points);
-  auto* body = std::get_if<ConvexPolyhedron>(&made);
+  auto* body = std::get_if<ConvexBody>(&made);
   return body == nullptr ? std::nullopt : std::optional(std::move(*body));
 }
 
 }  // namespace
 
-ConvexPolyhedron with_fewer_facets(ConvexPolyhedron hull, double tolerance) {
+ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
   const double size = hull.bounding_radius;
   hull.radius = kMargin * size;
   const PlacedShape placed{&hull, {}};
@@ -236,11 +236,11 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   return points;
 }
 
-std::vector<ConvexPolyhedron> PartSearch::parts(double aim) {
+std::vector<ConvexBody> PartSearch::parts(double aim) {
   split(aim);
   std::vector<Piece> pieces = pieces_;
   join(aim, pieces);
-  std::vector<std::optional<ConvexPolyhedron>> made(pieces.size());
+  std::vector<std::optional<ConvexBody>> made(pieces.size());
   in_parallel(pieces.size(), [&](std::size_t i) {
     const std::vector<Vec3> points = points_of(pieces[i]);
     if (points.empty()) return;
@@ -248,7 +248,7 @@ std::vector<ConvexPolyhedron> PartSearch::parts(double aim) {
     if (!hull) hull = body_of(thickened(points, kOverlap * limits_.tolerance));
     if (hull) made[i] = with_fewer_facets(*std::move(hull), limits_.tolerance);
   });
-  std::vector<ConvexPolyhedron> parts;
+  std::vector<ConvexBody> parts;
   for (auto& part : made) {
     if (part) parts.push_back(*std::move(part));
   }

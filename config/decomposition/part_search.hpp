@@ -9,7 +9,7 @@
 #include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/open_space.hpp"
 #include "config/decomposition/piece.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -19,7 +19,7 @@ class PartSearch {
 
   // Parts whose estimated error is at most `aim`, or the most parts that the limits allow.
   // Together they hold every triangle. A lower aim than before goes on from the pieces of before.
-  std::vector<ConvexPolyhedron> parts(double aim);
+  std::vector<ConvexBody> parts(double aim);
 
  private:
   [[nodiscard]] Piece whole() const;
@@ -40,6 +40,6 @@ class PartSearch {
 };
 
 // A body that holds `hull` and reaches a small share of the tolerance beyond it.
-[[nodiscard]] ConvexPolyhedron with_fewer_facets(ConvexPolyhedron hull, double tolerance);
+[[nodiscard]] ConvexBody with_fewer_facets(ConvexBody hull, double tolerance);
 
 }  // namespace clearance

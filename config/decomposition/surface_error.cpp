@@ -24,9 +24,8 @@ bool operator<(const Piece& a, const Piece& b) { return a.bound < b.bound; }
 
 class Judge {
  public:
-  Judge(std::span<const ConvexPolyhedron> parts, const TriangleTree& tree)
-      : parts_(parts), tree_(tree) {
-    for (const ConvexPolyhedron& part : parts) {
+  Judge(std::span<const ConvexBody> parts, const TriangleTree& tree) : parts_(parts), tree_(tree) {
+    for (const ConvexBody& part : parts) {
       boxes_.emplace_back();
       for (const Vertex& vertex : part.vertices) boxes_.back().extend(vertex.position);
       size_ = std::max(size_, part.bounding_radius);
@@ -49,7 +48,7 @@ class Judge {
 
  private:
   void add_facets(std::size_t i) {
-    const ConvexPolyhedron& part = parts_[i];
+    const ConvexBody& part = parts_[i];
     for (const Facet& facet : part.facets) {
       std::vector<Vec3> corners;
       for (std::int32_t s = 0; s < facet.sides; ++s) {
@@ -113,7 +112,7 @@ class Judge {
     return false;
   }
 
-  [[nodiscard]] bool holds(const ConvexPolyhedron& part, const Triangle& corners) const {
+  [[nodiscard]] bool holds(const ConvexBody& part, const Triangle& corners) const {
     return std::ranges::all_of(part.facets, [&](const Facet& facet) {
       return std::ranges::all_of(corners, [&](const Vec3& corner) {
         return facet.normal.dot(corner) < facet.offset - kRounding * size_;
@@ -121,7 +120,7 @@ class Judge {
     });
   }
 
-  std::span<const ConvexPolyhedron> parts_;
+  std::span<const ConvexBody> parts_;
   const TriangleTree& tree_;
   std::vector<Eigen::AlignedBox3d> boxes_;
   double size_ = 0.0, reached_ = 0.0;
@@ -130,7 +129,7 @@ class Judge {
 
 }  // namespace
 
-double surface_error(std::span<const ConvexPolyhedron> parts, const TriangleTree& tree) {
+double surface_error(std::span<const ConvexBody> parts, const TriangleTree& tree) {
   return Judge(parts, tree).error();
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "config/decomposition/triangle_tree.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -16,7 +16,6 @@ namespace clearance {
 // At most 2 % and 1e-6 of the size more than the true value, unless that takes too long. Facets are
 // halved where the bound is largest: the distance from one triangle is convex, so that on a piece
 // of a facet it is largest at a corner.
-[[nodiscard]] double surface_error(std::span<const ConvexPolyhedron> parts,
-                                   const TriangleTree& tree);
+[[nodiscard]] double surface_error(std::span<const ConvexBody> parts, const TriangleTree& tree);
 
 }  // namespace clearance

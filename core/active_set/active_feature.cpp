@@ -16,7 +16,7 @@ bool within(std::int32_t index, std::size_t size) noexcept {
 
 }  // namespace
 
-std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet, const Vec3& p,
+std::int32_t crossed_limit(const ConvexBody& body, const Facet& facet, const Vec3& p,
                            double tolerance) noexcept {
   double least = -tolerance;
   std::int32_t beyond = kNone;
@@ -30,7 +30,7 @@ std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet, con
   return beyond;
 }
 
-std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index, const Vec3& p) noexcept {
+std::int32_t facet_under(const ConvexBody& body, std::int32_t index, const Vec3& p) noexcept {
   for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
     const Facet& facet = body.facets[index];
     const std::int32_t beyond = crossed_limit(body, facet, p);

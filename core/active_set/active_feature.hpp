@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/pose.hpp"
 
@@ -19,21 +19,21 @@ namespace clearance {
 
 // What limits a facet's polygon, of its Facet::limits, beyond whose line p lies farthest, by more
 // than `tolerance` (m); kNone: p lies within.
-[[nodiscard]] std::int32_t crossed_limit(const ConvexPolyhedron& body, const Facet& facet,
-                                         const Vec3& p, double tolerance = 0.0) noexcept;
+[[nodiscard]] std::int32_t crossed_limit(const ConvexBody& body, const Facet& facet, const Vec3& p,
+                                         double tolerance = 0.0) noexcept;
 
 // Facets may be parallel to within rounding, and which of their planes a point lies on is
 // rounding's choice: from one of them to that whose polygon p is in.
-[[nodiscard]] std::int32_t facet_under(const ConvexPolyhedron& body, std::int32_t index,
+[[nodiscard]] std::int32_t facet_under(const ConvexBody& body, std::int32_t index,
                                        const Vec3& p) noexcept;
 
 class ActiveFeature {
  public:
   // pose: null for the body whose frame is the common one.
-  ActiveFeature(const ConvexPolyhedron& body, const RelativePose* pose) noexcept
+  ActiveFeature(const ConvexBody& body, const RelativePose* pose) noexcept
       : body_(body), pose_(pose) {}
 
-  [[nodiscard]] const ConvexPolyhedron& body() const noexcept { return body_; }
+  [[nodiscard]] const ConvexBody& body() const noexcept { return body_; }
   [[nodiscard]] FeatureKind feature() const noexcept { return feature_; }
   [[nodiscard]] std::int32_t index() const noexcept { return index_; }
   [[nodiscard]] const Vec3& own() const noexcept { return own_; }
@@ -89,7 +89,7 @@ class ActiveFeature {
   }
 
  private:
-  const ConvexPolyhedron& body_;
+  const ConvexBody& body_;
   const RelativePose* pose_;
   FeatureKind feature_ = FeatureKind::kInside;
   std::int32_t index_ = kNone;

@@ -64,7 +64,7 @@ constexpr double kThin = 0x1p-44;
 
 bool leave_for_inside(ActiveFeature& side, const Vec3& direction_in_common) noexcept {
   if (side.feature() == FeatureKind::kInside) return false;
-  const ConvexPolyhedron& body = side.body();
+  const ConvexBody& body = side.body();
   const Vec3 direction = side.direction_to_own(direction_in_common);
   const double thin = kThin * direction.norm();
   const bool closer = (body.interior - side.own()).dot(direction) > thin * body.bounding_radius ||
@@ -120,7 +120,7 @@ constexpr double kInsideBeyondRounding = 16 * kUlp;
 
 // From the inside, unless there beyond rounding, to the facet that is nearest.
 void leave_inside(ActiveFeature& side) noexcept {
-  const ConvexPolyhedron& body = side.body();
+  const ConvexBody& body = side.body();
   double least = kInsideBeyondRounding * (body.bounding_radius + side.own().norm());
   std::int32_t nearest = kNone;
   for (std::size_t i = 0; i < body.facets.size(); ++i) {

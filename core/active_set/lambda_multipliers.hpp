@@ -39,7 +39,7 @@ inline Lambda of_vertex(const ActiveFeature& side, const Vec3& direction) noexce
 
 // The facets between the vertex's edges, one by one: along what is across each of two neighbours.
 inline Lambda of_facets_at_vertex(const ActiveFeature& side, const Vec3& direction) noexcept {
-  const ConvexPolyhedron& body = side.body();
+  const ConvexBody& body = side.body();
   const Vertex& vertex = side.vertex();
   const auto across = [&](const EdgeUse& use, int k) {
     return body.edges[use.edge].inward.row(k).dot(direction);

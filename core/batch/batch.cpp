@@ -22,7 +22,7 @@ namespace clearance {
 // taken by the constructor: a round allocates nothing.
 class DistanceBatch::Rounds {
  public:
-  Rounds(std::span<const ConvexPolyhedron* const> bodies, std::span<const BodyPair> pairs)
+  Rounds(std::span<const ConvexBody* const> bodies, std::span<const BodyPair> pairs)
       : of_{{bodies.begin(), bodies.end()},
             {pairs.begin(), pairs.end()},
             std::vector<TrackingState>(pairs.size())},
@@ -205,7 +205,7 @@ class DistanceBatch::Rounds {
   std::uint32_t rounds_ = 0;
 };
 
-DistanceBatch::DistanceBatch(std::span<const ConvexPolyhedron* const> bodies,
+DistanceBatch::DistanceBatch(std::span<const ConvexBody* const> bodies,
                              std::span<const BodyPair> pairs)
     : rounds_(std::make_unique<Rounds>(bodies, pairs)) {}
 DistanceBatch::~DistanceBatch() = default;

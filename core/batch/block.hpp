@@ -27,7 +27,7 @@ constexpr bool at_vertex_of_b(FeaturePair pair) { return kind_on_b(pair) == Feat
 enum CommonRow : std::size_t {
   kReachA,
   kReachB,
-  kErrorBoundA,  // ConvexPolyhedron::error_bound_as_a, error_bound_as_b
+  kErrorBoundA,  // ConvexBody::error_bound_as_a, error_bound_as_b
   kErrorBoundB,
   kBeyondPlain,
   kUnboundedA = kBeyondPlain,

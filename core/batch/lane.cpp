@@ -34,11 +34,11 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
 
 // How often what repeats of the feature does: the edges of a vertex, the limits of a facet.
 template <FeatureKind kKind>
-std::int32_t repeats_of(const ConvexPolyhedron& body, const Side& side) noexcept {
+std::int32_t repeats_of(const ConvexBody& body, const Side& side) noexcept {
   if constexpr (kKind == FeatureKind::kVertex) return body.vertices[side.feature].edges;
   return body.facets[side.feature].limits;
 }
-std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
+std::int32_t repeats(const ConvexBody& body, const Side& side) noexcept {
   if (side.kind == FeatureKind::kEdge) return 0;
   return side.kind == FeatureKind::kVertex ? repeats_of<FeatureKind::kVertex>(body, side)
                                            : repeats_of<FeatureKind::kFacet>(body, side);
@@ -46,7 +46,7 @@ std::int32_t repeats(const ConvexPolyhedron& body, const Side& side) noexcept {
 
 // Their numbers as the body keeps them.
 template <FeatureKind kKind>
-const double* row_of(const ConvexPolyhedron& body, const Side& side) noexcept {
+const double* row_of(const ConvexBody& body, const Side& side) noexcept {
   if constexpr (kKind == FeatureKind::kVertex) {
     return body.outgoing.row(body.vertices[side.feature].first_edge);
   }
@@ -57,14 +57,14 @@ constexpr std::size_t kStride = kKind == FeatureKind::kVertex ? kDirectionRows :
 
 // A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
 // witness point is where it is, as after any query but those that touch: lanes do not write it.
-bool can_be_judged(const ConvexPolyhedron& body, const Side& side) noexcept {
+bool can_be_judged(const ConvexBody& body, const Side& side) noexcept {
   if (side.kind > FeatureKind::kFacet || !few(repeats(body, side))) return false;
   return side.kind != FeatureKind::kVertex || side.point == body.vertices[side.feature].position;
 }
 
 // The feature's own numbers.
 template <FeatureKind kKind>
-void put(const ConvexPolyhedron& body, const Side& side, LaneWriter& to) noexcept {
+void put(const ConvexBody& body, const Side& side, LaneWriter& to) noexcept {
   if constexpr (kKind == FeatureKind::kVertex) {
     to.put(body.vertices[side.feature].position);
   } else if constexpr (kKind == FeatureKind::kFacet) {
@@ -93,7 +93,7 @@ void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t 
 
 // What repeats of one body's feature in a lane, from `row` on; every lane has as many as any needs.
 template <FeatureKind kKind>
-void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexPolyhedron& body,
+void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexBody& body,
                  const Side& side, std::uint8_t& most) noexcept {
   constexpr std::size_t stride = kStride<kKind>;
   const auto count = static_cast<std::size_t>(repeats_of<kKind>(body, side));
@@ -124,8 +124,8 @@ constexpr std::size_t repeats_row(FeatureKind of, FeatureKind other, bool is_b) 
 
 // First the feature of more dimensions, of two of a kind A's; then what repeats.
 template <FeatureKind kOfA, FeatureKind kOfB>
-void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
-                  const ConvexPolyhedron& b, const TrackingState& state) noexcept {
+void put_features(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
+                  const TrackingState& state) noexcept {
   LaneWriter to(block, lane, kFeatureRows);
   if constexpr (kOfB > kOfA) put<kOfB>(b, state.b, to);
   put<kOfA>(a, state.a, to);
@@ -140,8 +140,8 @@ void put_features(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a
   }
 }
 
-using PutFeatures = void (*)(BatchBlock&, std::size_t, const ConvexPolyhedron&,
-                             const ConvexPolyhedron&, const TrackingState&) noexcept;
+using PutFeatures = void (*)(BatchBlock&, std::size_t, const ConvexBody&, const ConvexBody&,
+                             const TrackingState&) noexcept;
 
 // [feature pair]
 template <std::size_t... kPairs>
@@ -153,17 +153,17 @@ constexpr std::array<PutFeatures, kFeaturePairs> put_features_table(
 constexpr auto kPutFeatures = put_features_table(std::make_index_sequence<kFeaturePairs>());
 
 // Bodies without facets have features with nothing beside them.
-bool point_or_segment(const ConvexPolyhedron& body) noexcept {
+bool point_or_segment(const ConvexBody& body) noexcept {
   return body.facets.empty() && !body.vertices.empty();
 }
 
 // Nothing lies beside the feature: beside a segment's ends, its edge does.
-bool bare(const ConvexPolyhedron& body, const Side& side) noexcept {
+bool bare(const ConvexBody& body, const Side& side) noexcept {
   return point_or_segment(body) && (side.kind == FeatureKind::kEdge || body.edges.empty());
 }
 
 // The rows from kBeyondPlain on say nothing of it. Vector code skips them in a block of such pairs.
-bool plain(const ConvexPolyhedron& body) noexcept {
+bool plain(const ConvexBody& body) noexcept {
   return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }
 
@@ -174,8 +174,8 @@ void stay_plain_no_longer(BatchBlock& block) noexcept {
 }
 
 // What a lane has by its bodies and its last witness points, whatever the features.
-void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
-                const ConvexPolyhedron& b, const TrackingState& state) noexcept {
+void put_common(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
+                const TrackingState& state) noexcept {
   LaneWriter to(block, lane, 0);
   to.put(a.bounding_radius);
   to.put(b.bounding_radius);
@@ -198,8 +198,7 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
 
 }  // namespace
 
-bool fits_lane(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-               const TrackingState& state) noexcept {
+bool fits_lane(const ConvexBody& a, const ConvexBody& b, const TrackingState& state) noexcept {
   if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return false;
   if (!a.bounded() && !b.bounded()) return false;
   // An edge of an unbounded body may have no ends: core/feature_walk leaves it undecided as well.
@@ -224,8 +223,8 @@ void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) 
   block.plain = true;
 }
 
-void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
-               const ConvexPolyhedron& b, const TrackingState& state) noexcept {
+void fill_lane(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
+               const TrackingState& state) noexcept {
   put_common(block, lane, a, b, state);
   kPutFeatures[static_cast<std::size_t>(block.features)](block, lane, a, b, state);
 }

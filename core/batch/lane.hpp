@@ -7,15 +7,15 @@ namespace clearance {
 
 // Whether lanes can judge the features of `state`. Only distance() can judge penetrating bodies,
 // two unbounded bodies, an unbounded body's edge with an edge or facet, too many neighbours.
-[[nodiscard]] bool fits_lane(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] bool fits_lane(const ConvexBody& a, const ConvexBody& b,
                              const TrackingState& state) noexcept;
 
 // Without tracked pairs, for those of one pair of features. no_pair: one past the last.
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept;
 
 // Writes the rows of a lane in use. `state` has the block's features.
-void fill_lane(BatchBlock& block, std::size_t lane, const ConvexPolyhedron& a,
-               const ConvexPolyhedron& b, const TrackingState& state) noexcept;
+void fill_lane(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
+               const TrackingState& state) noexcept;
 
 // The witness points of the last query that vector code has settled.
 [[nodiscard]] Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept;

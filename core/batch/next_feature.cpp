@@ -7,8 +7,8 @@ using Side = TrackingState::Side;
 
 // The features on either side: the owner is the one with the edge or facet.
 struct Features {
-  const ConvexPolyhedron& owner;
-  const ConvexPolyhedron& other;
+  const ConvexBody& owner;
+  const ConvexBody& other;
   Side& on_owner;
   Side& on_other;
 };
@@ -23,13 +23,12 @@ WalkStart go(Side& side, FeatureKind kind, std::int32_t feature) noexcept {
   return kOneTransition;
 }
 
-const EdgeUse& edge_of_vertex(const ConvexPolyhedron& body, const Side& side,
-                              std::int32_t i) noexcept {
+const EdgeUse& edge_of_vertex(const ConvexBody& body, const Side& side, std::int32_t i) noexcept {
   return body.vertex_edges[body.vertices[side.feature].first_edge + i];
 }
 
 // Onto the vertex's edge, or past it to its far end.
-WalkStart along_edge(const ConvexPolyhedron& body, Side& side, std::int32_t i,
+WalkStart along_edge(const ConvexBody& body, Side& side, std::int32_t i,
                      double derivative) noexcept {
   const EdgeUse& use = edge_of_vertex(body, side, i);
   const Edge& edge = body.edges[use.edge];
@@ -41,7 +40,7 @@ WalkStart along_edge(const ConvexPolyhedron& body, Side& side, std::int32_t i,
 }
 
 // To the facet beside it that approaches, or to the end that the closest point lies beyond.
-WalkStart leave_edge(const ConvexPolyhedron& body, Side& side, std::int32_t next) noexcept {
+WalkStart leave_edge(const ConvexBody& body, Side& side, std::int32_t next) noexcept {
   const Edge& edge = body.edges[side.feature];
   return next < kNextEnd ? go(side, FeatureKind::kFacet, edge.facet[next - kNextBeside])
                          : go(side, FeatureKind::kVertex, edge.vertex[next - kNextEnd]);
@@ -82,9 +81,8 @@ WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
 
 }  // namespace
 
-WalkStart to_next_feature(FeaturePair features, const ConvexPolyhedron& a,
-                          const ConvexPolyhedron& b, const FailedLanes& of, std::size_t lane,
-                          TrackingState& state) noexcept {
+WalkStart to_next_feature(FeaturePair features, const ConvexBody& a, const ConvexBody& b,
+                          const FailedLanes& of, std::size_t lane, TrackingState& state) noexcept {
   const auto next = static_cast<std::int32_t>(of.next[lane]);
   if (next == kNextUnknown) return {};
   const Features f = kind_on_b(features) > kind_on_a(features) ? Features{b, a, state.b, state.a}

@@ -10,8 +10,8 @@ namespace clearance {
 
 // The transition from the features of `state` to the neighbour that a lane names. None: the lane
 // could not tell, and the features are left to distance().
-[[nodiscard]] WalkStart to_next_feature(FeaturePair features, const ConvexPolyhedron& a,
-                                        const ConvexPolyhedron& b, const FailedLanes& of,
+[[nodiscard]] WalkStart to_next_feature(FeaturePair features, const ConvexBody& a,
+                                        const ConvexBody& b, const FailedLanes& of,
                                         std::size_t lane, TrackingState& state) noexcept;
 
 }  // namespace clearance

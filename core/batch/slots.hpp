@@ -13,14 +13,14 @@ namespace clearance {
 
 // The pairs of a batch and what they remember.
 struct BatchPairs {
-  std::vector<const ConvexPolyhedron*> bodies;
+  std::vector<const ConvexBody*> bodies;
   std::vector<BodyPair> pairs;
   std::vector<TrackingState> states;  // points of pairs in a block are there
 
-  [[nodiscard]] const ConvexPolyhedron& a(std::uint32_t pair) const noexcept {
+  [[nodiscard]] const ConvexBody& a(std::uint32_t pair) const noexcept {
     return *bodies[pairs[pair].a];
   }
-  [[nodiscard]] const ConvexPolyhedron& b(std::uint32_t pair) const noexcept {
+  [[nodiscard]] const ConvexBody& b(std::uint32_t pair) const noexcept {
     return *bodies[pairs[pair].b];
   }
   [[nodiscard]] std::uint32_t no_pair() const noexcept {

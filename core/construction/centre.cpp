@@ -9,7 +9,7 @@ namespace clearance::exact {
 namespace {
 
 // How far inside every plane; negative outside one.
-double depth(const ConvexPolyhedron& body, const Vec3& point) {
+double depth(const ConvexBody& body, const Vec3& point) {
   double least = kInfinity;
   for (const Facet& facet : body.facets) {
     least = std::min(least, -facet.normal.dot(point - body.point_of(facet)));
@@ -18,7 +18,7 @@ double depth(const ConvexPolyhedron& body, const Vec3& point) {
 }
 
 // The centre of volume, by a fan of tetrahedra from the first anchor. Bounded bodies only.
-Vec3 centroid(const ConvexPolyhedron& body) {
+Vec3 centroid(const ConvexBody& body) {
   const Vec3& apex = body.anchors[0];
   Vec3 moment = Vec3::Zero();
   double volume = 0.0;
@@ -37,7 +37,7 @@ Vec3 centroid(const ConvexPolyhedron& body) {
 }
 
 // From the mean of the anchors along the rays' mean, as far as the anchors are spread.
-Vec3 beyond_anchors(const ConvexPolyhedron& body) {
+Vec3 beyond_anchors(const ConvexBody& body) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());
   double spread = 0.0;
@@ -51,7 +51,7 @@ Vec3 beyond_anchors(const ConvexPolyhedron& body) {
 
 }  // namespace
 
-Vec3 well_inside(const ConvexPolyhedron& body, const Vec3& known) {
+Vec3 well_inside(const ConvexBody& body, const Vec3& known) {
   const Vec3 centre = body.bounded() ? centroid(body) : beyond_anchors(body);
   const double reached = depth(body, centre);
   return reached > 0.0 || reached >= depth(body, known) ? centre : known;

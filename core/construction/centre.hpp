@@ -1,12 +1,12 @@
-// A point well inside a ConvexPolyhedron, for queries to set out from.
+// A point well inside a ConvexBody, for queries to set out from.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance::exact {
 
 // The centre, unless the body is so thin that doubles lose it; `known` is inside but may be far off
 // centre. Of an unbounded body, from its anchors as far along its rays as they are spread.
-[[nodiscard]] Vec3 well_inside(const ConvexPolyhedron& body, const Vec3& known);
+[[nodiscard]] Vec3 well_inside(const ConvexBody& body, const Vec3& known);
 
 }  // namespace clearance::exact

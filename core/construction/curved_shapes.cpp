@@ -24,7 +24,7 @@ ShapeError bad_radius(const char* what) {
 
 // reach: of the shape without the radius, m.
 ShapeResult body_of(const CurvedShape& shape, double reach, double rounding) {
-  ConvexPolyhedron body;
+  ConvexBody body;
   body.curved = shape;
   body.bounding_radius = reach;
   add_query_tables(body);
@@ -63,7 +63,7 @@ ShapeResult cone(double base_radius, double half_length, double rounding) {
   return truncated_cone(base_radius, 0.0, half_length, rounding);
 }
 
-ShapeResult rounded_by(double radius, ConvexPolyhedron body) {
+ShapeResult rounded_by(double radius, ConvexBody body) {
   if (!is_radius(radius)) return bad_radius("the radius around it");
   body.radius = radius;
   return body;

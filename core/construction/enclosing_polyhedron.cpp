@@ -73,7 +73,7 @@ class Outline {
   };
 
   void add(const PlacedShape& body) {
-    const ConvexPolyhedron& shape = *body.shape;
+    const ConvexBody& shape = *body.shape;
     const double arm = body.frame_from_shape.position.norm() + shape.bounding_radius;
     const double error = kPlacingError * arm + shape.position_error;
     if (shape.is_curved()) {
@@ -129,7 +129,7 @@ std::vector<HalfSpace> candidates(std::span<const PlacedShape> bodies, const Out
     return planes;
   }
   const ShapeResult hull = polyhedron_from_vertices(outline.samples());
-  if (const auto* body = std::get_if<ConvexPolyhedron>(&hull)) {
+  if (const auto* body = std::get_if<ConvexBody>(&hull)) {
     for (const Facet& facet : body->facets) add(facet.normal);
   }
   return planes;
@@ -154,7 +154,7 @@ CutVertex judged(const Vec3& vertex, const std::vector<HalfSpace>& planes) {
 }
 
 // The planes to cut with next, at most `room`: no vertex twice when one cut takes most of it off.
-std::vector<HalfSpace> next_cuts(const ConvexPolyhedron& body, const std::vector<HalfSpace>& planes,
+std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfSpace>& planes,
                                  double tolerance, std::size_t room) {
   std::vector<std::pair<CutVertex, Vec3>> vertices;
   for (const Vertex& vertex : body.vertices) {
@@ -181,8 +181,8 @@ std::vector<HalfSpace> next_cuts(const ConvexPolyhedron& body, const std::vector
 
 }  // namespace
 
-std::optional<ConvexPolyhedron> enclosing_polyhedron(std::span<const PlacedShape> bodies,
-                                                     const EnclosingOptions& options) {
+std::optional<ConvexBody> enclosing_polyhedron(std::span<const PlacedShape> bodies,
+                                               const EnclosingOptions& options) {
   const bool bounded = std::all_of(bodies.begin(), bodies.end(),
                                    [](const PlacedShape& body) { return body.shape->bounded(); });
   if (bodies.empty() || !bounded) return std::nullopt;
@@ -199,10 +199,10 @@ std::optional<ConvexPolyhedron> enclosing_polyhedron(std::span<const PlacedShape
   }
   const std::vector<HalfSpace> planes = candidates(bodies, outline);
   const double tolerance = options.tolerance * outline.size();
-  std::optional<ConvexPolyhedron> best;
+  std::optional<ConvexBody> best;
   for (int round = 0; round < kMostRounds; ++round) {
     ShapeResult made = polyhedron_from_halfspaces(rows);
-    auto* body = std::get_if<ConvexPolyhedron>(&made);
+    auto* body = std::get_if<ConvexBody>(&made);
     if (body == nullptr) return best;  // thinner than a rounding, or out of range
     best = std::move(*body);
     if (best->facets.size() >= options.facets) break;

@@ -1,4 +1,4 @@
-// A solid convex polyhedron with exact coordinates, on its way to become a ConvexPolyhedron.
+// A solid convex polyhedron with exact coordinates, on its way to become a ConvexBody.
 #pragma once
 
 #include <span>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/construction/integer_vector.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance::exact {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/construction/integer_vector.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/vec.hpp"
 
 namespace clearance::exact {

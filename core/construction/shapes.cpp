@@ -139,7 +139,7 @@ ShapeResult point(const Vec3& position, double radius) {
     return ShapeError{"the point" + fault};
   }
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
-  ConvexPolyhedron body;
+  ConvexBody body;
   body.vertices.push_back({position, 0, 0});
   body.anchors.push_back(position);
   body.interior = position;
@@ -162,7 +162,7 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   }
   if (const std::string fault = radius_fault(radius); !fault.empty()) return ShapeError{fault};
   const SegmentLine line = line_from(start, end);
-  ConvexPolyhedron body;
+  ConvexBody body;
   body.edges.push_back({start,
                         line.direction,
                         Eigen::Matrix<double, 2, 3>::Zero(),

@@ -62,7 +62,7 @@ class Assembler {
  public:
   explicit Assembler(const Solid& solid) : solid_(solid) {}
 
-  ConvexPolyhedron build() {
+  ConvexBody build() {
     for (const Integer4& plane : solid_.planes) add_facet(plane);
     for (const Integer4& node : solid_.nodes) body_.anchors.push_back(rounder_.point(node));
     for (const SolidEdge& edge : solid_.edges) add_edge(edge);
@@ -262,7 +262,7 @@ class Assembler {
   }
 
   const Solid& solid_;
-  ConvexPolyhedron body_;
+  ConvexBody body_;
   Rounder rounder_;
 };
 
@@ -283,7 +283,7 @@ bool opens_wide_enough(const std::vector<Ray>& rays) {
 }
 
 // Along the facet's normal for which it is least, m.
-double thickness(const ConvexPolyhedron& body) {
+double thickness(const ConvexBody& body) {
   double least = kInfinity;
   for (const Facet& facet : body.facets) {
     const Vec3 back = -facet.normal;
@@ -297,7 +297,7 @@ double thickness(const ConvexPolyhedron& body) {
 }  // namespace
 
 ShapeResult rounded_polyhedron(const Solid& solid) {
-  ConvexPolyhedron body = Assembler(solid).build();
+  ConvexBody body = Assembler(solid).build();
   if (!opens_wide_enough(body.rays)) {
     return ShapeError{
         "the body is unbounded and opens by less than 1e-6 rad, or by that much less than half a "

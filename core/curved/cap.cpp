@@ -54,7 +54,7 @@ struct PieceOfSet {
 // All vertices, rays' ends among them, of the support set of a polyhedron along m, as a linear
 // function v decides: the least of it.
 PieceOfSet least_vertex(const CapView& view, const Vec3& m, double tolerance, const Vec2& v) {
-  const ConvexPolyhedron& body = *view.other().body;
+  const ConvexBody& body = *view.other().body;
   const double top = m.dot(support_point(view.other(), farthest_piece(view.other(), m), m));
   double least = kInfinity;
   PieceOfSet found;

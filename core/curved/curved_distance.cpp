@@ -54,9 +54,8 @@ DistanceResult of_unknown() noexcept {
   return r;
 }
 
-DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, CurvedTrackingState& state,
-                        bool depth) noexcept {
+DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        CurvedTrackingState& state, bool depth) noexcept {
   CurvedPair pair(a, b, a_from_b);
   // The search has no flats.
   const PiecePair& first = state.active.pieces[0];
@@ -87,9 +86,8 @@ DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 }
 
 // What Newton's method has left open.
-DistanceResult otherwise(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, CurvedTrackingState& state,
-                         bool depth) noexcept {
+DistanceResult otherwise(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                         CurvedTrackingState& state, bool depth) noexcept {
   if (!a.bounded() && !b.bounded()) return of_unknown();
   if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
   return searched(a, b, a_from_b, state, depth);
@@ -97,7 +95,7 @@ DistanceResult otherwise(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 }  // namespace
 
-DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, CurvedTrackingState& state,
                                bool depth) noexcept {
   forget_nonsense(state, a, b);
@@ -107,7 +105,7 @@ DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron
   return r;
 }
 
-DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                bool depth) noexcept {
   CurvedTrackingState tracked = read(state, a, b);

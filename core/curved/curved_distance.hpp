@@ -14,11 +14,11 @@ namespace clearance {
 // says; the pose has to be a good one. `depth`: as DistanceOptions has it. Both bodies may be
 // polyhedra, but distance() answers these faster and with closer bounds. If both bodies are
 // unbounded, the bounds are infinite and the rest is NaN.
-[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth = true) noexcept;
 // The same, and a point of both bodies where they overlap.
-[[nodiscard]] DistanceResult curved_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b,
                                              CurvedTrackingState& state,
                                              bool depth = true) noexcept;

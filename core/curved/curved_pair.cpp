@@ -5,7 +5,7 @@ namespace {
 
 // No closest point of `body` is farther from its frame's origin than this, m: one of its anchors is
 // within all three lengths of any point of the other one.
-double farthest_closest(const ConvexPolyhedron& body, const ConvexPolyhedron& other,
+double farthest_closest(const ConvexBody& body, const ConvexBody& other,
                         const RelativePose& a_from_b) noexcept {
   const double apart = a_from_b.translation.norm() + other.bounding_radius;
   return 2.0 * apart + body.bounding_radius;
@@ -13,7 +13,7 @@ double farthest_closest(const ConvexPolyhedron& body, const ConvexPolyhedron& ot
 
 }  // namespace
 
-CurvedPair::CurvedPair(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
+CurvedPair::CurvedPair(const ConvexBody& body_a, const ConvexBody& body_b,
                        const RelativePose& a_from_b) noexcept
     : a(source_of(body_a, farthest_closest(body_a, body_b, a_from_b))),
       b(source_of(body_b, farthest_closest(body_b, body_a, a_from_b))),

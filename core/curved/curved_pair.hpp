@@ -55,8 +55,7 @@ struct CurvedBounds {
 // The bodies and the pose outlive it.
 class CurvedPair {
  public:
-  CurvedPair(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-             const RelativePose& a_from_b) noexcept;
+  CurvedPair(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b) noexcept;
 
   PieceSource a, b;
   CurvedBounds bounds;

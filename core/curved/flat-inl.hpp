@@ -20,7 +20,7 @@ struct Flat {
   Vec4 normal;  // outward, unit
   double offset;
 };
-HWY_INLINE Flat flat_of(const ConvexPolyhedron& body, std::int32_t number) {
+HWY_INLINE Flat flat_of(const ConvexBody& body, std::int32_t number) {
   const auto at = static_cast<std::size_t>(number - first_flat(body));
   if (body.is_curved()) {
     const double up = at == 0 ? -1.0 : 1.0;
@@ -31,7 +31,7 @@ HWY_INLINE Flat flat_of(const ConvexPolyhedron& body, std::int32_t number) {
 }
 
 // Of three vertices, the facet that they are of, as a flat; kNone: there is none.
-inline HWY_NOINLINE std::int32_t facet_of(const ConvexPolyhedron& body, const SidePieces& active) {
+inline HWY_NOINLINE std::int32_t facet_of(const ConvexBody& body, const SidePieces& active) {
   const auto vertex = [&](std::size_t i) -> const Vertex& {
     return body.vertices[static_cast<std::size_t>(active.number(i))];
   };
@@ -63,7 +63,7 @@ struct FlatMeeting {
 // Is the other body's nearest point above the flat? `number`: of A's if kOfA. `piece`: of the other
 // body, as far as known.
 template <bool kOfA>
-HWY_INLINE FlatMeeting meet_flat(const ConvexPolyhedron& body, const ConvexPolyhedron& other,
+HWY_INLINE FlatMeeting meet_flat(const ConvexBody& body, const ConvexBody& other,
                                  const RelativePose4& a_from_b, std::int32_t number,
                                  std::int32_t piece) {
   const Flat flat = flat_of(body, number);

@@ -13,7 +13,7 @@ namespace {
 // the origins. The facet's normal is rounded, too: 1 of each.
 constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOrigins = 13;
 
-Vec3 farthest_point(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+Vec3 farthest_point(const ConvexBody& body, const Vec3& m) noexcept {
   const PieceSource source{&body, body.bounding_radius};
   return support_point(source, farthest_piece(source, m), m);
 }
@@ -26,11 +26,11 @@ double error_of(double reach, double plane, const RelativePose& pose) noexcept {
 
 }  // namespace
 
-DistanceResult distance_of_half_space(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult distance_of_half_space(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose& a_from_b,
                                       CurvedTrackingState& state) noexcept {
   const bool of_a = a.is_half_space();
-  const ConvexPolyhedron &plane = of_a ? a : b, &body = of_a ? b : a;
+  const ConvexBody &plane = of_a ? a : b, &body = of_a ? b : a;
   const Facet& facet = plane.facets.front();
   const Mat3& turn = a_from_b.rotation;
   CurvedConclusion found;

@@ -7,8 +7,7 @@
 namespace clearance {
 
 // A or B is a half-space, the other one is bounded. Writes the state's points.
-[[nodiscard]] DistanceResult distance_of_half_space(const ConvexPolyhedron& a,
-                                                    const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult distance_of_half_space(const ConvexBody& a, const ConvexBody& b,
                                                     const RelativePose& a_from_b,
                                                     CurvedTrackingState& state) noexcept;
 

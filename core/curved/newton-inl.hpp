@@ -42,9 +42,9 @@ enum class Next { kLook, kTight, kGiveUp };
 template <class RoundnessA, class RoundnessB>
 class Newton {
  public:
-  HWY_INLINE Newton(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                    const RelativePose4& a_from_b, const RoundnessA& round_a,
-                    const RoundnessB& round_b, double tolerance, Vec4 x, ActivePieces& active)
+  HWY_INLINE Newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
+                    const RoundnessA& round_a, const RoundnessB& round_b, double tolerance, Vec4 x,
+                    ActivePieces& active)
       : a_(a),
         b_(b),
         a_from_b_(a_from_b),
@@ -134,7 +134,7 @@ class Newton {
 
   // ---- flats ----
   template <class Roundness>
-  [[nodiscard]] static HWY_INLINE bool is_cone(const ConvexPolyhedron& body) {
+  [[nodiscard]] static HWY_INLINE bool is_cone(const ConvexBody& body) {
     return Roundness::kRound && body.curved.kind == CurvedShape::Kind::kTruncatedCone;
   }
   [[nodiscard]] HWY_INLINE bool is_near_axis() const {
@@ -178,7 +178,7 @@ class Newton {
   }
   template <bool kOfA>
   HWY_INLINE Next try_flat_of() {
-    const ConvexPolyhedron &body = kOfA ? a_ : b_, &other = kOfA ? b_ : a_;
+    const ConvexBody &body = kOfA ? a_ : b_, &other = kOfA ? b_ : a_;
     PiecePair& pieces = active_.pieces[0];
     std::int32_t &flat = kOfA ? pieces.a : pieces.b, &piece = kOfA ? pieces.b : pieces.a;
     active_.count = 1;
@@ -202,7 +202,7 @@ class Newton {
   // To the edge or the rim beside which the nearest point is.
   template <bool kOfA>
   HWY_NOINLINE void leave_flat(const FlatMeeting& met) {
-    const ConvexPolyhedron& body = kOfA ? a_ : b_;
+    const ConvexBody& body = kOfA ? a_ : b_;
     std::int32_t& flat = kOfA ? active_.pieces[0].a : active_.pieces[0].b;
     if (body.is_curved()) {
       flat -= first_flat(body);
@@ -226,7 +226,7 @@ class Newton {
   HWY_NOINLINE void to_facet() {
     const bool of_a = !RoundnessA::kRound;
     if (of_a == !RoundnessB::kRound) return;
-    const ConvexPolyhedron& body = of_a ? a_ : b_;
+    const ConvexBody& body = of_a ? a_ : b_;
     const SidePieces other = pieces_.side(!of_a);
     if (other.number(0) != other.number(1) || other.number(0) != other.number(2)) return;
     const std::int32_t facet = facet_of(body, pieces_.side(of_a));
@@ -235,7 +235,7 @@ class Newton {
     (of_a ? active_.pieces[0].a : active_.pieces[0].b) = facet;
   }
 
-  const ConvexPolyhedron &a_, &b_;
+  const ConvexBody &a_, &b_;
   const RelativePose4& a_from_b_;
   const double tolerance_;
   Vec4 x_;

@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
 // The piece that reaches farthest along m (unit); of a truncated cone whose axis that is, the cap.
-HWY_INLINE std::int32_t first_piece(const ConvexPolyhedron& body, const Vec3& m) {
+HWY_INLINE std::int32_t first_piece(const ConvexBody& body, const Vec3& m) {
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:
       return support(body, m).anchor;
@@ -27,7 +27,7 @@ HWY_INLINE std::int32_t first_piece(const ConvexPolyhedron& body, const Vec3& m)
       high.height * m.z() + high.radius * across > low.height * m.z() + low.radius * across;
   return (across > kNearAxis ? 0 : 2) + (is_high ? 1 : 0);
 }
-inline HWY_NOINLINE Vec4 start(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+inline HWY_NOINLINE Vec4 start(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose4& a_from_b, Vec4 x, ActivePieces& active) {
   const Vec4 n = over(x, norm(x));
   PiecePair& pieces = active.pieces[0];
@@ -38,9 +38,9 @@ inline HWY_NOINLINE Vec4 start(const ConvexPolyhedron& a, const ConvexPolyhedron
   return n;
 }
 
-HWY_INLINE void conclude(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose4& a_from_b, const NewtonEnd& end, double size,
-                         CurvedTrackingState& state, DistanceResult& r) {
+HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
+                         const NewtonEnd& end, double size, CurvedTrackingState& state,
+                         DistanceResult& r) {
   CurvedConclusion found;
   found.lower = end.lower;
   found.upper = end.upper;
@@ -61,9 +61,8 @@ HWY_INLINE void conclude(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   }
 }
 
-HWY_INLINE bool newton(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                       const RelativePose4& a_from_b, CurvedTrackingState& state,
-                       DistanceResult& r) {
+HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
+                       CurvedTrackingState& state, DistanceResult& r) {
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {
@@ -86,15 +85,14 @@ HWY_INLINE bool newton(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return run(roundness_of_a(a), roundness_of_b(b, a_from_b.rotation));
 }
 
-bool newton_of_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, CurvedTrackingState& state,
-                        DistanceResult& r) {
+bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        CurvedTrackingState& state, DistanceResult& r) {
   return newton(a, b, pose4_of(a_from_b), state, r);
 }
 
-DistanceResult newton_of_poses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                               const Pose& world_from_a, const Pose& world_from_b,
-                               TrackingState& state, OtherDistance otherwise) {
+DistanceResult newton_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                               const Pose& world_from_b, TrackingState& state,
+                               OtherDistance otherwise) {
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   CurvedTrackingState tracked = read(state, a, b);
   DistanceResult r;
@@ -114,14 +112,13 @@ namespace clearance {
 HWY_EXPORT(newton_of_relative);
 HWY_EXPORT(newton_of_poses);
 
-bool newton_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, CurvedTrackingState& state,
-                     DistanceResult& result) noexcept {
+bool newton_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                     CurvedTrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_relative)(a, b, a_from_b, state, result);
 }
-DistanceResult newton_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                               const Pose& world_from_a, const Pose& world_from_b,
-                               TrackingState& state, OtherDistance otherwise) noexcept {
+DistanceResult newton_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                               const Pose& world_from_b, TrackingState& state,
+                               OtherDistance otherwise) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_poses)(a, b, world_from_a, world_from_b, state, otherwise);
 }
 

@@ -84,8 +84,8 @@ struct Ascent {
   std::int32_t to = kNone;
   double derivative = -kInfinity;
 };
-HWY_INLINE Ascent ascent(const ConvexPolyhedron& body, std::int32_t number,
-                         const SidePieces& active, Vec4 m) {
+HWY_INLINE Ascent ascent(const ConvexBody& body, std::int32_t number, const SidePieces& active,
+                         Vec4 m) {
   const Vertex& vertex = body.vertices[static_cast<std::size_t>(number)];
   const double* row = body.outgoing.row(vertex.first_edge);
   const Vec4 along[3] = {spread(lane(m, 0)), spread(lane(m, 1)), spread(lane(m, 2))};
@@ -104,8 +104,7 @@ HWY_INLINE Ascent ascent(const ConvexPolyhedron& body, std::int32_t number,
 }
 
 // From a vertex up to where no edge leads farther along m.
-inline HWY_NOINLINE std::int32_t climbed(const ConvexPolyhedron& body, std::int32_t from,
-                                         const Vec3& m) {
+inline HWY_NOINLINE std::int32_t climbed(const ConvexBody& body, std::int32_t from, const Vec3& m) {
   for (std::size_t step = 0; step < body.vertices.size(); ++step) {
     const Vertex& vertex = body.vertices[static_cast<std::size_t>(from)];
     const SteepestEdge next = steepest(body, vertex, m);
@@ -117,8 +116,7 @@ inline HWY_NOINLINE std::int32_t climbed(const ConvexPolyhedron& body, std::int3
 
 // Where all edges of all active vertices recede that do not join two of these, the farthest of them
 // is the support vertex: the edges that join them cannot lead farther than it, but for rounding.
-HWY_INLINE OwnSupport polyhedron_support(const ConvexPolyhedron& body, const SidePieces& active,
-                                         Vec4 m) {
+HWY_INLINE OwnSupport polyhedron_support(const ConvexBody& body, const SidePieces& active, Vec4 m) {
   OwnSupport found;
   found.known = true;
   found.reach = -kInfinity;
@@ -145,7 +143,7 @@ HWY_INLINE OwnSupport polyhedron_support(const ConvexPolyhedron& body, const Sid
   return found;
 }
 
-HWY_INLINE OwnSupport own_support(const ConvexPolyhedron& body, const SidePieces& active, Vec4 m) {
+HWY_INLINE OwnSupport own_support(const ConvexBody& body, const SidePieces& active, Vec4 m) {
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:
       return polyhedron_support(body, active, m);

@@ -44,7 +44,7 @@ struct FacedBody {
 
 // A polyhedron's piece: an anchor, or what lies at the end of one of its rays from there.
 [[nodiscard]] inline Vec3 anchor_or_far_end(const PieceSource& source, std::size_t piece) noexcept {
-  const ConvexPolyhedron& body = *source.body;
+  const ConvexBody& body = *source.body;
   if (body.bounded()) return body.anchors[piece];
   const Vec3& anchor = body.anchors[piece % body.anchors.size()];
   const std::size_t ray = piece / body.anchors.size();
@@ -53,7 +53,7 @@ struct FacedBody {
 }
 
 [[nodiscard]] inline Vec3 support_point(const FacedBody& faced, std::int32_t piece) noexcept {
-  const ConvexPolyhedron& body = *faced.source.body;
+  const ConvexBody& body = *faced.source.body;
   const auto at = static_cast<std::size_t>(piece);
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:

@@ -13,7 +13,7 @@ double disc_value(const Disc& disc, const Vec3& m, double across) noexcept {
 }
 
 // What makes of an anchor's piece that of the ray that leads farthest along m.
-std::int32_t farthest_ray(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+std::int32_t farthest_ray(const ConvexBody& body, const Vec3& m) noexcept {
   double steepest = 0.0;
   std::size_t found = 0;
   for (std::size_t i = 0; i < body.rays.size(); ++i) {
@@ -26,7 +26,7 @@ std::int32_t farthest_ray(const ConvexPolyhedron& body, const Vec3& m) noexcept 
   return static_cast<std::int32_t>(found * body.anchors.size());
 }
 
-Vec3 pulled_into_cone(const ConvexPolyhedron& body, Vec3 point) noexcept {
+Vec3 pulled_into_cone(const ConvexBody& body, Vec3 point) noexcept {
   const Disc &low = body.curved.discs[0], &high = body.curved.discs[1];
   point.z() = std::clamp(point.z(), low.height, high.height);
   const double part = (point.z() - low.height) / (high.height - low.height);
@@ -40,7 +40,7 @@ Vec3 pulled_into_cone(const ConvexPolyhedron& body, Vec3 point) noexcept {
 
 // Closest points of an unbounded polyhedron are an anchor's mean and a sum of up to three rays, of
 // which each has a part of at least RecessionCone::least along one direction.
-PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept {
+PieceSource source_of(const ConvexBody& body, double within) noexcept {
   PieceSource source{&body, body.bounding_radius};
   if (body.bounded()) return source;
   constexpr double kNarrowest = 0x1p-20;
@@ -51,7 +51,7 @@ PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept {
 }
 
 std::int32_t farthest_piece(const PieceSource& source, const Vec3& m) noexcept {
-  const ConvexPolyhedron& body = *source.body;
+  const ConvexBody& body = *source.body;
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:
       return support(body, m).anchor + farthest_ray(body, m);
@@ -70,7 +70,7 @@ Vec3 support_point(const PieceSource& source, std::int32_t piece, const Vec3& m)
   return support_point(faced(source, m), piece);
 }
 
-Vec3 pulled_inside(const ConvexPolyhedron& body, const Vec3& point) noexcept {
+Vec3 pulled_inside(const ConvexBody& body, const Vec3& point) noexcept {
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:
       return point;  // sums of vertices, weights of sum 1

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -30,7 +30,7 @@ struct Tangents {
 
 // A body as a query sees it.
 struct PieceSource {
-  const ConvexPolyhedron* body = nullptr;
+  const ConvexBody* body = nullptr;
   double reach = 0.0;  // no point of a piece is farther from the frame's origin, m
   // An unbounded polyhedron's rays count as edges of this length, m: every point that can be
   // closest is in the hull of its anchors and what lies at the far ends from each of them.
@@ -41,10 +41,10 @@ struct PieceSource {
 };
 
 // `within`: no point that can be closest is farther from the frame's origin, m.
-[[nodiscard]] PieceSource source_of(const ConvexPolyhedron& body, double within) noexcept;
+[[nodiscard]] PieceSource source_of(const ConvexBody& body, double within) noexcept;
 
 // A polyhedron has a piece an anchor, and behind these as many for each of its rays.
-[[nodiscard]] inline std::int32_t pieces_of(const ConvexPolyhedron& body) noexcept {
+[[nodiscard]] inline std::int32_t pieces_of(const ConvexBody& body) noexcept {
   if (body.is_curved()) return body.curved.kind == CurvedShape::Kind::kEllipsoid ? 1 : 2;
   const auto anchors = static_cast<std::int32_t>(body.anchors.size());
   return anchors * (static_cast<std::int32_t>(body.rays.size()) + 1);
@@ -64,6 +64,6 @@ struct Azimuth {
                                  const Vec3& m) noexcept;
 
 // A point of the body, but for rounding, near a point that lies near its surface.
-[[nodiscard]] Vec3 pulled_inside(const ConvexPolyhedron& body, const Vec3& point) noexcept;
+[[nodiscard]] Vec3 pulled_inside(const ConvexBody& body, const Vec3& point) noexcept;
 
 }  // namespace clearance

@@ -16,8 +16,8 @@ namespace clearance::HWY_NAMESPACE {
 // The arrays run along the pairs of `active`. `weight` is how much each counts, of sum 1; `apart`
 // joins both support points along the direction that was looked at last.
 struct PlacedPieces {
-  HWY_INLINE PlacedPieces(const ConvexPolyhedron& of_a, const ConvexPolyhedron& of_b,
-                          const RelativePose4& pose, ActivePieces& pieces)
+  HWY_INLINE PlacedPieces(const ConvexBody& of_a, const ConvexBody& of_b, const RelativePose4& pose,
+                          ActivePieces& pieces)
       : a(of_a), b(of_b), a_from_b(pose), active(pieces) {}
 
   [[nodiscard]] HWY_INLINE std::size_t count() const { return active.count; }
@@ -65,7 +65,7 @@ struct PlacedPieces {
     place(at);
   }
 
-  const ConvexPolyhedron &a, &b;
+  const ConvexBody &a, &b;
   const RelativePose4& a_from_b;
   ActivePieces& active;
   Vec4 middle[3], apart[3];
@@ -77,7 +77,7 @@ struct PlacedPieces {
     Vec4 middle;
     double radius;
   };
-  [[nodiscard]] static HWY_INLINE Piece4 piece(const ConvexPolyhedron& body, std::int32_t number) {
+  [[nodiscard]] static HWY_INLINE Piece4 piece(const ConvexBody& body, std::int32_t number) {
     const auto at = static_cast<std::size_t>(number);
     switch (body.curved.kind) {
       case CurvedShape::Kind::kNone:

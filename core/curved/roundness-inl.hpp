@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/model/relative_pose-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -62,16 +62,14 @@ struct RoundnessOfB {
   }
 };
 
-HWY_INLINE Vec4 unit_squares(const ConvexPolyhedron& body) {
+HWY_INLINE Vec4 unit_squares(const ConvexBody& body) {
   if (body.curved.kind == CurvedShape::Kind::kTruncatedCone) return vec4(1.0, 1.0, 0.0, 0.0);
   const Vec4 semi_axes = load3(body.curved.semi_axes);
   return semi_axes * semi_axes;
 }
-HWY_INLINE RoundnessOfA roundness_of_a(const ConvexPolyhedron& body) {
-  return {unit_squares(body)};
-}
+HWY_INLINE RoundnessOfA roundness_of_a(const ConvexBody& body) { return {unit_squares(body)}; }
 // R diag(squares) R^T.
-HWY_INLINE RoundnessOfB roundness_of_b(const ConvexPolyhedron& body, const Diagonals& turn) {
+HWY_INLINE RoundnessOfB roundness_of_b(const ConvexBody& body, const Diagonals& turn) {
   const Vec4 s = unit_squares(body);
   const Vec4 main = turn.main * s, next = turn.next * yzx(s), last = turn.last * zxy(s);
   return {{(turn.main * main + turn.next * next) + turn.last * last,

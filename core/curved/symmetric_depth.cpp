@@ -17,7 +17,7 @@ struct InnerBall {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;
 };
-InnerBall inner_ball(const ConvexPolyhedron& body) noexcept {
+InnerBall inner_ball(const ConvexBody& body) noexcept {
   switch (body.curved.kind) {
     case CurvedShape::Kind::kNone:
       return {body.interior, body.inner_radius};
@@ -59,7 +59,7 @@ double by_semi_axes(const CurvedPair& pair) noexcept {
 // ---- solids of revolution ----
 constexpr int kAnyAxis = 3;
 // Around which of its axes; kAnyAxis: a sphere; kNone: around none.
-int axis_of(const ConvexPolyhedron& body) noexcept {
+int axis_of(const ConvexBody& body) noexcept {
   if (body.curved.kind == CurvedShape::Kind::kTruncatedCone) return 2;
   if (body.curved.kind == CurvedShape::Kind::kNone) return kNone;
   const Vec3& s = body.curved.semi_axes;
@@ -181,7 +181,7 @@ double by_sections(const CurvedPair& pair) noexcept {
 
 }  // namespace
 
-double rolling_ball(const ConvexPolyhedron& body) noexcept {
+double rolling_ball(const ConvexBody& body) noexcept {
   if (body.curved.kind != CurvedShape::Kind::kEllipsoid) return 0.0;
   const double least = body.curved.semi_axes.minCoeff();
   return least * (least / body.curved.semi_axes.maxCoeff());

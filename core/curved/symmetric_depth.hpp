@@ -14,6 +14,6 @@ namespace clearance {
 [[nodiscard]] double least_symmetric_depth(const CurvedPair& pair) noexcept;
 
 // Every point of the body's surface is on a ball of this radius that lies inside; 0: not known.
-[[nodiscard]] double rolling_ball(const ConvexPolyhedron& body) noexcept;
+[[nodiscard]] double rolling_ball(const ConvexBody& body) noexcept;
 
 }  // namespace clearance

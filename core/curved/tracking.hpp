@@ -19,14 +19,14 @@ struct CurvedTrackingState {
 };
 
 // Has the body this piece or flat?
-[[nodiscard]] inline bool has_piece(const ConvexPolyhedron& body, std::int32_t number) noexcept {
+[[nodiscard]] inline bool has_piece(const ConvexBody& body, std::int32_t number) noexcept {
   if (number < 0) return false;
   return number < pieces_of(body) || (number >= first_flat(body) && number < end_of_flats(body));
 }
 
 // What is not of these bodies becomes nothing: more than one flat, and flats of several pairs.
-inline void forget_nonsense(CurvedTrackingState& state, const ConvexPolyhedron& a,
-                            const ConvexPolyhedron& b) noexcept {
+inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
+                            const ConvexBody& b) noexcept {
   if (!(std::abs(state.normal.squaredNorm() - 1.0) < 0.5)) state.normal = Vec3::Zero();
   ActivePieces& active = state.active;
   if (active.count > active.pieces.size()) active.count = 0;
@@ -59,8 +59,8 @@ inline constexpr std::uint64_t kPieceNumbers = std::uint64_t{1} << kPieceBits;
 }
 
 // Whatever the state says, of these two bodies.
-[[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexPolyhedron& a,
-                                              const ConvexPolyhedron& b) noexcept {
+[[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexBody& a,
+                                              const ConvexBody& b) noexcept {
   CurvedTrackingState found;
   if (state.a.kind != FeatureKind::kDirection) return found;
   found.normal = state.a.point;
@@ -79,8 +79,8 @@ inline constexpr std::uint64_t kPieceNumbers = std::uint64_t{1} << kPieceBits;
 
 // Without `shared`. Of two polyhedra, or of one with more than half a million vertices and facets,
 // no pieces may be kept.
-inline void write(const CurvedTrackingState& from, const ConvexPolyhedron& a,
-                  const ConvexPolyhedron& b, TrackingState& state) noexcept {
+inline void write(const CurvedTrackingState& from, const ConvexBody& a, const ConvexBody& b,
+                  TrackingState& state) noexcept {
   std::uint64_t all = 0;
   const bool b_is_curved = b.is_curved();
   if (b_is_curved || a.is_curved()) {

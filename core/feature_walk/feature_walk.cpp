@@ -8,8 +8,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-WalkEnd walk_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                      const RelativePose& a_from_b, TrackingState& state, DistanceResult& r) {
+WalkEnd walk_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                      TrackingState& state, DistanceResult& r) {
   const RelativePose4 pose4 = pose4_of(a_from_b);
   TrackedPair pair(a, b, pose4, state);
   const WalkEnd end = walk(pair);
@@ -17,7 +17,7 @@ WalkEnd walk_relative(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return end;
 }
 
-bool walk_relative_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+bool walk_relative_penetration(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                DistanceResult& r) {
   const RelativePose4 pose4 = pose4_of(a_from_b);
@@ -36,15 +36,13 @@ namespace clearance {
 HWY_EXPORT(walk_relative);
 HWY_EXPORT(walk_relative_penetration);
 
-WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                      const RelativePose& a_from_b, TrackingState& state,
-                      DistanceResult& result) noexcept {
+WalkEnd walk_features(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                      TrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(walk_relative)(a, b, a_from_b, state, result);
 }
 
-bool walk_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                      const RelativePose& a_from_b, TrackingState& state,
-                      DistanceResult& result) noexcept {
+bool walk_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                      TrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(walk_relative_penetration)(a, b, a_from_b, state, result);
 }
 

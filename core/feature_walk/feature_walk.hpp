@@ -11,7 +11,7 @@
 // ones (core/feature_walk/parallel_steps-inl.hpp).
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/pose.hpp"
 
@@ -29,8 +29,7 @@ struct WalkStart {
   int transitions = 0, parallel_transitions = 0;
 };
 
-[[nodiscard]] inline bool exists(const ConvexPolyhedron& body,
-                                 const TrackingState::Side& side) noexcept {
+[[nodiscard]] inline bool exists(const ConvexBody& body, const TrackingState::Side& side) noexcept {
   return side.kind <= FeatureKind::kFacet && static_cast<std::uint32_t>(side.feature) <
                                                  body.features[static_cast<std::size_t>(side.kind)];
 }
@@ -42,20 +41,20 @@ struct WalkStart {
                                      static_cast<int>(FeatureKind::kFacet);
 }
 // Have the bodies these features, and is one of them bounded?
-[[nodiscard]] inline bool can_be_walked(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] inline bool can_be_walked(const ConvexBody& a, const ConvexBody& b,
                                         const TrackingState& state) noexcept {
   return (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
 }
 
 // Moves the features of `state` as far as it gets. Unless it is undecided, `result` (of the
 // polyhedra, without radii) and the points of `state` are those of the features it ends at.
-[[nodiscard]] WalkEnd walk_features(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] WalkEnd walk_features(const ConvexBody& a, const ConvexBody& b,
                                     const RelativePose& a_from_b, TrackingState& state,
                                     DistanceResult& result) noexcept;
 
 // For bodies that penetrated each other in the last query. True: their depth is certified, or that
 // they do not any more. False: nothing is, and `state` and `result` are as they were.
-[[nodiscard]] bool walk_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] bool walk_penetration(const ConvexBody& a, const ConvexBody& b,
                                     const RelativePose& a_from_b, TrackingState& state,
                                     DistanceResult& result) noexcept;
 

@@ -256,7 +256,7 @@ using Side = TrackingState::Side;
 
 // The pair, and what the transition that ends at kClosest finds.
 struct TrackedPair {
-  HWY_INLINE TrackedPair(const ConvexPolyhedron& body_a, const ConvexPolyhedron& body_b,
+  HWY_INLINE TrackedPair(const ConvexBody& body_a, const ConvexBody& body_b,
                          const RelativePose4& pose, TrackingState& state, WalkStart at = {})
       : a(body_a),
         b(body_b),
@@ -266,8 +266,8 @@ struct TrackedPair {
         transitions(at.transitions),
         parallel_transitions(at.parallel_transitions) {}
 
-  const ConvexPolyhedron& a;
-  const ConvexPolyhedron& b;
+  const ConvexBody& a;
+  const ConvexBody& b;
   const RelativePose4& a_from_b;
   Side& on_a;
   Side& on_b;
@@ -319,10 +319,8 @@ struct Owner : BodyFrame<kIsB, RelativePose4> {
   HWY_INLINE explicit Owner(TrackedPair& of)
       : BodyFrame<kIsB, RelativePose4>{of.a_from_b}, pair(of) {}
 
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& body() const { return kIsB ? pair.b : pair.a; }
-  [[nodiscard]] HWY_INLINE const ConvexPolyhedron& other_body() const {
-    return kIsB ? pair.a : pair.b;
-  }
+  [[nodiscard]] HWY_INLINE const ConvexBody& body() const { return kIsB ? pair.b : pair.a; }
+  [[nodiscard]] HWY_INLINE const ConvexBody& other_body() const { return kIsB ? pair.a : pair.b; }
   [[nodiscard]] HWY_INLINE Side& side() const { return kIsB ? pair.on_b : pair.on_a; }
   [[nodiscard]] HWY_INLINE Side& other_side() const { return kIsB ? pair.on_a : pair.on_b; }
 

@@ -48,7 +48,7 @@ inline std::int32_t common_facet(const Edge& first, const Edge& second) {
 
 // From a vertex no edge of which approaches beyond rounding to what is orthogonal to g there: an
 // edge, the facet of two such edges, or the vertex itself.
-inline HWY_NOINLINE void to_parallel(const ConvexPolyhedron& body, Side& side, const Vec3& g,
+inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const Vec3& g,
                                      double limit) {
   const Vertex& vertex = body.vertices[side.feature];
   std::int32_t orthogonal = kNone;
@@ -76,7 +76,7 @@ struct Span {
   std::int32_t beyond = kNone;
 };
 
-inline HWY_NOINLINE Span within(const ConvexPolyhedron& body, std::int32_t index, const Vec3& start,
+inline HWY_NOINLINE Span within(const ConvexBody& body, std::int32_t index, const Vec3& start,
                                 const Vec3& direction, Span span) {
   const Facet& facet = body.facets[index];
   for (std::int32_t i = 0; i < facet.limits && !span.empty(); ++i) {
@@ -194,7 +194,7 @@ inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t beyond_a, st
 // To the vertex of the owner's facet that is the support point along g, in the owner's frame.
 template <bool kIsB>
 inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
-  const ConvexPolyhedron& body = owner.body();
+  const ConvexBody& body = owner.body();
   const Facet& facet = body.facets[owner.side().feature];
   double farthest = -kInfinity;
   std::int32_t support = kNone;

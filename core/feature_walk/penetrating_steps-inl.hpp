@@ -30,7 +30,7 @@ namespace clearance::HWY_NAMESPACE {
 inline constexpr double kAmple = 1e-9;
 
 // How far within its facet a point of its plane lies; negative: outside.
-HWY_INLINE double room_on_facet(const ConvexPolyhedron& body, const Facet& facet, Vec4 point) {
+HWY_INLINE double room_on_facet(const ConvexBody& body, const Facet& facet, Vec4 point) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;
   const Vec4 at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};

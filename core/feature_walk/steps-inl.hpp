@@ -29,8 +29,7 @@ enum class Tracking { kFirst, kFurther };
 inline constexpr int kMostTransitions = 24;
 
 // From a vertex along its steepest edge: onto the edge, or past it to its far end.
-inline Transition leave_vertex(const ConvexPolyhedron& body, Side& side,
-                               const SteepestEdge& steepest) {
+inline Transition leave_vertex(const ConvexBody& body, Side& side, const SteepestEdge& steepest) {
   const EdgeUse& use = body.vertex_edges[steepest.at];
   const Edge& edge = body.edges[use.edge];
   if (steepest.derivative >= edge.end && edge.vertex[1 - use.side] != kNone) {
@@ -41,9 +40,9 @@ inline Transition leave_vertex(const ConvexPolyhedron& body, Side& side,
 
 // From the vertex whose edge approaches faster. False: none approaches beyond rounding, and both
 // sides come to what is parallel.
-inline HWY_NOINLINE bool leave_either(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                      const Vertex& of_a, const Vertex& of_b, Side& on_a,
-                                      Side& on_b, Vec4 g, Vec4 back, double limit) {
+inline HWY_NOINLINE bool leave_either(const ConvexBody& a, const ConvexBody& b, const Vertex& of_a,
+                                      const Vertex& of_b, Side& on_a, Side& on_b, Vec4 g, Vec4 back,
+                                      double limit) {
   const SteepestEdge from_a = steepest(a, of_a, g), from_b = steepest(b, of_b, back);
   if (from_a.derivative > -limit && from_a.derivative >= from_b.derivative) {
     return leave_vertex(a, on_a, from_a) == Transition::kMoved;
@@ -218,7 +217,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
 
 // A vertex that is far out along `direction`; a body without vertices is one facet, or none for a
 // walk.
-HWY_INLINE void start(const ConvexPolyhedron& body, Vec4 direction, Side& side) {
+HWY_INLINE void start(const ConvexBody& body, Vec4 direction, Side& side) {
   if (body.vertices.empty()) {
     to_facet(side, 0);
   } else {

@@ -36,7 +36,7 @@ struct Turned {
 };
 
 // The best box with a side across `normal`.
-Turned best_across(const ConvexPolyhedron& body, const Vec3& normal) {
+Turned best_across(const ConvexBody& body, const Vec3& normal) {
   const Eigen::Quaterniond flat = turn_to(normal);
   const std::vector<Vec3> points = vertices_in(body, flat);
   const Extent all = extent_of(points);
@@ -64,7 +64,7 @@ Turned best_across(const ConvexPolyhedron& body, const Vec3& normal) {
   return best;
 }
 
-Eigen::Quaterniond best_turn(const ConvexPolyhedron& body) {
+Eigen::Quaterniond best_turn(const ConvexBody& body) {
   Turned best;
   const auto look = [&](const Vec3& normal) {
     const Turned turned = best_across(body, normal);
@@ -87,14 +87,14 @@ Pose placed_at(const Eigen::Quaterniond& turn, const Vec3& middle) {
 
 }  // namespace
 
-EnclosingModel enclosing_box(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_box(const ConvexBody& body) {
   const Eigen::Quaterniond turn = best_turn(body);
   const Extent e = extent_of(vertices_in(body, turn));
   const Vec3 slack = Vec3::Constant(4.0 * kFittingSlack * size_of(body));
   return fitted(ModelKind::kBox, box(e.half() + slack), placed_at(turn, e.middle()), body);
 }
 
-EnclosingModel enclosing_rounded_box(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_rounded_box(const ConvexBody& body) {
   const Eigen::Quaterniond turn = best_turn(body);
   const std::vector<Vec3> points = vertices_in(body, turn);
   const Extent e = extent_of(points);
@@ -109,8 +109,8 @@ EnclosingModel enclosing_rounded_box(const ConvexPolyhedron& body) {
       radius = std::max(radius, past.norm());
     }
     EnclosingModel model =
-        fitted(ModelKind::kRoundedBox,
-               rounded_by(radius + slack, std::get<ConvexPolyhedron>(box(core))), at, body);
+        fitted(ModelKind::kRoundedBox, rounded_by(radius + slack, std::get<ConvexBody>(box(core))),
+               at, body);
     if (model.error < best.error) best = std::move(model);
   }
   return best;

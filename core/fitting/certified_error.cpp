@@ -120,7 +120,7 @@ double beyond_core(const EnclosingModel& model, BeyondBody& beyond) {
 
 }  // namespace
 
-double certified_error(const EnclosingModel& model, const ConvexPolyhedron& body) {
+double certified_error(const EnclosingModel& model, const ConvexBody& body) {
   BeyondBody beyond(body);
   const double slack = kFittingSlack * (size_of(body) + model.shape.bounding_radius);
   return std::max(0.0, beyond_core(model, beyond) + model.shape.radius) + slack;

@@ -50,7 +50,7 @@ std::vector<double> weights_of(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-EnclosingModel enclosing_ellipsoid(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_ellipsoid(const ConvexBody& body) {
   // In units of the principal axes' spread, so that thin bodies are as well conditioned as others.
   const Eigen::Quaterniond turn = [&] {
     Mat3 axes = principal_axes(body);

@@ -34,14 +34,14 @@ const char* name(ModelKind kind) noexcept {
   return "polyhedron";
 }
 
-EnclosingModel enclosing_facets(const ConvexPolyhedron& body, std::size_t facets) {
+EnclosingModel enclosing_facets(const ConvexBody& body, std::size_t facets) {
   const PlacedShape placed[] = {{&body, Pose{}}};
   auto made = enclosing_polyhedron(placed, {.facets = facets, .tolerance = kLeftAlone});
   if (!made) throw std::logic_error("a body to be enclosed is bounded");
   return fitted(ModelKind::kPolyhedron, std::move(*made), Pose{}, body);
 }
 
-std::vector<EnclosingModel> enclosing_models(const ConvexPolyhedron& body) {
+std::vector<EnclosingModel> enclosing_models(const ConvexBody& body) {
   std::vector<EnclosingModel> models;
   models.push_back(enclosing_sphere(body));
   models.push_back(enclosing_capsule(body));

@@ -19,14 +19,13 @@ constexpr int kWays = 16;
 
 }  // namespace
 
-double size_of(const ConvexPolyhedron& body) {
+double size_of(const ConvexBody& body) {
   double size = 0.0;
   for (const Vec3& p : body.anchors) size = std::max(size, p.cwiseAbs().maxCoeff());
   return size;
 }
 
-std::vector<Vec3> vertices_in(const ConvexPolyhedron& body,
-                              const Eigen::Quaterniond& body_from_frame) {
+std::vector<Vec3> vertices_in(const ConvexBody& body, const Eigen::Quaterniond& body_from_frame) {
   const Mat3 to_frame = rotation_matrix(body_from_frame).transpose();
   std::vector<Vec3> placed;
   placed.reserve(body.anchors.size());
@@ -38,7 +37,7 @@ Eigen::Quaterniond turn_to(const Vec3& axis) {
   return Eigen::Quaterniond::FromTwoVectors(Vec3(Vec3::UnitZ()), axis).normalized();
 }
 
-Mat3 principal_axes(const ConvexPolyhedron& body) {
+Mat3 principal_axes(const ConvexBody& body) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : body.anchors) mean += p;
   mean /= static_cast<double>(body.anchors.size());
@@ -83,15 +82,15 @@ Vec3 best_direction(std::span<const Vec3> starts, const std::function<double(con
 }
 
 EnclosingModel fitted(ModelKind kind, ShapeResult shape, const Pose& frame_from_shape,
-                      const ConvexPolyhedron& body) {
+                      const ConvexBody& body) {
   if (const auto* error = std::get_if<ShapeError>(&shape)) throw std::logic_error(error->reason);
-  EnclosingModel model{kind, std::get<ConvexPolyhedron>(std::move(shape)), frame_from_shape};
+  EnclosingModel model{kind, std::get<ConvexBody>(std::move(shape)), frame_from_shape};
   model.error = certified_error(model, body);
   return model;
 }
 
-BeyondBody::BeyondBody(const ConvexPolyhedron& body)
-    : body_(body), point_(std::get<ConvexPolyhedron>(point(Vec3::Zero(), 0.0))) {}
+BeyondBody::BeyondBody(const ConvexBody& body)
+    : body_(body), point_(std::get<ConvexBody>(point(Vec3::Zero(), 0.0))) {}
 
 double BeyondBody::operator()(const Vec3& p) {
   RelativePose body_from_point;

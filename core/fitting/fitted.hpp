@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/enclosing_models.hpp"
 #include "core/shapes.hpp"
@@ -17,17 +17,17 @@ namespace clearance {
 inline constexpr double kFittingSlack = 1e-12;
 
 // The greatest coordinate of any vertex, m.
-[[nodiscard]] double size_of(const ConvexPolyhedron& body);
+[[nodiscard]] double size_of(const ConvexBody& body);
 
 // The vertices as seen from a frame at the body's origin.
-[[nodiscard]] std::vector<Vec3> vertices_in(const ConvexPolyhedron& body,
+[[nodiscard]] std::vector<Vec3> vertices_in(const ConvexBody& body,
                                             const Eigen::Quaterniond& body_from_frame);
 
 // The turn that leads z along `axis` (unit).
 [[nodiscard]] Eigen::Quaterniond turn_to(const Vec3& axis);
 
 // Of the vertices, as columns; the longest last.
-[[nodiscard]] Mat3 principal_axes(const ConvexPolyhedron& body);
+[[nodiscard]] Mat3 principal_axes(const ConvexBody& body);
 
 // The direction with the least cost that a search finds from each of `starts`: steps of a tenth of
 // a turn, then ever smaller ones.
@@ -36,18 +36,18 @@ inline constexpr double kFittingSlack = 1e-12;
 
 // Puts the model together; its error is certified here.
 [[nodiscard]] EnclosingModel fitted(ModelKind kind, ShapeResult shape, const Pose& frame_from_shape,
-                                    const ConvexPolyhedron& body);
+                                    const ConvexBody& body);
 
 // Signed distances of points from the body, from above, tracked.
 class BeyondBody {
  public:
-  explicit BeyondBody(const ConvexPolyhedron& body);
+  explicit BeyondBody(const ConvexBody& body);
   // Not below the distance of `p` from the body, or less the depth within it, m.
   [[nodiscard]] double operator()(const Vec3& p);
 
  private:
-  const ConvexPolyhedron& body_;
-  ConvexPolyhedron point_;
+  const ConvexBody& body_;
+  ConvexBody point_;
   TrackingState state_;
 };
 

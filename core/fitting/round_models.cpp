@@ -21,7 +21,7 @@ struct Along {
   double low = kInfinity, high = -kInfinity;  // m, along the axis
 };
 
-Along seen_along(const ConvexPolyhedron& body, const Vec3& axis) {
+Along seen_along(const ConvexBody& body, const Vec3& axis) {
   Along seen;
   seen.turn = turn_to(axis);
   seen.points = vertices_in(body, seen.turn);
@@ -61,14 +61,14 @@ double capsule_volume(double radius, double length) {
   return std::numbers::pi * radius * radius * (length + 4.0 / 3.0 * radius);
 }
 
-std::vector<Vec3> starts_of(const ConvexPolyhedron& body) {
+std::vector<Vec3> starts_of(const ConvexBody& body) {
   const Mat3 axes = principal_axes(body);
   return {Vec3(axes.col(2)), Vec3(axes.col(1)), Vec3(axes.col(0))};
 }
 
 }  // namespace
 
-EnclosingModel enclosing_sphere(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_sphere(const ConvexBody& body) {
   Vec3 centre = body.anchors[0];
   for (int k = 1; k <= kCentreSteps; ++k) {
     const auto farthest = std::max_element(
@@ -85,7 +85,7 @@ EnclosingModel enclosing_sphere(const ConvexPolyhedron& body) {
                 point(Vec3::Zero(), radius + kFittingSlack * (radius + size_of(body))), at, body);
 }
 
-EnclosingModel enclosing_capsule(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_capsule(const ConvexBody& body) {
   const Vec3 axis = best_direction(starts_of(body), [&](const Vec3& tried) {
     const Along seen = seen_along(body, tried);
     const Ends ends = capsule_ends(seen, seen.circle.radius);
@@ -113,7 +113,7 @@ EnclosingModel enclosing_capsule(const ConvexPolyhedron& body) {
   return fitted(ModelKind::kCapsule, segment({0, 0, -half}, {0, 0, half}, radius), at, body);
 }
 
-EnclosingModel enclosing_cylinder(const ConvexPolyhedron& body) {
+EnclosingModel enclosing_cylinder(const ConvexBody& body) {
   const Vec3 axis = best_direction(starts_of(body), [&](const Vec3& tried) {
     const Along seen = seen_along(body, tried);
     return seen.circle.radius * seen.circle.radius * (seen.high - seen.low);

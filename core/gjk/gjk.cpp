@@ -43,7 +43,7 @@ class WideMinkowskiDifference {
 
  private:
   // Unbounded bodies are cut off far beyond the closest points.
-  static Vec3 cut_off_support(const ConvexPolyhedron& body, const Vec3& m, double reach) noexcept {
+  static Vec3 cut_off_support(const ConvexBody& body, const Vec3& m, double reach) noexcept {
     Vec3 point = body.anchors[support(body, m).anchor];
     const Ray* steepest = nullptr;
     double slope = 0.0;

@@ -26,7 +26,7 @@ HWY_INLINE Vec4 derivatives(const double* row, std::int32_t n, std::int32_t i, c
 }
 
 // Is the directional derivative along g of every edge of a vertex below `limit`, per unit length?
-HWY_INLINE bool all_edges_recede(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g,
+HWY_INLINE bool all_edges_recede(const ConvexBody& body, const Vertex& vertex, Vec4 g,
                                  double limit) {
   const double* row = body.outgoing.row(vertex.first_edge);
   const std::int32_t n = vertex.edges;
@@ -43,7 +43,7 @@ HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
   return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
 }
 
-inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex,
+inline HWY_NOINLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& vertex,
                                           const Vec3& g) {
   const std::int32_t n = vertex.edges;
   if (HWY_UNLIKELY(n > 4)) return steepest_edge(body, vertex, g);
@@ -59,7 +59,7 @@ inline HWY_NOINLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Ve
   if (n > 3) take(lane(along_g, 3), 3);
   return best;
 }
-HWY_INLINE SteepestEdge steepest(const ConvexPolyhedron& body, const Vertex& vertex, Vec4 g) {
+HWY_INLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& vertex, Vec4 g) {
   return steepest(body, vertex, vec3(g));
 }
 
@@ -78,7 +78,7 @@ HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
 
 // What limits the facet's polygon, as an edge, beyond which the tip lies farthest; kNone: it lies
 // within.
-HWY_INLINE std::int32_t side_beyond(const ConvexPolyhedron& body, const Facet& facet, Vec4 tip) {
+HWY_INLINE std::int32_t side_beyond(const ConvexBody& body, const Facet& facet, Vec4 tip) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;
   const Vec4 at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};

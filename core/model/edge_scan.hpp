@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -14,7 +14,7 @@ struct SteepestEdge {
 
 // The first of equals; g: in the body's frame. Sums in the order of vector registers' and a batch's
 // lanes.
-[[nodiscard]] inline SteepestEdge steepest_edge(const ConvexPolyhedron& body, const Vertex& vertex,
+[[nodiscard]] inline SteepestEdge steepest_edge(const ConvexBody& body, const Vertex& vertex,
                                                 const Vec3& g) noexcept {
   SteepestEdge best;
   for (std::int32_t i = 0; i < vertex.edges; ++i) {

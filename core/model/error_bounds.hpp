@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/pose.hpp"
 
@@ -42,7 +42,7 @@ struct PlacePrecision {
 // fixed: the wrong rotation then turns A about B's origin, from where A reaches no farther than
 // reach_a + apart, and what it is short of a rotation stretches the distance. Both are bounds, so
 // the smaller one counts.
-[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   Precision p;
   const double apart = b_in_a.apart;
@@ -68,7 +68,7 @@ struct PlacePrecision {
   return p;
 }
 
-[[nodiscard]] inline Precision precision(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const RelativePose& a_from_b, double farthest) noexcept {
   return precision(
       a, b, {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation.norm()},

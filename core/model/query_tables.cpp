@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
 
 namespace clearance {
 namespace {
 
-void add_outgoing(ConvexPolyhedron& body) {
+void add_outgoing(ConvexBody& body) {
   body.outgoing.resize(body.vertex_edges.size());
   for (const Vertex& vertex : body.vertices) {
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
@@ -21,7 +21,7 @@ void add_outgoing(ConvexPolyhedron& body) {
 }
 
 // What lies on the far ends of vertices' edges, and on the far sides of facets'.
-void add_neighbours(ConvexPolyhedron& body) {
+void add_neighbours(ConvexBody& body) {
   body.neighbours.clear();
   body.facets_beside.clear();
   for (const EdgeUse& use : body.vertex_edges) {
@@ -34,7 +34,7 @@ void add_neighbours(ConvexPolyhedron& body) {
 
 // How far every facet is from the middle, less what can be off: a normal is by 2 roundings, their
 // product by 3, the difference by 1, and whoever adds the radius to a product of their own adds 2.
-double inner_radius(const ConvexPolyhedron& body) {
+double inner_radius(const ConvexBody& body) {
   constexpr double kRoundings = 16 * kUlp;
   if (!body.bounded() || body.facets.empty()) return 0.0;
   double nearest = kInfinity;
@@ -45,7 +45,7 @@ double inner_radius(const ConvexPolyhedron& body) {
 }
 
 // Of each facet its sides, and across the ends of those that meet the next one at a sharp corner.
-void add_facet_limits(ConvexPolyhedron& body) {
+void add_facet_limits(ConvexBody& body) {
   body.facet_limits.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
     for (std::int32_t i = 0; i < facet.limits; ++i) {
@@ -63,7 +63,7 @@ void add_facet_limits(ConvexPolyhedron& body) {
 }
 
 // Normals and offsets by component, as the facet scans of core/penetration read them.
-void add_planes(ConvexPolyhedron& body) {
+void add_planes(ConvexBody& body) {
   const auto count = static_cast<std::int32_t>(body.facets.size());
   body.planes.resize(body.facets.size());
   for (std::int32_t i = 0; i < count; ++i) {
@@ -76,7 +76,7 @@ void add_planes(ConvexPolyhedron& body) {
 
 // Rays and an orthonormal basis of the lineality space (Gram and Schmidt). A line that has more
 // than half of it across those before it is a new direction; what rounding leaves of others is not.
-void sort_rays(const ConvexPolyhedron& body, RecessionCone& out) {
+void sort_rays(const ConvexBody& body, RecessionCone& out) {
   for (const Ray& ray : body.rays) {
     if (!ray.is_line) {
       out.rays.push_back(ray.exact ? Vec3(ray.direction.normalized()) : ray.direction);
@@ -104,7 +104,7 @@ double least_part(const RecessionCone& of, const Vec3& against_normals) {
 }
 
 // Against the sum of all normals, if it leads away from each by more than rounding.
-Vec3 inwards(const ConvexPolyhedron& body, const Vec3& against_normals) {
+Vec3 inwards(const ConvexBody& body, const Vec3& against_normals) {
   constexpr double kAway = 0x1p-20;
   const Vec3 way = against_normals.stableNormalized();
   const bool away = std::all_of(body.facets.begin(), body.facets.end(),
@@ -112,7 +112,7 @@ Vec3 inwards(const ConvexPolyhedron& body, const Vec3& against_normals) {
   return away ? way : Vec3(Vec3::Zero());
 }
 
-void add_recession_cone(ConvexPolyhedron& body) {
+void add_recession_cone(ConvexBody& body) {
   body.recession_cone = {};
   if (body.bounded()) return;
   sort_rays(body, body.recession_cone);
@@ -123,7 +123,7 @@ void add_recession_cone(ConvexPolyhedron& body) {
 }
 
 // What grew while the body was made keeps no room to grow in.
-void release_spare_room(ConvexPolyhedron& body) {
+void release_spare_room(ConvexBody& body) {
   const auto release = [](auto&... tables) { (tables.shrink_to_fit(), ...); };
   release(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges, body.anchors,
           body.neighbours, body.facets_beside);
@@ -136,7 +136,7 @@ std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
 
 }  // namespace
 
-void add_query_tables(ConvexPolyhedron& body) {
+void add_query_tables(ConvexBody& body) {
   const double reach = body.bounded() ? body.bounding_radius : 0.0;
   body.error_bound_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
   body.error_bound_as_b = kUlp * kUlpsOnB * reach + body.position_error;
@@ -155,7 +155,7 @@ void add_query_tables(ConvexPolyhedron& body) {
   }
 }
 
-std::size_t footprint(const ConvexPolyhedron& body) noexcept {
+std::size_t footprint(const ConvexBody& body) noexcept {
   return sizeof body +
          bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
                   body.anchors, body.rays, body.recession_cone.rays, body.neighbours,

@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-[[nodiscard]] inline double radii(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+[[nodiscard]] inline double radii(const ConvexBody& a, const ConvexBody& b) noexcept {
   return a.radius + b.radius;
 }
 
@@ -21,8 +21,8 @@ namespace clearance {
 // Will bounds of the polyhedra's distance, `gap` from each other, be as near as a converged
 // answer's when the radii are taken off? Each is widened by what that may round, and then rounded,
 // by as much at most. `size`: Precision::size.
-[[nodiscard]] inline bool is_as_promised(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                         double size, double distance, double gap) noexcept {
+[[nodiscard]] inline bool is_as_promised(const ConvexBody& a, const ConvexBody& b, double size,
+                                         double distance, double gap) noexcept {
   const double sum = radii(a, b);
   return gap + 4.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
 }
@@ -30,13 +30,12 @@ namespace clearance {
 // B's witness point of a result with radii, from the polyhedron's (TrackingState); both and the
 // result's normal in the same frame.
 [[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_polyhedron, const Vec3& normal,
-                                       const ConvexPolyhedron& b) noexcept {
+                                       const ConvexBody& b) noexcept {
   return on_polyhedron - b.radius * normal;
 }
 
 // Witness points move from the polyhedra's surfaces to the rounded bodies'.
-inline void add_radii(DistanceResult& r, const ConvexPolyhedron& a,
-                      const ConvexPolyhedron& b) noexcept {
+inline void add_radii(DistanceResult& r, const ConvexBody& a, const ConvexBody& b) noexcept {
   const double sum = radii(a, b);
   if (sum == 0.0 || r.upper == -kInfinity) return;  // what no translation parts stays so
   const double rounding = rounding_of_radii(sum, r.upper);

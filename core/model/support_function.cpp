@@ -22,7 +22,7 @@ struct Climber {
 // Along the steepest edge, where its derivative is positive beyond rounding, so that it ends. By
 // derivatives, as ends a rounding apart are equally high. True: it has moved. Neither that nor
 // which edge it is could a branch foresee.
-bool climb(const ConvexPolyhedron& body, Climber& climber) noexcept {
+bool climb(const ConvexBody& body, Climber& climber) noexcept {
   const Vertex& vertex = body.vertices[climber.at];
   const double* row = body.outgoing.row(vertex.first_edge);
   const std::int32_t n = vertex.edges;
@@ -43,7 +43,7 @@ bool climb(const ConvexPolyhedron& body, Climber& climber) noexcept {
 }
 
 // Some of them at a time: one waits for memory while the others go on.
-void climb_together(const ConvexPolyhedron& body, Climber* climbers, std::size_t count) noexcept {
+void climb_together(const ConvexBody& body, Climber* climbers, std::size_t count) noexcept {
   std::array<std::uint8_t, kLookedUpTogether> climbing;
   for (std::size_t i = 0; i < count; ++i) climbing[i] = static_cast<std::uint8_t>(i);
   while (count > 0) {
@@ -116,7 +116,7 @@ double cone_derivative(const RecessionCone& cone, const Vec3& m,
 
 // The same from the facets: no direction of the cone has a positive derivative along their normals,
 // nor along m one above the tilt of m against a normal.
-double derivative_by_facets(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+double derivative_by_facets(const ConvexBody& body, const Vec3& m) noexcept {
   double tilt2 = kInfinity;
   for (const Facet& facet : body.facets) {
     tilt2 = std::min(tilt2, (m - facet.normal).squaredNorm());
@@ -126,7 +126,7 @@ double derivative_by_facets(const ConvexPolyhedron& body, const Vec3& m) noexcep
 
 }  // namespace
 
-Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+Support support_by_scan(const ConvexBody& body, const Vec3& m) noexcept {
   Support best{m.dot(body.anchors[0]), 0};
   for (std::size_t i = 1; i < body.anchors.size(); ++i) {
     const double value = m.dot(body.anchors[i]);
@@ -135,7 +135,7 @@ Support support_by_scan(const ConvexPolyhedron& body, const Vec3& m) noexcept {
   return best;
 }
 
-Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
+Support support(const ConvexBody& body, const Vec3& m) noexcept {
   if (!body.bounded() || body.anchors.size() <= kScan) return support_by_scan(body, m);
   Climber climber{m, body.start.at(m)};
   while (climb(body, climber)) continue;
@@ -160,7 +160,7 @@ Support support(const ConvexPolyhedron& body, const Vec3& m) noexcept {
 
 // A point is an anchor plus a sum of rays; what of it lies along lines, and what across, is no
 // longer than the sum.
-double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double within) noexcept {
+double reach_along_rays(const ConvexBody& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const RecessionCone& cone = body.recession_cone;
   double rate = cone_derivative(cone, m, derivative_by_rays);
@@ -171,7 +171,7 @@ double reach_along_rays(const ConvexPolyhedron& body, const Vec3& m, double with
   return rate * (within + body.bounding_radius);
 }
 
-void look_up_farthest(const ConvexPolyhedron& body, const ConvexPolyhedron& other, const Mat3& turn,
+void look_up_farthest(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
                       std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept {
   std::array<Climber, kLookedUpTogether> climbers;
   for (std::size_t k = 0; k < facets.size(); ++k) {

@@ -23,7 +23,7 @@ void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
 
 // Of an arc that ends at two listed facets, the first sees to it.
 void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
-  const ConvexPolyhedron& x = body_.x();
+  const ConvexBody& x = body_.x();
   const Facet& here = x.facets[facet];
   const Vec3 vertex = deepest_vertex_below(facet, of_y);
   for (std::int32_t k = here.first_side; k < here.first_side + here.sides; ++k) {

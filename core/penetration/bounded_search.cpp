@@ -10,7 +10,7 @@ namespace {
 
 // To hold points against all facets takes as long as to look up a few, and one more in so many.
 constexpr std::size_t kFew = 16, kFacetsALookUp = 32;
-std::size_t few_of(const ConvexPolyhedron& body) noexcept {
+std::size_t few_of(const ConvexBody& body) noexcept {
   return kFew + body.facets.size() / kFacetsALookUp;
 }
 
@@ -108,7 +108,7 @@ bool NormalSearch::is_settled(const Facing& facing, std::int32_t facet,
 
 // In Y's frame.
 void NormalSearch::facets_of_y_bounded() noexcept {
-  const ConvexPolyhedron& x = body_.x();
+  const ConvexBody& x = body_.x();
   if (!DeepestVertices::fit(x.anchors)) return facets_of_y_by_points();
   const Facing facing = y_facing_x();
   take_least(facing, DeepestVertices(body_.y(), x.anchors, facing.body_from_other));
@@ -118,7 +118,7 @@ void NormalSearch::facets_of_y_bounded() noexcept {
 // middle those on the far side.
 void NormalSearch::facets_of_y_by_points() noexcept {
   const Facing facing = y_facing_x();
-  const ConvexPolyhedron& x = body_.x();
+  const ConvexBody& x = body_.x();
   DeepestPoints of_x(body_.y());
   of_x.add_sphere(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
   if (best_.source != Source::kNothing) {
@@ -131,7 +131,7 @@ void NormalSearch::facets_of_y_by_points() noexcept {
 // Those that the main point does not settle are few, mostly.
 void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
   lower_to(best_.height);
-  const ConvexPolyhedron& x = body_.x();
+  const ConvexBody& x = body_.x();
   for (const std::int32_t i : of_y.mark(best_.height, of_y.number(of_y.where_least()))) {
     const Facet& facet = x.facets[i];
     for (std::int32_t k = facet.first_side; k < facet.first_side + facet.sides; ++k) {

@@ -32,7 +32,7 @@ Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& b
 
 // At no distance, for heights: vertices are anchors, and of an unbounded body, too, no more than
 // those counts there.
-Precision precision_of_vertices(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+Precision precision_of_vertices(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose& a_from_b) noexcept {
   Precision p = precision(a, b, a_from_b, 0.0);
   const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;

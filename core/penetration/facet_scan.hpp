@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -26,7 +26,7 @@ class DeepestVertices {
 
   // `placed` gives the vertices in the body's frame. Not more than fit.
   template <class Placed>
-  DeepestVertices(const ConvexPolyhedron& body, const std::vector<Vec3>& vertices,
+  DeepestVertices(const ConvexBody& body, const std::vector<Vec3>& vertices,
                   const Placed& placed) noexcept
       : body_(body), count_(vertices.size()) {
     for (std::size_t k = 0; k < count_; ++k) points_[k] = placed(vertices[k]);
@@ -64,7 +64,7 @@ class DeepestVertices {
   // Vectors of up to four run over the end.
   static constexpr std::size_t kRow = kMostFacets + 4;
 
-  const ConvexPolyhedron& body_;
+  const ConvexBody& body_;
   std::array<double, kRow> depths_, whose_;  // [facet]
   std::array<std::uint64_t, kRow> marks_;    // [facet]: a bit a vertex
   std::array<std::int32_t, kRow> list_;
@@ -98,11 +98,11 @@ class DeepestPoints {
     }
   };
 
-  explicit DeepestPoints(const ConvexPolyhedron& body) noexcept : body_(body) {
+  explicit DeepestPoints(const ConvexBody& body) noexcept : body_(body) {
     std::fill_n(vertices_.begin(), body.facets.size(), kNoVertex);
   }
 
-  [[nodiscard]] static bool fits(const ConvexPolyhedron& body) noexcept {
+  [[nodiscard]] static bool fits(const ConvexBody& body) noexcept {
     return body.facets.size() <= kMostFacets;
   }
   [[nodiscard]] bool room_beside_sphere() const noexcept {
@@ -154,7 +154,7 @@ class DeepestPoints {
   // Vectors of up to four run over the end.
   static constexpr std::size_t kRow = kMostFacets + 4;
 
-  const ConvexPolyhedron& body_;
+  const ConvexBody& body_;
   std::array<Point, kMostPoints> points_;
   std::size_t count_ = 0, sphere_ = kMostPoints;
   std::array<std::uint16_t, kRow> list_;

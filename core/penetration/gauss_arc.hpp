@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 

@@ -5,7 +5,7 @@
 // n until the two only touch.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/model/support_function.hpp"
 #include "core/pose.hpp"
 
@@ -24,7 +24,7 @@ class MinkowskiDifference {
  public:
   // X is the body whose edges the search follows: the unbounded one, the one without facets (a
   // segment or a point), or else the one with fewer edges.
-  MinkowskiDifference(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+  MinkowskiDifference(const ConvexBody& a, const ConvexBody& b,
                       const RelativePose& a_from_b) noexcept
       : x_is_b_(prefers_second(a, b)),
         x_(x_is_b_ ? b : a),
@@ -34,8 +34,8 @@ class MinkowskiDifference {
                              : a_from_b.translation),
         a_from_b_(a_from_b) {}
 
-  [[nodiscard]] const ConvexPolyhedron& x() const noexcept { return x_; }
-  [[nodiscard]] const ConvexPolyhedron& y() const noexcept { return y_; }
+  [[nodiscard]] const ConvexBody& x() const noexcept { return x_; }
+  [[nodiscard]] const ConvexBody& y() const noexcept { return y_; }
   [[nodiscard]] bool x_is_b() const noexcept { return x_is_b_; }
 
   [[nodiscard]] Vec3 direction_from_y(const Vec3& v) const noexcept { return x_from_y_ * v; }
@@ -76,15 +76,15 @@ class MinkowskiDifference {
   }
 
  private:
-  static bool prefers_second(const ConvexPolyhedron& a, const ConvexPolyhedron& b) noexcept {
+  static bool prefers_second(const ConvexBody& a, const ConvexBody& b) noexcept {
     if (a.bounded() != b.bounded()) return a.bounded();
     if (a.facets.empty() != b.facets.empty()) return b.facets.empty();
     return b.edges.size() < a.edges.size();
   }
 
   bool x_is_b_;
-  const ConvexPolyhedron& x_;
-  const ConvexPolyhedron& y_;
+  const ConvexBody& x_;
+  const ConvexBody& y_;
   Mat3 x_from_y_;
   Vec3 origin_of_y_;
   const RelativePose& a_from_b_;

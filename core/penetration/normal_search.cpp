@@ -13,7 +13,7 @@ constexpr std::size_t kWaiting = 48;
 constexpr std::size_t kSamples = 1024;
 
 // Is the body unbounded along n: has one of its rays a directional derivative above `margin`?
-bool is_unbounded_along(const ConvexPolyhedron& body, const Vec3& n, double margin) noexcept {
+bool is_unbounded_along(const ConvexBody& body, const Vec3& n, double margin) noexcept {
   const auto is_above = [&](const Vec3& ray) { return n.dot(ray) > margin * ray.norm(); };
   return is_above(body.recession_cone.inwards) ||
          std::any_of(body.rays.begin(), body.rays.end(),
@@ -202,7 +202,7 @@ void NormalSearch::arcs() noexcept {
 }
 
 void NormalSearch::run() noexcept {
-  const auto fits = [](const ConvexPolyhedron& body) {
+  const auto fits = [](const ConvexBody& body) {
     return body.bounded() && !body.facets.empty() && DeepestPoints::fits(body);
   };
   if (fits(body_.x()) && fits(body_.y())) return run_bounded();

@@ -99,8 +99,8 @@ class NormalSearch {
   void run_bounded() noexcept;
   // One of the bodies, whose facets are looked at, and the other.
   struct Facing {
-    const ConvexPolyhedron& body;
-    const ConvexPolyhedron& other;
+    const ConvexBody& body;
+    const ConvexBody& other;
     Placement body_from_other;
     Source source;
     // The direction in the other's frame in which it is the deepest below a facet.

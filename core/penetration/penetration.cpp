@@ -48,17 +48,16 @@ Separator between_interiors(const ActiveFeature& a, const ActiveFeature& b) noex
   return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
 }
 
-Depth tracked_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                    const RelativePose& a_from_b, const TrackingState& state) noexcept {
+Depth tracked_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                    const TrackingState& state) noexcept {
   const ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   Separator guess;
   if (!direction_of(side_a, side_b, state, guess)) guess = between_interiors(side_a, side_b);
   return depth(side_a, side_b, a_from_b, &guess);
 }
 
-void conclude_penetrating(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                          const RelativePose& a_from_b, const Depth& found, TrackingState& state,
-                          DistanceResult& r) noexcept {
+void conclude_penetrating(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                          const Depth& found, TrackingState& state, DistanceResult& r) noexcept {
   r.status = DistanceStatus::kOverlapping;
   r.lower = -found.upper;
   r.upper = -found.lower;
@@ -70,9 +69,8 @@ void conclude_penetrating(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 }  // namespace
 
-bool track_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                       const RelativePose& a_from_b, TrackingState& state,
-                       DistanceResult& result) noexcept {
+bool track_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                       TrackingState& state, DistanceResult& result) noexcept {
   if (!state.a.penetrating) return false;
   state.a.penetrating = false;
   const Depth found = tracked_depth(a, b, a_from_b, state);
@@ -81,9 +79,8 @@ bool track_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return true;
 }
 
-void measure_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state,
-                         DistanceResult& result) noexcept {
+void measure_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                         TrackingState& state, DistanceResult& result) noexcept {
   const Depth found = tracked_depth(a, b, a_from_b, state);
   if (found.lower > 0.0) {
     conclude_penetrating(a, b, a_from_b, found, state, result);

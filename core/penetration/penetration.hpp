@@ -1,7 +1,7 @@
 // From the penetration depth of two bodies to a DistanceResult, tracked.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/pose.hpp"
 
@@ -10,15 +10,14 @@ namespace clearance {
 // For bodies that penetrated each other in the last query: answers this one, if they do still.
 // False: that is not certified; `result` is not touched, and the features of `state` are where a
 // search should begin.
-[[nodiscard]] bool track_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] bool track_penetration(const ConvexBody& a, const ConvexBody& b,
                                      const RelativePose& a_from_b, TrackingState& state,
                                      DistanceResult& result) noexcept;
 
 // For a result (of the polyhedra, without radii) whose lower bound is not positive: bounds it from
 // below, and where the polyhedra penetrate, finds the depth. `state` holds the last features, and
 // is moved on.
-void measure_penetration(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state,
-                         DistanceResult& result) noexcept;
+void measure_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                         TrackingState& state, DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -22,7 +22,7 @@ constexpr double kFarther = 0x1p-20;
 constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 
 // The closest points of A and of B as `moved`, from the features of the state on.
-std::uint16_t closest_when_moved(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+std::uint16_t closest_when_moved(const ConvexBody& a, const ConvexBody& b,
                                  const RelativePose& moved, TrackingState& state) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &moved);
   const double apart = moved.translation.norm();
@@ -47,9 +47,9 @@ constexpr double kPointTolerance = 0x1p-47;
 
 // From the features of the state, unless that brings the points farther beside each other than
 // `beside`; how far they are then.
-double bring_together(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                      const RelativePose& a_from_b, const RelativePose& moved, double beside,
-                      TrackingState& state, DistanceResult& r) noexcept {
+double bring_together(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                      const RelativePose& moved, double beside, TrackingState& state,
+                      DistanceResult& r) noexcept {
   const DistanceResult before = r;
   r.iterations += closest_when_moved(a, b, moved, state);
   const double after = take_points(a_from_b, state, r);
@@ -59,7 +59,7 @@ double bring_together(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 }
 
 // At the support vertices along the normal, of bodies that have any.
-TrackingState at_support_vertices(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+TrackingState at_support_vertices(const ConvexBody& a, const ConvexBody& b,
                                   const RelativePose& a_from_b, const Vec3& normal) noexcept {
   const std::int32_t of_a = support(a, normal).anchor;
   const std::int32_t of_b = support(b, -(a_from_b.rotation.transpose() * normal)).anchor;
@@ -69,9 +69,8 @@ TrackingState at_support_vertices(const ConvexPolyhedron& a, const ConvexPolyhed
 
 }  // namespace
 
-void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, const Depth& found, TrackingState& state,
-                     DistanceResult& r) noexcept {
+void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                     const Depth& found, TrackingState& state, DistanceResult& r) noexcept {
   const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation.norm();
   const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
   RelativePose moved = a_from_b;

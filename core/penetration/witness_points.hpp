@@ -1,7 +1,7 @@
 // The witness points of two bodies that penetrate each other.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "core/penetration/depth.hpp"
 #include "core/pose.hpp"
@@ -10,8 +10,7 @@ namespace clearance {
 
 // The points that meet when B has been moved clear of A by the depth `found`: to `result`, whose
 // distance and normal are known, in A's frame; and to `state`, which begins at the last features.
-void place_witnesses(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                     const RelativePose& a_from_b, const Depth& found, TrackingState& state,
-                     DistanceResult& result) noexcept;
+void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                     const Depth& found, TrackingState& state, DistanceResult& result) noexcept;
 
 }  // namespace clearance

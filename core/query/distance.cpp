@@ -21,8 +21,7 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
 
 // What by_walk() leaves to others has a relative pose and a pair of its own, so that those of
 // by_walk() can be kept in registers.
-inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
-                                                    const ConvexPolyhedron& b,
+inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexBody& a, const ConvexBody& b,
                                                     const Pose& world_from_a,
                                                     const Pose& world_from_b,
                                                     TrackingState& state) {
@@ -40,7 +39,7 @@ inline HWY_NOINLINE DistanceResult walk_penetrating(const ConvexPolyhedron& a,
 // which have no features. `start`: as of
 // by_walk().
 template <class... Start>
-HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+HWY_INLINE DistanceResult walk_from_others(const ConvexBody& a, const ConvexBody& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state, Start... start) {
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
@@ -54,8 +53,7 @@ HWY_INLINE DistanceResult walk_from_others(const ConvexPolyhedron& a, const Conv
 }
 
 // After a first transition that has ended so.
-inline HWY_NOINLINE DistanceResult walk_further(const ConvexPolyhedron& a,
-                                                const ConvexPolyhedron& b,
+inline HWY_NOINLINE DistanceResult walk_further(const ConvexBody& a, const ConvexBody& b,
                                                 const RelativePose4& a_from_b, TrackingState& state,
                                                 WalkStart at, Transition first) {
   TrackedPair pair(a, b, a_from_b, state, at);
@@ -65,13 +63,12 @@ inline HWY_NOINLINE DistanceResult walk_further(const ConvexPolyhedron& a,
   return by_search(a, b, pose_of(a_from_b), state, true);
 }
 
-DistanceResult tracked_from_others(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult tracked_from_others(const ConvexBody& a, const ConvexBody& b,
                                    const Pose& world_from_a, const Pose& world_from_b,
                                    TrackingState& state) {
   return walk_from_others(a, b, world_from_a, world_from_b, state);
 }
-inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexPolyhedron& a,
-                                                         const ConvexPolyhedron& b,
+inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexBody& a, const ConvexBody& b,
                                                          const Pose& world_from_a,
                                                          const Pose& world_from_b,
                                                          TrackingState& state, WalkStart start) {
@@ -83,7 +80,7 @@ inline HWY_NOINLINE DistanceResult continued_from_others(const ConvexPolyhedron&
 // begins at the beginning 1 ns. So does a query that begins at no feature if it comes by here:
 // distance() looks at the state first.
 template <class... Start>
-HWY_INLINE DistanceResult by_walk(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+HWY_INLINE DistanceResult by_walk(const ConvexBody& a, const ConvexBody& b,
                                   const Pose& world_from_a, const Pose& world_from_b,
                                   TrackingState& state, Start... start) {
   if (HWY_UNLIKELY(!is_straight(state) || !can_be_walked(a, b, state))) {
@@ -103,12 +100,11 @@ HWY_INLINE DistanceResult by_walk(const ConvexPolyhedron& a, const ConvexPolyhed
   return walk_further(a, b, a_from_b, state, {pair.transitions, pair.parallel_transitions}, first);
 }
 
-DistanceResult tracked_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                const Pose& world_from_a, const Pose& world_from_b,
-                                TrackingState& state) {
+DistanceResult tracked_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                                const Pose& world_from_b, TrackingState& state) {
   return by_walk(a, b, world_from_a, world_from_b, state);
 }
-DistanceResult continued_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+DistanceResult continued_distance(const ConvexBody& a, const ConvexBody& b,
                                   const Pose& world_from_a, const Pose& world_from_b,
                                   TrackingState& state, WalkStart start) {
   return by_walk(a, b, world_from_a, world_from_b, state, start);
@@ -133,7 +129,7 @@ HWY_EXPORT(continued_distance);
 namespace {
 
 // The spheres around the frames' origins already say that they are far apart; radii included.
-std::optional<DistanceResult> far_by_spheres(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+std::optional<DistanceResult> far_by_spheres(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b,
                                              double far_away) noexcept {
   if (!(far_away < kInfinity) || !a.bounded() || !b.bounded()) return {};
@@ -175,9 +171,8 @@ const char* name(DistanceStatus status) noexcept {
   return "";
 }
 
-DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state,
-                        const DistanceOptions& options) noexcept {
+DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        TrackingState& state, const DistanceOptions& options) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   if (const auto far = far_by_spheres(a, b, a_from_b, options.far_away)) return *far;
   if (a.is_curved() || b.is_curved()) return by_direction(a, b, a_from_b, state, options.depth);
@@ -193,9 +188,8 @@ DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
 
 #if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0
 
-DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const Pose& world_from_a, const Pose& world_from_b,
-                        TrackingState& state) noexcept {
+DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                        const Pose& world_from_b, TrackingState& state) noexcept {
   return is_straight(state)
              ? HWY_STATIC_DISPATCH(tracked_distance)(a, b, world_from_a, world_from_b, state)
              : HWY_STATIC_DISPATCH(tracked_from_others)(a, b, world_from_a, world_from_b, state);
@@ -208,7 +202,7 @@ namespace {
 // library, for which all arguments are put aside.
 std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
 
-HWY_NOINLINE DistanceResult first_distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state) noexcept {
   chosen_vectors.store(&hwy::GetChosenTarget(), std::memory_order_relaxed);
@@ -217,9 +211,8 @@ HWY_NOINLINE DistanceResult first_distance(const ConvexPolyhedron& a, const Conv
 
 }  // namespace
 
-DistanceResult distance(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const Pose& world_from_a, const Pose& world_from_b,
-                        TrackingState& state) noexcept {
+DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                        const Pose& world_from_b, TrackingState& state) noexcept {
   const hwy::ChosenTarget* const chosen = chosen_vectors.load(std::memory_order_relaxed);
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);

@@ -24,7 +24,7 @@ constexpr int kMostSplits = 400;
 
 // Upper bounds of the signed distance of a point from each body, m.
 std::vector<double> distances(const Vec3& position, std::span<const PlacedShape> bodies) {
-  const ConvexPolyhedron probe = std::get<ConvexPolyhedron>(point(position, 0.0));
+  const ConvexBody probe = std::get<ConvexBody>(point(position, 0.0));
   std::vector<double> result;
   for (const PlacedShape& body : bodies) {
     TrackingState state;
@@ -52,7 +52,7 @@ bool operator<(const Tetrahedron& left, const Tetrahedron& right) { return left.
 
 class Search {
  public:
-  Search(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies) : bodies_(bodies) {
+  Search(const ConvexBody& model, std::span<const PlacedShape> bodies) : bodies_(bodies) {
     for (const Vertex& vertex : model.vertices) add(vertex.position);
     const int centre = add(model.interior);
     for (const Facet& facet : model.facets) fan(model, facet, centre);
@@ -81,7 +81,7 @@ class Search {
   }
 
   // Triangles of the facet's polygon from its first vertex, with the centre.
-  void fan(const ConvexPolyhedron& model, const Facet& facet, int centre) {
+  void fan(const ConvexBody& model, const Facet& facet, int centre) {
     std::vector<int> ring;
     for (std::int32_t i = facet.first_side; i < facet.first_side + facet.sides; ++i) {
       const EdgeUse& use = model.facet_edges[static_cast<std::size_t>(i)];
@@ -128,7 +128,7 @@ class Search {
 };
 
 // What doubles may have moved: a midpoint of the model, or a body.
-double rounding(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies) {
+double rounding(const ConvexBody& model, std::span<const PlacedShape> bodies) {
   double size = model.bounding_radius;
   for (const PlacedShape& body : bodies) {
     size = std::max(size, body.frame_from_shape.position.norm() + body.shape->bounding_radius);
@@ -138,7 +138,7 @@ double rounding(const ConvexPolyhedron& model, std::span<const PlacedShape> bodi
 
 }  // namespace
 
-double excess(const ConvexPolyhedron& model, std::span<const PlacedShape> bodies) {
+double excess(const ConvexBody& model, std::span<const PlacedShape> bodies) {
   return (Search(model, bodies).run() + rounding(model, bodies)) * kRoundedUp;
 }
 

@@ -122,8 +122,8 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
 }
 
 // From the features of the state on, which it moves on; of the polyhedra, without radii.
-DistanceResult searched(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
+DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        TrackingState& state, bool depth) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   const double apart = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, apart);
@@ -158,29 +158,27 @@ DistanceResult of_bad_pose(TrackingState& state) noexcept {
   return r;
 }
 
-DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                         const RelativePose& a_from_b, TrackingState& state, bool depth) noexcept {
+DistanceResult by_search(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                         TrackingState& state, bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result = searched(a, b, a_from_b, state, depth);
   add_radii(result, a, b);
   return result;
 }
 
-DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                            const RelativePose& a_from_b, TrackingState& state,
-                            bool depth) noexcept {
+DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                            TrackingState& state, bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   return curved_distance(a, b, a_from_b, state, depth);
 }
 
-DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                            const Pose& world_from_a, const Pose& world_from_b,
-                            TrackingState& state) noexcept {
+DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                            const Pose& world_from_b, TrackingState& state) noexcept {
   return newton_distance(a, b, world_from_a, world_from_b, state, &by_direction);
 }
 
-DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                        const RelativePose& a_from_b, TrackingState& state) noexcept {
+DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        TrackingState& state) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
   if (track_penetration(a, b, a_from_b, state, result)) {

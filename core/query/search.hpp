@@ -16,21 +16,21 @@ namespace clearance {
 // distance() by the active-set iteration from the features of the state on, and where that
 // certifies too little by GJK; if `depth`, of bodies that penetrate each other by the penetration
 // depth as well.
-[[nodiscard]] DistanceResult by_search(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult by_search(const ConvexBody& a, const ConvexBody& b,
                                        const RelativePose& a_from_b, TrackingState& state,
                                        bool depth) noexcept;
 
 // distance() of a pair with a curved body.
-[[nodiscard]] DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b,
                                           const RelativePose& a_from_b, TrackingState& state,
                                           bool depth) noexcept;
 // The same by poses.
-[[nodiscard]] DistanceResult by_direction(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b,
                                           const Pose& world_from_a, const Pose& world_from_b,
                                           TrackingState& state) noexcept;
 
 // distance() of bodies that penetrated each other in the last query.
-[[nodiscard]] DistanceResult by_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose& a_from_b, TrackingState& state) noexcept;
 
 }  // namespace clearance

@@ -9,7 +9,7 @@
 namespace clearance {
 
 // A query of a pair whose walk has this behind it.
-using TrackedQuery = DistanceResult (*)(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+using TrackedQuery = DistanceResult (*)(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, WalkStart start);
 [[nodiscard]] TrackedQuery tracked_query() noexcept;

@@ -25,7 +25,7 @@ bool would_be_simpler_as_hull(const Object& object) {
 
 BoundingHull hull_of(const Object& object) {
   auto made = enclosing_polyhedron(shapes_of(object));
-  return made ? std::make_shared<const ConvexPolyhedron>(std::move(*made)) : nullptr;
+  return made ? std::make_shared<const ConvexBody>(std::move(*made)) : nullptr;
 }
 
 }  // namespace

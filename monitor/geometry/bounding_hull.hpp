@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-using BoundingHull = std::shared_ptr<const ConvexPolyhedron>;
+using BoundingHull = std::shared_ptr<const ConvexBody>;
 
 // An object of one part has a hull if that part has more facets than this: twice those of a hull.
 inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;

@@ -22,7 +22,7 @@ Sphere sphere_around(const CurvedShape& curved, double radius) noexcept {
   return {.centre = centre, .radius = rounded_up(farthest + radius)};
 }
 
-Sphere sphere_around(const ConvexPolyhedron& shape) noexcept {
+Sphere sphere_around(const ConvexBody& shape) noexcept {
   if (shape.is_curved()) return sphere_around(shape.curved, shape.radius);
   Vec3 low = Vec3::Constant(kInfinity);
   Vec3 high = Vec3::Constant(-kInfinity);
@@ -60,7 +60,7 @@ double reach_of(const Part& part) noexcept {
   return rounded_up(rounded_up(farthest) + error + part.shape.position_error + part.shape.radius);
 }
 
-double extent_of(const ConvexPolyhedron& shape) noexcept {
+double extent_of(const ConvexBody& shape) noexcept {
   if (!shape.bounded()) return kInfinity;
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
 }

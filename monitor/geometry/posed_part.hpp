@@ -37,7 +37,7 @@ struct PosedPart {
   Mat3 world_from_part_rotation = Mat3::Identity();
 
   // From the scene.
-  const ConvexPolyhedron* shape = nullptr;
+  const ConvexBody* shape = nullptr;
   Pose object_from_part;
   double reach = kInfinity;   // no point of it is farther from its object's origin, m
   double extent = kInfinity;  // no point of it is farther from its own origin, m

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "config/chain_rounding.hpp"
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "monitor/kinematics/fixed_order.hpp"
 #include "monitor/kinematics/sine_cosine.hpp"
 #include "monitor/motion/directed_rounding.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/motion/elapsed.hpp"
 

@@ -3,7 +3,7 @@
 // what that covers.
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {

@@ -6,7 +6,7 @@ namespace clearance {
 namespace {
 
 // In its object's frame, so that it is where the object is, without rounding.
-PosedPart around(const ConvexPolyhedron& hull) {
+PosedPart around(const ConvexBody& hull) {
   PosedPart placed;
   placed.shape = &hull;
   placed.extent = rounded_up(hull.bounding_radius + hull.position_error);

@@ -41,7 +41,7 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
 
   constexpr std::uint32_t kUnnumbered = ~0u;
   std::vector<std::uint32_t> body_of(parts.size(), kUnnumbered);
-  std::vector<const ConvexPolyhedron*> bodies;
+  std::vector<const ConvexBody*> bodies;
   const auto body = [&](std::uint32_t part) {
     if (body_of[part] == kUnnumbered) {
       body_of[part] = static_cast<std::uint32_t>(bodies.size());

@@ -61,7 +61,7 @@ BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius, double 
 }
 
 // The corners of a bounded facet, counter-clockwise as seen from outside.
-std::vector<std::int32_t> corners(const ConvexPolyhedron& body, const Facet& facet) {
+std::vector<std::int32_t> corners(const ConvexBody& body, const Facet& facet) {
   std::vector<std::int32_t> found;
   for (std::int32_t i = 0; i < facet.sides; ++i) {
     const EdgeUse& use = body.facet_edges[static_cast<std::size_t>(facet.first_side + i)];
@@ -71,15 +71,15 @@ std::vector<std::int32_t> corners(const ConvexPolyhedron& body, const Facet& fac
   return found;
 }
 
-const Vec3& position_of(const ConvexPolyhedron& body, std::int32_t vertex) {
+const Vec3& position_of(const ConvexBody& body, std::int32_t vertex) {
   return body.vertices[static_cast<std::size_t>(vertex)].position;
 }
 
-const Vec3& normal_of(const ConvexPolyhedron& body, std::int32_t facet) {
+const Vec3& normal_of(const ConvexBody& body, std::int32_t facet) {
   return body.facets[static_cast<std::size_t>(facet)].normal;
 }
 
-void add_facets(const ConvexPolyhedron& body, double radius, MeshBuilder& builder) {
+void add_facets(const ConvexBody& body, double radius, MeshBuilder& builder) {
   for (const Facet& facet : body.facets) {
     std::vector<std::uint32_t> loop;
     for (const std::int32_t vertex : corners(body, facet)) {
@@ -90,8 +90,7 @@ void add_facets(const ConvexPolyhedron& body, double radius, MeshBuilder& builde
 }
 
 // The strip of a cylinder along an edge, from its left facet's normal to its right one's.
-void add_edge_strip(const ConvexPolyhedron& body, const Edge& edge, double radius,
-                    MeshBuilder& builder) {
+void add_edge_strip(const ConvexBody& body, const Edge& edge, double radius, MeshBuilder& builder) {
   const Vec3& left = normal_of(body, edge.facet[0]);
   const Vec3& right = normal_of(body, edge.facet[1]);
   const int steps = builder.arc_steps(angle_between(left, right));
@@ -122,7 +121,7 @@ void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec
   }
 }
 
-void add_vertex_patch(const ConvexPolyhedron& body, const Vertex& vertex, double radius,
+void add_vertex_patch(const ConvexBody& body, const Vertex& vertex, double radius,
                       MeshBuilder& builder) {
   std::vector<Vec3> normals;  // of the facets around it, counter-clockwise
   Vec3 middle = Vec3::Zero();
@@ -139,7 +138,7 @@ void add_vertex_patch(const ConvexPolyhedron& body, const Vertex& vertex, double
   }
 }
 
-void add_sharp_edges(const ConvexPolyhedron& body, MeshBuilder& builder) {
+void add_sharp_edges(const ConvexBody& body, MeshBuilder& builder) {
   for (const Edge& edge : body.edges) {
     if (angle_between(normal_of(body, edge.facet[0]), normal_of(body, edge.facet[1])) < kSharpEdge)
       continue;
@@ -148,7 +147,7 @@ void add_sharp_edges(const ConvexPolyhedron& body, MeshBuilder& builder) {
   }
 }
 
-BodyMesh bounded_mesh(const ConvexPolyhedron& body, double radius, double arc_step) {
+BodyMesh bounded_mesh(const ConvexBody& body, double radius, double arc_step) {
   if (body.facets.empty()) {
     return capsule_mesh(body.anchors.front(), body.anchors.back(), radius, arc_step);
   }
@@ -164,7 +163,7 @@ BodyMesh bounded_mesh(const ConvexPolyhedron& body, double radius, double arc_st
 }
 
 // The part of an unbounded body in the cube of half width `reach`.
-ShapeResult cut_off(const ConvexPolyhedron& body, double reach) {
+ShapeResult cut_off(const ConvexBody& body, double reach) {
   std::vector<HalfSpace> rows;
   for (const Facet& facet : body.facets) rows.push_back({facet.normal, facet.offset});
   for (int axis = 0; axis < 3; ++axis) {
@@ -176,11 +175,11 @@ ShapeResult cut_off(const ConvexPolyhedron& body, double reach) {
 
 }  // namespace
 
-BodyMesh body_mesh(const ConvexPolyhedron& body, double offset, double reach, double arc_step) {
+BodyMesh body_mesh(const ConvexBody& body, double offset, double reach, double arc_step) {
   if (body.is_curved()) return curved_mesh(body.curved, body.radius + offset, arc_step);
   if (body.bounded()) return bounded_mesh(body, body.radius + offset, arc_step);
   const ShapeResult cut = cut_off(body, reach);
-  const auto* const bounded = std::get_if<ConvexPolyhedron>(&cut);
+  const auto* const bounded = std::get_if<ConvexBody>(&cut);
   return bounded == nullptr ? BodyMesh{} : bounded_mesh(*bounded, body.radius + offset, arc_step);
 }
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance {
 
@@ -30,7 +30,7 @@ inline constexpr double kArcStep = 0.175;
 // The body, with its radius enlarged by `offset` (m, >= 0). What is unbounded is cut off by the
 // cube of half width `reach` (m) around the frame's origin; empty when nothing lies in it. Arcs are
 // cut into steps of at most `arc_step` (rad, > 0).
-[[nodiscard]] BodyMesh body_mesh(const ConvexPolyhedron& body, double offset = 0.0,
-                                 double reach = 20.0, double arc_step = kArcStep);
+[[nodiscard]] BodyMesh body_mesh(const ConvexBody& body, double offset = 0.0, double reach = 20.0,
+                                 double arc_step = kArcStep);
 
 }  // namespace clearance

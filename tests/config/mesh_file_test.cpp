@@ -65,8 +65,7 @@ const std::string kTetrahedronObj =
 
 TEST_F(MeshFile, ItsHullIsThePart) {
   write("cube.stl", binary_stl());
-  const ConvexPolyhedron shape =
-      scene("file: cube.stl, max_parts: 1").objects.at(0).parts.at(0).shape;
+  const ConvexBody shape = scene("file: cube.stl, max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_EQ(shape.vertices.size(), 8u);
   EXPECT_EQ(shape.facets.size(), 6u);
   EXPECT_NEAR(shape.bounding_radius, std::sqrt(3.0), 1e-14);
@@ -74,10 +73,10 @@ TEST_F(MeshFile, ItsHullIsThePart) {
 
 TEST_F(MeshFile, UnitAndScaleApply) {
   write("cube.stl", binary_stl());
-  const ConvexPolyhedron mm =
+  const ConvexBody mm =
       scene("file: cube.stl, unit: mm, max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_NEAR(mm.bounding_radius, std::sqrt(3.0) / 1000.0, 1e-15);
-  const ConvexPolyhedron scaled =
+  const ConvexBody scaled =
       scene("file: cube.stl, scale: [2, 1, -3], max_parts: 1").objects.at(0).parts.at(0).shape;
   EXPECT_NEAR(scaled.bounding_radius, std::sqrt(4.0 + 1.0 + 9.0), 1e-12);
 }
@@ -99,7 +98,7 @@ TEST_F(MeshFile, ColladaKeepsItsAxesAndItsUnit) {
 </mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
-  const ConvexPolyhedron shape = scene("file: tetrahedron.dae").objects.at(0).parts.at(0).shape;
+  const ConvexBody shape = scene("file: tetrahedron.dae").objects.at(0).parts.at(0).shape;
   double highest = 0.0;
   for (const Vertex& vertex : shape.vertices) highest = std::max(highest, vertex.position.z());
   EXPECT_NEAR(highest, 4.0, 1e-6);

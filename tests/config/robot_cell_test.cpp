@@ -296,7 +296,7 @@ TEST_F(RobotCellFile, ACapsuleIsOneWithItsEndsAlongZ) {
   text.replace(text.find(sphere), sphere.size(), "<capsule radius=\"0.12\" length=\"1\"/>");
   write("little_description/urdf/little.urdf", text);
   const Scene scene = this->scene();
-  const ConvexPolyhedron& capsule = scene.objects.at(1).parts.at(1).shape;
+  const ConvexBody& capsule = scene.objects.at(1).parts.at(1).shape;
   EXPECT_EQ(capsule.radius, 0.12);
   ASSERT_EQ(capsule.anchors.size(), 2u);
   EXPECT_EQ((capsule.anchors[0] - capsule.anchors[1]).cwiseAbs(), Vec3(0, 0, 1));

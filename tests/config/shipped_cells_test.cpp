@@ -137,7 +137,7 @@ TEST(McIntyreCell, HasTheThesisCounts) {
   for (const Object& object : scene.objects) {
     if (!in_group(object, "arm")) continue;
     ASSERT_EQ(object.parts.size(), 1u);
-    const ConvexPolyhedron& shape = object.parts[0].shape;
+    const ConvexBody& shape = object.parts[0].shape;
     EXPECT_LE(shape.facets.size(), 10u) << object.name;
     EXPECT_EQ(shape.radius, 0.0);
     ++polyhedra;
@@ -202,7 +202,7 @@ TEST(RoundArmCell, IsOfCurvedAndRoundedBodiesOnly) {
   const Scene scene = shipped("round_arm.yaml");
   for (const Object& object : scene.objects) {
     for (const Part& part : object.parts) {
-      const ConvexPolyhedron& shape = part.shape;
+      const ConvexBody& shape = part.shape;
       EXPECT_TRUE(shape.is_curved() || shape.radius > 0.0 || !shape.bounded()) << object.name;
     }
   }

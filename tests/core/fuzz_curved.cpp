@@ -85,8 +85,8 @@ void run(Bytes bytes) {
   change(c, bytes);
   if (!has_truth(c)) return;
   const ShapeResult made_a = hard::curved_model(c.a), made_b = hard::curved_model(c.b);
-  const auto* a = std::get_if<ConvexPolyhedron>(&made_a);
-  const auto* b = std::get_if<ConvexPolyhedron>(&made_b);
+  const auto* a = std::get_if<ConvexBody>(&made_a);
+  const auto* b = std::get_if<ConvexBody>(&made_b);
   if (a == nullptr || b == nullptr) return;
   const CurvedJudge here(c);
   TrackingState state;

@@ -97,7 +97,7 @@ class Fuzzed {
 
   // Twice where they are, so that the second round is one of vector code, and where B has moved.
   void follow_in_batch(Random& random) {
-    const ConvexPolyhedron* const bodies[] = {&judge_.a(), &judge_.b()};
+    const ConvexBody* const bodies[] = {&judge_.a(), &judge_.b()};
     const BodyPair pairs[] = {{0, 1}, {1, 0}};
     DistanceBatch batch(bodies, pairs);
     TrackingState states[2];

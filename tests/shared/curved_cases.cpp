@@ -269,7 +269,7 @@ ShapeResult curved_model(const CurvedBody& body) {
   if (body.points.size() == 1) return point(body.points[0], body.radius);
   if (body.points.size() == 2) return segment(body.points[0], body.points[1], body.radius);
   ShapeResult made = polyhedron_from_vertices(body.points);
-  if (auto* hull = std::get_if<ConvexPolyhedron>(&made)) hull->radius = body.radius;
+  if (auto* hull = std::get_if<ConvexBody>(&made)) hull->radius = body.radius;
   return made;
 }
 

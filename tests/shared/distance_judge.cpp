@@ -133,16 +133,16 @@ ShapeResult model(const Body& body) {
   } else {
     out = polyhedron_from_vertices(body.points);
   }
-  if (auto* polyhedron = std::get_if<ConvexPolyhedron>(&out)) polyhedron->radius = body.radius;
+  if (auto* polyhedron = std::get_if<ConvexBody>(&out)) polyhedron->radius = body.radius;
   return out;
 }
 
 DistanceJudge::DistanceJudge(const Body& a, const Body& b)
     : body_a_(a), body_b_(b), exact_a_(a), exact_b_(b) {
-  ConvexPolyhedron* models[] = {&a_, &b_};
+  ConvexBody* models[] = {&a_, &b_};
   for (int k = 0; k < 2; ++k) {
     ShapeResult shape = model(k == 0 ? a : b);
-    if (auto* polyhedron = std::get_if<ConvexPolyhedron>(&shape)) {
+    if (auto* polyhedron = std::get_if<ConvexBody>(&shape)) {
       *models[k] = std::move(*polyhedron);
     } else {
       refusal_ += std::string(k == 0 ? "a: " : "b: ") + std::get<ShapeError>(shape).reason + "; ";

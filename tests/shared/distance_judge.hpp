@@ -19,8 +19,8 @@ class DistanceJudge {
 
   // Empty when both bodies have been accepted by the factories.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
-  [[nodiscard]] const ConvexPolyhedron& a() const { return a_; }
-  [[nodiscard]] const ConvexPolyhedron& b() const { return b_; }
+  [[nodiscard]] const ConvexBody& a() const { return a_; }
+  [[nodiscard]] const ConvexBody& b() const { return b_; }
 
   [[nodiscard]] DistanceResult ask(const Pose& pose_a, const Pose& pose_b,
                                    TrackingState& state) const;
@@ -66,7 +66,7 @@ class DistanceJudge {
 
   oracle::Body body_a_, body_b_;
   oracle::ExactBody exact_a_, exact_b_;
-  ConvexPolyhedron a_, b_;
+  ConvexBody a_, b_;
   std::string refusal_;
 };
 

@@ -7,7 +7,7 @@ namespace clearance::test {
 namespace {
 
 // Each feature that the body has, with a point on it, and none.
-std::vector<TrackingState::Side> every_side(const ConvexPolyhedron& body) {
+std::vector<TrackingState::Side> every_side(const ConvexBody& body) {
   std::vector<TrackingState::Side> out(1);
   const auto add = [&](FeatureKind kind, std::size_t feature, const Vec3& point) {
     out.push_back({kind, false, static_cast<std::int32_t>(feature), point});

@@ -13,20 +13,19 @@ struct Body;
 namespace test {
 
 // Throws std::logic_error with the reason where the shape is refused.
-[[nodiscard]] ConvexPolyhedron made(ShapeResult result);
-[[nodiscard]] ConvexPolyhedron made(const oracle::Body& body);
+[[nodiscard]] ConvexBody made(ShapeResult result);
+[[nodiscard]] ConvexBody made(const oracle::Body& body);
 
 // Its edges are 1 m long, its middle is the origin.
-[[nodiscard]] ConvexPolyhedron cube();
+[[nodiscard]] ConvexBody cube();
 
 // All x with normal . x <= offset.
-[[nodiscard]] ConvexPolyhedron half_space(const Vec3& normal, double offset);
+[[nodiscard]] ConvexBody half_space(const Vec3& normal, double offset);
 
 // A query that has no predecessor; with a pose of B alone, A is at the origin.
-[[nodiscard]] DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] DistanceResult cold(const ConvexBody& a, const ConvexBody& b,
                                   const RelativePose& pose);
-[[nodiscard]] DistanceResult cold(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                                  const Pose& pose_b);
+[[nodiscard]] DistanceResult cold(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b);
 
 }  // namespace test
 }  // namespace clearance

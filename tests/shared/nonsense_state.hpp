@@ -10,8 +10,7 @@
 namespace clearance::test {
 
 // Features that the body may not have; points anywhere up to where squares overflow and beyond.
-[[nodiscard]] inline TrackingState::Side nonsense_side(const ConvexPolyhedron& body,
-                                                       Random& random) {
+[[nodiscard]] inline TrackingState::Side nonsense_side(const ConvexBody& body, Random& random) {
   TrackingState::Side out;
   out.kind = static_cast<FeatureKind>(random.integer(0, 6));
   const std::size_t most = std::max({body.facets.size(), body.edges.size(), body.vertices.size()});
@@ -22,15 +21,15 @@ namespace clearance::test {
   return out;
 }
 
-[[nodiscard]] inline TrackingState nonsense_state(const ConvexPolyhedron& a,
-                                                  const ConvexPolyhedron& b, Random& random) {
+[[nodiscard]] inline TrackingState nonsense_state(const ConvexBody& a, const ConvexBody& b,
+                                                  Random& random) {
   TrackingState out{nonsense_side(a, random), nonsense_side(b, random)};
   out.a.penetrating = random.chance(0.5);
   return out;
 }
 
 // Any feature that the body has and a point on it, or none.
-[[nodiscard]] inline TrackingState::Side other_side(const ConvexPolyhedron& body, Random& random) {
+[[nodiscard]] inline TrackingState::Side other_side(const ConvexBody& body, Random& random) {
   TrackingState::Side out;
   const int dimension = random.integer(0, 2);
   const auto count = static_cast<int>(body.features[static_cast<std::size_t>(dimension)]);
@@ -55,7 +54,7 @@ namespace clearance::test {
 }
 
 // Of the same bodies somewhere else.
-[[nodiscard]] inline TrackingState other_state(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
+[[nodiscard]] inline TrackingState other_state(const ConvexBody& a, const ConvexBody& b,
                                                Random& random) {
   TrackingState out{other_side(a, random), other_side(b, random)};
   out.a.penetrating = random.chance(0.3);

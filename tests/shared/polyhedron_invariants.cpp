@@ -11,7 +11,7 @@ std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 class Inspection {
  public:
-  explicit Inspection(const ConvexPolyhedron& body) : body_(body) {}
+  explicit Inspection(const ConvexBody& body) : body_(body) {}
 
   std::vector<std::string> run() {
     if (!indices_are_valid()) return std::move(broken_);
@@ -262,13 +262,13 @@ class Inspection {
     expect(body_.interior.allFinite(), "the interior point is finite", 0);
   }
 
-  const ConvexPolyhedron& body_;
+  const ConvexBody& body_;
   std::vector<std::string> broken_;
 };
 
 }  // namespace
 
-std::vector<std::string> broken_invariants(const ConvexPolyhedron& body) {
+std::vector<std::string> broken_invariants(const ConvexBody& body) {
   return Inspection(body).run();
 }
 

@@ -164,9 +164,9 @@ TEST(Chapter5Line, ItsClosestPointsHaveOneNormalAcrossTheLine) {
 TEST(Chapter5PolyhedronToEllipsoid, FindsTheDistanceOfAFacetBallAndAnEllipsoid) {
   Random random(8);
   const Vec3 axes(5.0, 2.0, 1.0);
-  const auto b = std::get<ConvexPolyhedron>(ellipsoid(axes));
+  const auto b = std::get<ConvexBody>(ellipsoid(axes));
   for (const int order : {2, 4, 10}) {
-    const ConvexPolyhedron a = ellipsoid_model({1.0, 2.0, 5.0}, order);
+    const ConvexBody a = ellipsoid_model({1.0, 2.0, 5.0}, order);
     for (int k = 0; k < 100; ++k) {
       const Vec3 apart = random.uniform(10.5, 14.0) * random.direction();
       TrackingState cold;

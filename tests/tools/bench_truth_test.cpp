@@ -13,7 +13,7 @@
 namespace clearance::bench {
 namespace {
 
-oracle::ExactBody hull_of_vertices(const ConvexPolyhedron& body) {
+oracle::ExactBody hull_of_vertices(const ConvexBody& body) {
   oracle::Body hull;
   for (const Vertex& vertex : body.vertices) hull.points.push_back(vertex.position);
   return oracle::ExactBody(hull);

@@ -17,7 +17,7 @@ namespace {
 
 // Every row of a facet-ball is a facet, and the core keeps their order.
 Neighbours exact_neighbours(std::span<const HalfSpace> rows) {
-  const auto body = std::get<ConvexPolyhedron>(polyhedron_from_halfspaces(rows));
+  const auto body = std::get<ConvexBody>(polyhedron_from_halfspaces(rows));
   Neighbours pairs;
   for (const Edge& e : body.edges) {
     pairs.emplace(std::min(e.facet[0], e.facet[1]), std::max(e.facet[0], e.facet[1]));

@@ -33,7 +33,7 @@ enum class Shapes { kInCommon, kOfTheirOwn };
 struct Fleet {
   Fleet(const Workload& of, Shapes whose) : load(of) {
     copies.reserve(2 * kPairs);
-    const auto add = [&](const ConvexPolyhedron& shape) {
+    const auto add = [&](const ConvexBody& shape) {
       shapes.push_back(whose == Shapes::kInCommon ? &shape : &copies.emplace_back(shape));
     };
     for (std::uint32_t i = 0; i < kPairs; ++i) {
@@ -62,8 +62,8 @@ struct Fleet {
   }
 
   const Workload& load;
-  std::vector<ConvexPolyhedron> copies;
-  std::vector<const ConvexPolyhedron*> shapes;
+  std::vector<ConvexBody> copies;
+  std::vector<const ConvexBody*> shapes;
   std::vector<BodyPair> pairs;
   std::vector<Pose> poses;  // of this step
 };

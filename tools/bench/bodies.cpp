@@ -34,17 +34,17 @@ std::vector<HalfSpace> ball_rows(int order) {
   return rows;
 }
 
-ConvexPolyhedron ball(char kind, int order) {
-  return std::get<ConvexPolyhedron>(kind == 'v' ? polyhedron_from_vertices(even_directions(order))
-                                                : polyhedron_from_halfspaces(ball_rows(order)));
+ConvexBody ball(char kind, int order) {
+  return std::get<ConvexBody>(kind == 'v' ? polyhedron_from_vertices(even_directions(order))
+                                          : polyhedron_from_halfspaces(ball_rows(order)));
 }
 
-ConvexPolyhedron random_box(Random& random) {
+ConvexBody random_box(Random& random) {
   const double x = random.uniform(0.05, 0.5), y = random.uniform(0.05, 0.5);
-  return std::get<ConvexPolyhedron>(box({x, y, random.uniform(0.05, 0.5)}));
+  return std::get<ConvexBody>(box({x, y, random.uniform(0.05, 0.5)}));
 }
 
-ConvexPolyhedron random_link(Random& random) {
+ConvexBody random_link(Random& random) {
   constexpr int kAround = 12;
   const double length = random.uniform(0.2, 0.5);
   const double start = random.uniform(0.05, 0.09), end = random.uniform(0.04, 0.07);
@@ -59,7 +59,7 @@ ConvexPolyhedron random_link(Random& random) {
       points.emplace_back(ring.y() * std::cos(angle), ring.y() * std::sin(angle), ring.x());
     }
   }
-  return std::get<ConvexPolyhedron>(polyhedron_from_vertices(points));
+  return std::get<ConvexBody>(polyhedron_from_vertices(points));
 }
 
 }  // namespace clearance::bench

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/shapes.hpp"
 #include "tools/bench/random.hpp"
 
@@ -16,13 +16,13 @@ namespace clearance::bench {
 [[nodiscard]] std::vector<HalfSpace> ball_rows(int order);
 
 // The polyhedron of unit radius with those directions as facets ('f') or as vertices ('v').
-[[nodiscard]] ConvexPolyhedron ball(char kind, int order);
+[[nodiscard]] ConvexBody ball(char kind, int order);
 
 // Half extents from 0.05 to 0.5 m.
-[[nodiscard]] ConvexPolyhedron random_box(Random& random);
+[[nodiscard]] ConvexBody random_box(Random& random);
 
 // Like the hull of a robot's link: 0.2 to 0.5 m long, four rings of twelve vertices, the outer ones
 // narrower, its ends of different widths. 48 vertices, about 40 facets.
-[[nodiscard]] ConvexPolyhedron random_link(Random& random);
+[[nodiscard]] ConvexBody random_link(Random& random);
 
 }  // namespace clearance::bench

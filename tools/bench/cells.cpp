@@ -25,8 +25,8 @@ namespace {
 constexpr int kSteps = 1000;
 
 struct PartPair {
-  const ConvexPolyhedron* a;
-  const ConvexPolyhedron* b;
+  const ConvexBody* a;
+  const ConvexBody* b;
   std::uint32_t object_a, object_b;
   Pose a_in_object, b_in_object;
 };
@@ -96,7 +96,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
 
 // All part pairs at once. Each part is placed in the world once a step, not once a pair.
 void time_batch(benchmark::State& state, const Workload& load) {
-  std::vector<const ConvexPolyhedron*> parts;
+  std::vector<const ConvexBody*> parts;
   std::vector<std::uint32_t> first_part;  // [object]
   for (const Object& object : load.scene.objects) {
     first_part.push_back(static_cast<std::uint32_t>(parts.size()));

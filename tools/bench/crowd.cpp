@@ -22,9 +22,9 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kOrbit = 0.18;  // m
 constexpr double kSpin = 2.0;    // rad/s for each m/s
 
-ConvexPolyhedron made(ShapeResult result) { return std::get<ConvexPolyhedron>(std::move(result)); }
+ConvexBody made(ShapeResult result) { return std::get<ConvexBody>(std::move(result)); }
 
-ConvexPolyhedron facet_ball(double radius, int order = 6) {
+ConvexBody facet_ball(double radius, int order = 6) {
   std::vector<HalfSpace> rows;
   // A facet-ball of order 6 or more has its corners within 1.2 of its inscribed radius.
   for (const Vec3& d : even_directions(order)) rows.push_back({d, radius / 1.2});
@@ -32,7 +32,7 @@ ConvexPolyhedron facet_ball(double radius, int order = 6) {
 }
 
 // One of four kinds of bodies, inside a sphere of `radius`.
-ConvexPolyhedron body(std::uint32_t kind, double radius, Random& draw) {
+ConvexBody body(std::uint32_t kind, double radius, Random& draw) {
   switch (kind % 4) {
     case 0: {
       const Vec3 d(draw.uniform(0.3, 1.0), draw.uniform(0.3, 1.0), draw.uniform(0.3, 1.0));
@@ -48,12 +48,12 @@ ConvexPolyhedron body(std::uint32_t kind, double radius, Random& draw) {
       std::array<Vec3, 4> corners;
       for (Vec3& c : corners) c = radius * draw.direction();
       const ShapeResult hull = polyhedron_from_vertices(corners);
-      return std::holds_alternative<ConvexPolyhedron>(hull) ? made(hull) : facet_ball(radius);
+      return std::holds_alternative<ConvexBody>(hull) ? made(hull) : facet_ball(radius);
     }
   }
 }
 
-Object object_of(const std::string& name, ConvexPolyhedron shape) {
+Object object_of(const std::string& name, ConvexBody shape) {
   Object object;
   object.name = name;
   object.parts.push_back({name, std::move(shape), {}});

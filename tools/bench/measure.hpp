@@ -3,7 +3,7 @@
 // A Solver is
 //   struct Solver {
 //     using Shape = ...;                              // its own form of a body, made once a body
-//     static Shape shape(const ConvexPolyhedron&);
+//     static Shape shape(const ConvexBody&);
 //     Solver(const Shape& a, const Shape& b);         // one a pair; may remember the last query
 //     void forget();                                  // the next query is cold
 //     Answer query(const Pose& world_from_a, const Pose& world_from_b);
@@ -135,7 +135,7 @@ class Row {
 
   const Workload& load_;
   int interval_;
-  std::map<const ConvexPolyhedron*, typename Solver::Shape> shapes_;
+  std::map<const ConvexBody*, typename Solver::Shape> shapes_;
   std::vector<std::unique_ptr<Solver>> solvers_;
   Verdict verdict_;
 };

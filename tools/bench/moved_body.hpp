@@ -3,16 +3,16 @@
 // only the half-spaces.)
 #pragma once
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance::bench {
 
 class MovedBody {
  public:
-  explicit MovedBody(const ConvexPolyhedron& own) : own_(own), moved_(own) {}
+  explicit MovedBody(const ConvexBody& own) : own_(own), moved_(own) {}
 
-  [[nodiscard]] const ConvexPolyhedron& at_pose() const { return moved_; }
+  [[nodiscard]] const ConvexBody& at_pose() const { return moved_; }
 
   void move(const Pose& world_from_body) {
     rotation_ = world_from_body.orientation.toRotationMatrix();
@@ -51,8 +51,8 @@ class MovedBody {
     moved_.set_limit(facet, i, {inward, own.offset + inward.dot(translation_)});
   }
 
-  const ConvexPolyhedron& own_;
-  ConvexPolyhedron moved_;
+  const ConvexBody& own_;
+  ConvexBody moved_;
   Mat3 rotation_;
   Vec3 translation_;
 };

@@ -46,8 +46,8 @@ constexpr Kind kKindsOfNearness[] = {
 };
 
 // Discs and needles alike.
-ConvexPolyhedron thin_body(std::string_view kind, double thinness, Random& random) {
-  const auto made = [](ShapeResult shape) { return std::get<ConvexPolyhedron>(std::move(shape)); };
+ConvexBody thin_body(std::string_view kind, double thinness, Random& random) {
+  const auto made = [](ShapeResult shape) { return std::get<ConvexBody>(std::move(shape)); };
   const double least = 1.0 / thinness, middle = std::pow(least, random.uniform(0.0, 1.0));
   if (kind == "ellipsoid") return made(ellipsoid({1.0, middle, least}));
   if (kind == "box") return made(box({1.0, middle, least}));
@@ -72,7 +72,7 @@ Vec3 bring_to(double gap, const Trajectory& pair, const Pose& a, Pose& b) {
 // B slides across the line of the closest points, and is as far away after every step.
 Trajectory sliding(const Kind& kind, double gap, Random& random) {
   const auto body = [&](const char* of) {
-    return std::make_shared<const ConvexPolyhedron>(thin_body(of, kind.thinness, random));
+    return std::make_shared<const ConvexBody>(thin_body(of, kind.thinness, random));
   };
   Trajectory pair{body(kind.a), body(kind.b), {}};
   const Pose a{Vec3::Zero(), random.turn()};

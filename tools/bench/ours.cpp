@@ -12,8 +12,8 @@ namespace {
 
 class Ours {
  public:
-  using Shape = const ConvexPolyhedron*;
-  static Shape shape(const ConvexPolyhedron& body) { return &body; }
+  using Shape = const ConvexBody*;
+  static Shape shape(const ConvexBody& body) { return &body; }
 
   Ours(Shape a, Shape b) : a_(*a), b_(*b) {}
   void forget() { tracking_ = {}; }
@@ -24,8 +24,8 @@ class Ours {
   }
 
  private:
-  const ConvexPolyhedron& a_;
-  const ConvexPolyhedron& b_;
+  const ConvexBody& a_;
+  const ConvexBody& b_;
   TrackingState tracking_;
 };
 

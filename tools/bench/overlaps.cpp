@@ -15,9 +15,9 @@ namespace {
 constexpr int kMotions = 10;
 
 Body body(const std::string& kind, Random& random) {
-  if (kind == "boxes") return std::make_shared<const ConvexPolyhedron>(random_box(random));
-  if (kind == "links") return std::make_shared<const ConvexPolyhedron>(random_link(random));
-  return std::make_shared<const ConvexPolyhedron>(ball(kind[0], std::stoi(kind.substr(1))));
+  if (kind == "boxes") return std::make_shared<const ConvexBody>(random_box(random));
+  if (kind == "links") return std::make_shared<const ConvexBody>(random_link(random));
+  return std::make_shared<const ConvexBody>(ball(kind[0], std::stoi(kind.substr(1))));
 }
 
 bool are_apart(const Trajectory& pair, const Pose& a, const Pose& b) {

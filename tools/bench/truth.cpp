@@ -22,9 +22,9 @@ Matrix rotation(const Eigen::Quaterniond& unnormalised) {
 
 }  // namespace
 
-TrueDistance::TrueDistance(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : a_(a), b_(b) {}
+TrueDistance::TrueDistance(const ConvexBody& a, const ConvexBody& b) : a_(a), b_(b) {}
 
-TrueDistance::Point TrueDistance::support(const ConvexPolyhedron& body, const Point& along) {
+TrueDistance::Point TrueDistance::support(const ConvexBody& body, const Point& along) {
   const CurvedShape& shape = body.curved;
   if (shape.kind == CurvedShape::Kind::kEllipsoid) {
     const Point axes = shape.semi_axes.cast<Real>(), scaled = axes.cwiseProduct(along);

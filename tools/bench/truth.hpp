@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance::bench {
@@ -19,7 +19,7 @@ struct Truth {
 
 class TrueDistance {
  public:
-  TrueDistance(const ConvexPolyhedron& a, const ConvexPolyhedron& b);
+  TrueDistance(const ConvexBody& a, const ConvexBody& b);
   // Starts where the last call ended, which is fast for neighbouring poses.
   [[nodiscard]] Truth at(const Pose& world_from_a, const Pose& world_from_b);
 
@@ -34,13 +34,13 @@ class TrueDistance {
     Real weight;
   };
 
-  [[nodiscard]] static Point support(const ConvexPolyhedron& body, const Point& along);
+  [[nodiscard]] static Point support(const ConvexBody& body, const Point& along);
   void place(Corner& corner) const;
   [[nodiscard]] Corner farthest(const Point& against) const;
   [[nodiscard]] Point nearest() const;
   void minimise();
 
-  const ConvexPolyhedron &a_, &b_;
+  const ConvexBody &a_, &b_;
   Matrix world_from_a_, world_from_b_;
   Point apart_;  // from A's position to B's
   std::vector<Corner> corners_;

@@ -19,8 +19,8 @@ void place(ActiveFeature& side, const TrackingState::Side& hint) {
 template <Release kRelease, Scan kScan>
 class Variant {
  public:
-  using Shape = const ConvexPolyhedron*;
-  static Shape shape(const ConvexPolyhedron& body) { return &body; }
+  using Shape = const ConvexBody*;
+  static Shape shape(const ConvexBody& body) { return &body; }
 
   Variant(Shape a, Shape b) : a_(*a), b_(*b) {}
   void forget() { tracking_ = {}; }
@@ -37,18 +37,18 @@ class Variant {
   }
 
  private:
-  const ConvexPolyhedron& a_;
-  const ConvexPolyhedron& b_;
+  const ConvexBody& a_;
+  const ConvexBody& b_;
   TrackingState tracking_;
 };
 
 class Moved {
  public:
-  using Shape = const ConvexPolyhedron*;
-  static Shape shape(const ConvexPolyhedron& body) { return &body; }
+  using Shape = const ConvexBody*;
+  static Shape shape(const ConvexBody& body) { return &body; }
 
   Moved(Shape a, Shape b) : Moved(*a, *b) {}
-  Moved(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : a_(a), b_(b) {}
+  Moved(const ConvexBody& a, const ConvexBody& b) : a_(a), b_(b) {}
   void forget() { tracking_ = {}; }
   void move(const Pose& world_from_a, const Pose& world_from_b) {
     a_.move(world_from_a);
@@ -82,7 +82,7 @@ class Moved {
 // The base variant at poses that are set before the query.
 class Unmoved {
  public:
-  Unmoved(const ConvexPolyhedron& a, const ConvexPolyhedron& b) : pair_(&a, &b) {}
+  Unmoved(const ConvexBody& a, const ConvexBody& b) : pair_(&a, &b) {}
   void move(const Pose& world_from_a, const Pose& world_from_b) {
     world_from_a_ = world_from_a;
     world_from_b_ = world_from_b;

@@ -6,7 +6,7 @@
 namespace clearance::bench {
 
 // The edge of `facet` across which `other` lies; kNone if they do not meet in one.
-[[nodiscard]] inline std::int32_t edge_between(const ConvexPolyhedron& body, const Facet& facet,
+[[nodiscard]] inline std::int32_t edge_between(const ConvexBody& body, const Facet& facet,
                                                std::int32_t other) {
   for (std::int32_t i = facet.first_side; i < facet.first_side + facet.sides; ++i) {
     const EdgeUse& use = body.facet_edges[i];
@@ -20,7 +20,7 @@ namespace clearance::bench {
   if (side.feature() == FeatureKind::kVertex || side.feature() == FeatureKind::kInside) {
     return alpha(side, move_in_common);
   }
-  const ConvexPolyhedron& body = side.body();
+  const ConvexBody& body = side.body();
   const Vec3 move = side.direction_to_own(move_in_common);
   const bool on_edge = side.feature() == FeatureKind::kEdge;
   const std::int32_t active[2] = {on_edge ? side.edge().facet[0] : side.index(),

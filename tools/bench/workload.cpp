@@ -61,7 +61,7 @@ std::vector<std::pair<Pose, Pose>> pass(Random& random, const Drift& by, double 
 }
 
 std::vector<Trajectory> balls(char kind, int order) {
-  const auto body = std::make_shared<const ConvexPolyhedron>(ball(kind, order));
+  const auto body = std::make_shared<const ConvexBody>(ball(kind, order));
   Random random(1);
   std::vector<Trajectory> all;
   for (int i = 0; i < kTrajectories; ++i) {
@@ -70,13 +70,13 @@ std::vector<Trajectory> balls(char kind, int order) {
   return all;
 }
 
-std::vector<Trajectory> passing(ConvexPolyhedron (*make)(Random&), const Drift& by, double nearest,
+std::vector<Trajectory> passing(ConvexBody (*make)(Random&), const Drift& by, double nearest,
                                 double farthest) {
   Random random(2);
   std::vector<Trajectory> all;
   for (int i = 0; i < kTrajectories; ++i) {
-    const auto a = std::make_shared<const ConvexPolyhedron>(make(random));
-    const auto b = std::make_shared<const ConvexPolyhedron>(make(random));
+    const auto a = std::make_shared<const ConvexBody>(make(random));
+    const auto b = std::make_shared<const ConvexBody>(make(random));
     all.push_back({a, b, pass(random, by, nearest, farthest)});
   }
   return all;
@@ -87,8 +87,8 @@ std::vector<Trajectory> sliding_boxes() {
   Random random(3);
   std::vector<Trajectory> all;
   for (int i = 0; i < kTrajectories; ++i) {
-    const auto a = std::make_shared<const ConvexPolyhedron>(random_box(random));
-    const auto b = std::make_shared<const ConvexPolyhedron>(random_box(random));
+    const auto a = std::make_shared<const ConvexBody>(random_box(random));
+    const auto b = std::make_shared<const ConvexBody>(random_box(random));
     const Eigen::Quaterniond both =
         i % 2 == 0 ? Eigen::Quaterniond::Identity() : random.turn().normalized();
     const int across = i % 3;
@@ -108,9 +108,9 @@ std::vector<Trajectory> sliding_boxes() {
 
 constexpr int kCurvedKinds = 4;  // of kKinds, the first ones
 
-ConvexPolyhedron body_of_kind(const std::string& kind, Random& random) {
+ConvexBody body_of_kind(const std::string& kind, Random& random) {
   const auto length = [&] { return random.uniform(0.05, 0.25); };
-  const auto made = [](ShapeResult shape) { return std::get<ConvexPolyhedron>(std::move(shape)); };
+  const auto made = [](ShapeResult shape) { return std::get<ConvexBody>(std::move(shape)); };
   if (kind == "box") return random_box(random);
   if (kind == "link") return random_link(random);
   const double x = length(), y = length(), z = length();
@@ -129,8 +129,8 @@ std::vector<Trajectory> passing_kinds(const std::string& kind_a, const std::stri
   Random random(5);
   std::vector<Trajectory> all;
   for (int i = 0; i < kTrajectories; ++i) {
-    const auto a = std::make_shared<const ConvexPolyhedron>(body_of_kind(kind_a, random));
-    const auto b = std::make_shared<const ConvexPolyhedron>(body_of_kind(kind_b, random));
+    const auto a = std::make_shared<const ConvexBody>(body_of_kind(kind_a, random));
+    const auto b = std::make_shared<const ConvexBody>(body_of_kind(kind_b, random));
     const double size = a->bounding_radius + a->radius + b->bounding_radius + b->radius;
     all.push_back({a, b, pass(random, kLinkDrift, size + 0.01, size + 1.0)});
   }
@@ -140,7 +140,7 @@ std::vector<Trajectory> passing_kinds(const std::string& kind_a, const std::stri
 std::vector<Trajectory> crossed(double separation) {
   const EllipsoidPair pair = crossed_pair(separation);
   const auto made = [](const Vec3& axes) {
-    return std::make_shared<const ConvexPolyhedron>(std::get<ConvexPolyhedron>(ellipsoid(axes)));
+    return std::make_shared<const ConvexBody>(std::get<ConvexBody>(ellipsoid(axes)));
   };
   return {{made(pair.axes_a), made(pair.axes_b), {{Pose{}, Pose{pair.apart}}}}};
 }

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 #include "tools/bench/truth.hpp"
 
 namespace clearance::bench {
 
-using Body = std::shared_ptr<const ConvexPolyhedron>;
+using Body = std::shared_ptr<const ConvexBody>;
 
 // One pair on its trajectory.
 struct Trajectory {

@@ -19,8 +19,7 @@ OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z(
 
 // A point of both bodies, in frame A, when they penetrate: where a search for the closest points
 // ends.
-Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                  const RelativePose& a_from_b) {
+Vec3 shared_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b) {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   side_a.place_cold(side_b.point_to_common(b.interior));
   side_b.place_cold(a.interior);
@@ -30,7 +29,7 @@ Vec3 shared_point(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
   return side_a.common() + part_of_a * (side_b.common() - side_a.common());
 }
 
-OrderedJson figures(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& world_from_a,
+OrderedJson figures(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                     const Pose& world_from_b, const DistanceAnswer& answer) {
   const DistanceResult& r = answer.result;
   const bool overlapping = r.upper < 0.0;

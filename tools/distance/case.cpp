@@ -91,7 +91,7 @@ ShapeResult shape_of_vertices(const Json& list, const std::string& where, double
 
 }  // namespace
 
-ConvexPolyhedron read_body(const Json& body, const std::string& where) {
+ConvexBody read_body(const Json& body, const std::string& where) {
   if (!body.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
   double radius = 0.0;
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
@@ -118,7 +118,7 @@ ConvexPolyhedron read_body(const Json& body, const std::string& where) {
   if (const auto* error = std::get_if<ShapeError>(&shape)) {
     throw BadLine(fmt::format("{}: {}", where, error->reason));
   }
-  ConvexPolyhedron& polyhedron = std::get<ConvexPolyhedron>(shape);
+  ConvexBody& polyhedron = std::get<ConvexBody>(shape);
   polyhedron.radius = radius;
   return std::move(polyhedron);
 }

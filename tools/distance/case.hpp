@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -19,7 +19,7 @@ struct BadLine : std::runtime_error {
 
 struct DistanceCase {
   nlohmann::json id;
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
   std::vector<std::pair<Pose, Pose>> poses;  // of a and b; one, or those of a motion
   bool motion = false;
 };
@@ -28,7 +28,7 @@ struct DistanceCase {
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,
                                            const std::string& where);
 [[nodiscard]] Pose read_pose(const nlohmann::json& list, const std::string& where);
-[[nodiscard]] ConvexPolyhedron read_body(const nlohmann::json& body, const std::string& where);
+[[nodiscard]] ConvexBody read_body(const nlohmann::json& body, const std::string& where);
 [[nodiscard]] std::vector<std::pair<Pose, Pose>> read_poses(const nlohmann::json& line);
 
 [[nodiscard]] DistanceCase read_case(const nlohmann::json& line);

@@ -60,7 +60,7 @@ CurvedPart read_convex(const Json& body, const std::string& where) {
   if (const auto* error = std::get_if<ShapeError>(&shape)) {
     throw BadLine(fmt::format("{}: {}", where, error->reason));
   }
-  part.shape = std::get<ConvexPolyhedron>(std::move(shape));
+  part.shape = std::get<ConvexBody>(std::move(shape));
   return part;
 }
 

@@ -11,7 +11,7 @@ namespace clearance {
 
 struct CurvedPart {
   Pose body_from_part;
-  ConvexPolyhedron shape;
+  ConvexBody shape;
 };
 
 // The union of the parts.

@@ -20,9 +20,7 @@ struct Size {
   std::size_t facets = 0, vertices = 0, bytes = 0;
 };
 
-Size size_of(const ConvexPolyhedron& p) {
-  return {p.facets.size(), p.vertices.size(), footprint(p)};
-}
+Size size_of(const ConvexBody& p) { return {p.facets.size(), p.vertices.size(), footprint(p)}; }
 
 struct Hull {
   Size size;
@@ -79,7 +77,7 @@ class Judge {
 
   std::vector<BoundingHull> hulls_;
   std::vector<BoundingSphere> spheres_;
-  std::vector<std::pair<const ConvexPolyhedron*, double>> errors_;
+  std::vector<std::pair<const ConvexBody*, double>> errors_;
 };
 
 std::vector<Models> all_models(const Scene& scene, const MeshErrors& mesh_errors) {

@@ -22,7 +22,7 @@ constexpr double kConvexEnough = 0.005;
 // Far more than what placing parts is off, as a share of their size.
 constexpr double kRounding = 1e-12;
 
-EnclosingModel part_of(ConvexPolyhedron shape, const Pose& pose) {
+EnclosingModel part_of(ConvexBody shape, const Pose& pose) {
   EnclosingModel part{ModelKind::kPolyhedron, std::move(shape), pose};
   part.error = part.shape.position_error;
   return part;
@@ -30,7 +30,7 @@ EnclosingModel part_of(ConvexPolyhedron shape, const Pose& pose) {
 
 // A fan for each facet, in the object's frame.
 void add_facets(const Part& part, TriangleMesh& mesh) {
-  const ConvexPolyhedron& shape = part.shape;
+  const ConvexBody& shape = part.shape;
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3& p : shape.anchors) mesh.vertices.push_back(transform(part.object_from_part, p));
   const auto number = [first](std::int32_t anchor) {
@@ -48,7 +48,7 @@ void add_facets(const Part& part, TriangleMesh& mesh) {
 
 // Of several parts. How far the hull's surface is from theirs is known to 2 %; `excess` also bounds
 // points within the hull, but not as closely where there are many facets.
-double hull_error_of(const Object& object, const ConvexPolyhedron& hull) {
+double hull_error_of(const Object& object, const ConvexBody& hull) {
   TriangleMesh surface;
   for (const Part& part : object.parts) add_facets(part, surface);
   const double rounding = kRounding * hull.bounding_radius;
@@ -61,14 +61,14 @@ std::optional<Original> original_of(const Object& object) {
   std::vector<Vec3> points;
   PartsModel own;
   for (const Part& part : object.parts) {
-    const ConvexPolyhedron& shape = part.shape;
+    const ConvexBody& shape = part.shape;
     if (shape.is_curved() || shape.radius > 0.0 || !shape.bounded()) return std::nullopt;
     for (const Vec3& p : shape.anchors) points.push_back(transform(part.object_from_part, p));
     own.error = std::max(own.error, shape.position_error);
     own.parts.push_back(part_of(shape, part.object_from_part));
   }
   ShapeResult hull = polyhedron_from_vertices(points);
-  auto* body = std::get_if<ConvexPolyhedron>(&hull);
+  auto* body = std::get_if<ConvexBody>(&hull);
   if (body == nullptr) return std::nullopt;
   Original original{object.name, std::move(*body), 0.0, {}};
   if (object.parts.size() == 1) return original;
@@ -87,8 +87,8 @@ std::optional<PartsModel> split(const TriangleMesh& mesh, const PartLimits& limi
   model.error = made->error;
   for (const std::vector<Vec3>& vertices : made->parts) {
     ShapeResult part = polyhedron_from_vertices(vertices);
-    if (!std::holds_alternative<ConvexPolyhedron>(part)) return std::nullopt;
-    model.parts.push_back(part_of(std::get<ConvexPolyhedron>(std::move(part)), Pose{}));
+    if (!std::holds_alternative<ConvexBody>(part)) return std::nullopt;
+    model.parts.push_back(part_of(std::get<ConvexBody>(std::move(part)), Pose{}));
   }
   return model;
 }
@@ -105,7 +105,7 @@ std::variant<Original, Faults> original_of(const std::filesystem::path& file) {
   if (const auto* error = std::get_if<ShapeError>(&hull)) {
     return Faults{"'" + file.string() + "': " + error->reason};
   }
-  Original original{file.stem(), std::get<ConvexPolyhedron>(std::move(hull)), 0.0, {}};
+  Original original{file.stem(), std::get<ConvexBody>(std::move(hull)), 0.0, {}};
   original.hull_error = surface_error({&original.hull, 1}, TriangleTree(mesh));
   const double enough = kConvexEnough * original.hull.bounding_radius;
   if (original.hull_error <= enough) return original;

@@ -21,7 +21,7 @@ struct PartsModel {
 
 struct Original {
   std::string name;
-  ConvexPolyhedron hull;
+  ConvexBody hull;
   double hull_error = 0.0;        // m, as PartsModel::error
   std::vector<PartsModel> parts;  // with more and more of them; none where the hull will do
 };

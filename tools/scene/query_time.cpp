@@ -26,8 +26,8 @@ std::vector<Pose> way_around(double size) {
 }
 
 // Of one round, a query.
-double round_ns(const ReducedModel& model, const ConvexPolyhedron& other,
-                const std::vector<Pose>& poses, bool tracked) {
+double round_ns(const ReducedModel& model, const ConvexBody& other, const std::vector<Pose>& poses,
+                bool tracked) {
   std::vector<TrackingState> states(model.parts.size());
   const auto start = std::chrono::steady_clock::now();
   for (const Pose& pose : poses) {
@@ -51,7 +51,7 @@ void measure_queries(std::vector<ReducedModel>& models) {
       size = std::max(size, reach + part.shape.radius);
     }
   }
-  const auto other = std::get<ConvexPolyhedron>(box(Vec3::Constant(0.25 * size)));
+  const auto other = std::get<ConvexBody>(box(Vec3::Constant(0.25 * size)));
   const std::vector<Pose> poses = way_around(size);
   for (ReducedModel& model : models) model.time = QueryTimes{kInfinity, kInfinity};
   for (int round = 0; round < kRounds; ++round) {

@@ -18,7 +18,7 @@ std::string list(const Vec3& v) {
   return fmt::format("[{}, {}, {}]", shortest(v.x()), shortest(v.y()), shortest(v.z()));
 }
 
-std::string polyhedron_text(const ConvexPolyhedron& shape) {
+std::string polyhedron_text(const ConvexBody& shape) {
   std::string text = "polyhedron:\n    half_spaces:\n";
   for (const Facet& facet : shape.facets) {
     const double slack = kPlaneSlack * shape.bounding_radius + 4.0 * shape.position_error;
@@ -29,7 +29,7 @@ std::string polyhedron_text(const ConvexPolyhedron& shape) {
 }
 
 std::string shape_text(const EnclosingModel& model) {
-  const ConvexPolyhedron& shape = model.shape;
+  const ConvexBody& shape = model.shape;
   const auto& discs = shape.curved.discs;
   switch (model.kind) {
     case ModelKind::kSphere:

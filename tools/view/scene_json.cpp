@@ -67,7 +67,7 @@ class Meshes {
   explicit Meshes(const Scene& scene) : arc_step_(arc_step_of(scene)) {}
 
   // Of this body, its radius enlarged by `offset`, m.
-  std::size_t number_of(const ConvexPolyhedron& shape, double offset = 0.0) {
+  std::size_t number_of(const ConvexBody& shape, double offset = 0.0) {
     json found = mesh_json(body_mesh(shape, offset, kReach, arc_step_));
     const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
     if (is_new) list_.push_back(std::move(found));

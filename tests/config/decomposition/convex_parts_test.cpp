@@ -42,14 +42,14 @@ const ConvexParts& parts_of(const Drawn& drawn, std::size_t most = 24) {
   return entry->second;
 }
 
-std::vector<ConvexPolyhedron> bodies_of_parts(const ConvexParts& parts) {
-  std::vector<ConvexPolyhedron> bodies;
+std::vector<ConvexBody> bodies_of_parts(const ConvexParts& parts) {
+  std::vector<ConvexBody> bodies;
   for (const auto& part : parts.parts) bodies.push_back(test::made(polyhedron_from_vertices(part)));
   return bodies;
 }
 
 // By how much a point lies outside; negative: inside.
-double outside(const ConvexPolyhedron& body, const Vec3& point) {
+double outside(const ConvexBody& body, const Vec3& point) {
   double most = -kInfinity;
   for (const Facet& facet : body.facets) {
     most = std::max(most, facet.normal.dot(point) - facet.offset);
@@ -84,11 +84,10 @@ double distance_by_regions(const Triangle& t, const Vec3& p) {
 }
 
 // The largest distance from the mesh of points on the surface of the union.
-double sampled_error(const std::vector<ConvexPolyhedron>& bodies, const TriangleMesh& mesh,
-                     int samples) {
+double sampled_error(const std::vector<ConvexBody>& bodies, const TriangleMesh& mesh, int samples) {
   Random random(7);
   double worst = 0.0;
-  for (const ConvexPolyhedron& body : bodies) {
+  for (const ConvexBody& body : bodies) {
     for (const Facet& facet : body.facets) {
       const auto corner = [&](std::int32_t side) {
         const EdgeUse use = body.facet_edges[static_cast<std::size_t>(facet.first_side + side)];
@@ -98,7 +97,7 @@ double sampled_error(const std::vector<ConvexPolyhedron>& bodies, const Triangle
       for (int i = 0; i < samples; ++i) {
         const std::int32_t side = 1 + i % (facet.sides - 2);
         const Vec3 point = random_point({corner(0), corner(side), corner(side + 1)}, random);
-        const bool covered = std::ranges::any_of(bodies, [&](const ConvexPolyhedron& other) {
+        const bool covered = std::ranges::any_of(bodies, [&](const ConvexBody& other) {
           return &other != &body && outside(other, point) < 0.0;
         });
         if (covered) continue;
@@ -118,7 +117,7 @@ double sampled_error(const std::vector<ConvexPolyhedron>& bodies, const Triangle
 
 TEST_P(ConvexPartsOf, HoldEveryPointOfEveryTriangle) {
   const TriangleMesh& mesh = GetParam().mesh;
-  const std::vector<ConvexPolyhedron> bodies = bodies_of_parts(parts_of(GetParam()));
+  const std::vector<ConvexBody> bodies = bodies_of_parts(parts_of(GetParam()));
   Random random(3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int i = 0; i < 60; ++i) {
@@ -126,7 +125,7 @@ TEST_P(ConvexPartsOf, HoldEveryPointOfEveryTriangle) {
       const Vec3 point =
           i < 3 ? triangle[static_cast<std::size_t>(i)] : random_point(triangle, random);
       double least = kInfinity;
-      for (const ConvexPolyhedron& body : bodies) least = std::min(least, outside(body, point));
+      for (const ConvexBody& body : bodies) least = std::min(least, outside(body, point));
       ASSERT_LE(least, 1e-15) << "triangle " << t;
     }
   }

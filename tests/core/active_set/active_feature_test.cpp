@@ -12,7 +12,7 @@ namespace {
 using test::cube;
 using test::half_space;
 
-std::int32_t facet_towards(const ConvexPolyhedron& body, const Vec3& normal) {
+std::int32_t facet_towards(const ConvexBody& body, const Vec3& normal) {
   for (std::size_t i = 0; i < body.facets.size(); ++i) {
     if (body.facets[i].normal == normal) return static_cast<std::int32_t>(i);
   }
@@ -20,7 +20,7 @@ std::int32_t facet_towards(const ConvexPolyhedron& body, const Vec3& normal) {
 }
 
 TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
-  const ConvexPolyhedron body = cube();
+  const ConvexBody body = cube();
   ActiveFeature side(body, nullptr);
   side.place_inside(Vec3::Zero());
   // On the plane of the facet that is said to block, a metre beside it.
@@ -31,7 +31,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
 }
 
 TEST(ActiveFeature, OfAnUnboundedBodyStartsNoFartherOutThanAnyClosestPoint) {
-  const ConvexPolyhedron floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
+  const ConvexBody floor = half_space(Vec3::UnitZ(), 0.0), box = cube();
   const ActiveFeature other(box, nullptr);
   const TrackingState::Side near{FeatureKind::kFacet, false, 0, {1.0, 2.0, 0.0}},
       far{FeatureKind::kFacet, false, 0, {1e17, 2.0, 0.0}};

@@ -31,13 +31,13 @@ std::string text(const DistanceResult& r) {
 
 // Bodies on their way, and which pairs are watched.
 struct Motion {
-  std::vector<ConvexPolyhedron> bodies;
+  std::vector<ConvexBody> bodies;
   std::vector<BodyPair> pairs;
   std::vector<std::vector<Pose>> poses;  // [step][body]
 
-  [[nodiscard]] std::vector<const ConvexPolyhedron*> shapes() const {
-    std::vector<const ConvexPolyhedron*> all;
-    for (const ConvexPolyhedron& body : bodies) all.push_back(&body);
+  [[nodiscard]] std::vector<const ConvexBody*> shapes() const {
+    std::vector<const ConvexBody*> all;
+    for (const ConvexBody& body : bodies) all.push_back(&body);
     return all;
   }
   void watch_all_pairs() {
@@ -95,8 +95,8 @@ Motion crowd(std::uint64_t seed) {
                             : random.chance(0.25) ? hard::box(Vec3(0.3, 0.4, 0.5))
                                                   : hard::any_bounded(random);
     ShapeResult shape = model(body);
-    if (!std::holds_alternative<ConvexPolyhedron>(shape)) continue;
-    motion.bodies.push_back(std::get<ConvexPolyhedron>(std::move(shape)));
+    if (!std::holds_alternative<ConvexBody>(shape)) continue;
+    motion.bodies.push_back(std::get<ConvexBody>(std::move(shape)));
     motion.bodies.back().radius += random.chance(0.1) ? 0.01 : 0.0;
     poses.push_back({random.in_box(10.0), random.rotation()});
   }
@@ -229,8 +229,8 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesWhenAllFeaturesChangeAtOnce) {
 }
 
 TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
-  const ConvexPolyhedron cube = test::cube();
-  const ConvexPolyhedron* const bodies[] = {&cube, &cube};
+  const ConvexBody cube = test::cube();
+  const ConvexBody* const bodies[] = {&cube, &cube};
   const BodyPair pairs[] = {{0, 1}};
   for (const auto& [a, b] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 2}, {2, 0}, {1, 1}}) {
     DistanceBatch batch(bodies, pairs);
@@ -269,8 +269,8 @@ TEST(DistanceBatch, JudgesEdgesThatSlideOverFacesInLanes) {
 
 // Closest by corner and edge in turn; then still.
 TEST(DistanceBatch, AsksARestlessPairSinglyUntilItKeepsItsFeatures) {
-  const ConvexPolyhedron cube = test::cube();
-  const ConvexPolyhedron* const bodies[] = {&cube, &cube};
+  const ConvexBody cube = test::cube();
+  const ConvexBody* const bodies[] = {&cube, &cube};
   const BodyPair pairs[] = {{0, 1}};
   DistanceBatch batch(bodies, pairs);
   for (int step = 0; step < 100; ++step) {
@@ -290,7 +290,7 @@ TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
     Random random(seed);
     const hard::HardMotion m = hard::motion_families()[0].make(random, 40);
     DistanceJudge judge(m.a, m.b);
-    const ConvexPolyhedron* const bodies[] = {&judge.a(), &judge.b()};
+    const ConvexBody* const bodies[] = {&judge.a(), &judge.b()};
     const BodyPair pairs[] = {{0, 1}};
     DistanceBatch batch(bodies, pairs);
     for (const auto& [pose_a, pose_b] : m.poses) {

@@ -19,7 +19,7 @@ using oracle::Body;
 // Some bodies in one frame, for the core and for the oracle.
 struct Group {
   std::vector<Body> bodies;
-  std::vector<ConvexPolyhedron> shapes;
+  std::vector<ConvexBody> shapes;
   std::vector<PlacedShape> placed;
 
   void add(const Body& body, const Pose& pose) {

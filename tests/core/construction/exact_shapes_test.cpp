@@ -34,7 +34,7 @@ TEST(ExactShapes, RowsOnALatticeGiveExactlyTheEnumeratedBody) {
       rows.push_back({normal, static_cast<double>(random.integer(0, 3))});
     }
     const ShapeResult result = polyhedron_from_halfspaces(rows);
-    const ConvexPolyhedron* body = std::get_if<ConvexPolyhedron>(&result);
+    const ConvexBody* body = std::get_if<ConvexBody>(&result);
     if (body == nullptr || body->vertices.empty()) continue;
     ++accepted;
     expect_as_enumerated(*body, rows);
@@ -61,7 +61,7 @@ TEST(ExactShapes, HardBodiesGiveExactlyTheEnumeratedBody) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const std::vector<HalfSpace>& rows = bodies[i].rows;
       if (rows.empty() || rows.size() > 30) continue;
-      const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+      const ConvexBody body = made(polyhedron_from_halfspaces(rows));
       if (body.vertices.empty()) {
         EXPECT_THAT(broken_invariants(body), IsEmpty());
       } else {
@@ -82,7 +82,7 @@ TEST(ExactShapes, PointsOnALatticeGiveExactlyTheEnumeratedHull) {
     }
     const oracle::HullEnumeration truth = oracle::enumerate_hull(points);
     const ShapeResult result = polyhedron_from_vertices(points);
-    const ConvexPolyhedron* body = std::get_if<ConvexPolyhedron>(&result);
+    const ConvexBody* body = std::get_if<ConvexBody>(&result);
     if (body == nullptr) {
       EXPECT_LT(truth.vertices.size(), 4U);
       continue;
@@ -107,7 +107,7 @@ TEST(ExactShapes, ClustersNearOnePointKeepTheirExactHull) {
                                                      random.integer(-4, 4)));
     }
     const oracle::HullEnumeration truth = oracle::enumerate_hull(points);
-    const ConvexPolyhedron body = made(polyhedron_from_vertices(points));
+    const ConvexBody body = made(polyhedron_from_vertices(points));
     EXPECT_EQ(body.facets.size(), truth.facets.size());
     EXPECT_EQ(body.vertices.size(), truth.vertices.size());
     EXPECT_THAT(broken_invariants(body), IsEmpty());
@@ -116,10 +116,10 @@ TEST(ExactShapes, ClustersNearOnePointKeepTheirExactHull) {
 
 TEST(ExactShapes, ManyFacetsKeepEveryInvariant) {
   for (const int order : {4, 10, 30}) {
-    const ConvexPolyhedron ball = made(polyhedron_from_halfspaces(hard::facet_ball(order).rows));
+    const ConvexBody ball = made(polyhedron_from_halfspaces(hard::facet_ball(order).rows));
     EXPECT_THAT(broken_invariants(ball), IsEmpty());
     EXPECT_EQ(ball.facets.size(), hard::facet_ball(order).rows.size());
-    const ConvexPolyhedron dual = made(polyhedron_from_vertices(hard::dual_ball(order).points));
+    const ConvexBody dual = made(polyhedron_from_vertices(hard::dual_ball(order).points));
     EXPECT_THAT(broken_invariants(dual), IsEmpty());
   }
 }
@@ -133,14 +133,14 @@ TEST(ExactShapes, ScalingRepeatingAndReorderingRowsChangesNothing) {
     row = {row.normal * factor, row.offset * factor};
   }
   worse.insert(worse.begin() + 7, rows.begin(), rows.end());
-  const auto positions = [](const ConvexPolyhedron& body) {
+  const auto positions = [](const ConvexBody& body) {
     std::vector<std::array<double, 3>> result;
     for (const Vec3& a : body.anchors) result.push_back({a.x(), a.y(), a.z()});
     std::sort(result.begin(), result.end());
     return result;
   };
-  const ConvexPolyhedron plain = made(polyhedron_from_halfspaces(rows));
-  const ConvexPolyhedron repeated = made(polyhedron_from_halfspaces(worse));
+  const ConvexBody plain = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody repeated = made(polyhedron_from_halfspaces(worse));
   EXPECT_EQ(positions(plain), positions(repeated));
   EXPECT_EQ(plain.facets.size(), repeated.facets.size());
   EXPECT_EQ(plain.edges.size(), repeated.edges.size());
@@ -152,7 +152,7 @@ TEST(ExactShapes, ShortEdgesKeepAccurateDirections) {
   // at its ends, and runs along x all the same.
   const std::vector<HalfSpace> rows = {
       {{0, 1, 1}, 2}, {{0, -1, 1}, 0}, {{1, 0, 1}, 2}, {{-1, 0, 1}, 0x1p-56}, {{0, 0, -1}, 1}};
-  const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody body = made(polyhedron_from_halfspaces(rows));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   const auto shortest =
       std::min_element(body.edges.begin(), body.edges.end(),
@@ -167,8 +167,7 @@ TEST(ExactShapes, ShortEdgesKeepAccurateDirections) {
 TEST(ExactShapes, APlateThatIsTooThinIsToldFromOneUnitInTheLastPlaceLessThanNothing) {
   const double above = 1.0 + 0x1p-39;
   const double below = std::nextafter(1.0, 0.0);
-  const ConvexPolyhedron plate =
-      made(polyhedron_from_halfspaces(box_rows({-1, -1, 1.0}, {1, 1, above})));
+  const ConvexBody plate = made(polyhedron_from_halfspaces(box_rows({-1, -1, 1.0}, {1, 1, above})));
   EXPECT_THAT(broken_invariants(plate), IsEmpty());
   EXPECT_EQ(plate.vertices.size(), 8U);
   EXPECT_EQ(plate.position_error, 0.0);

@@ -55,8 +55,7 @@ inline Rational squared_distance(const oracle::RationalVec& a, const oracle::Rat
 }
 
 // position_error bounds what rounding did to anchors, offsets and edge ends.
-inline void expect_error_is_bounded(const ConvexPolyhedron& body,
-                                    const oracle::Enumeration& truth) {
+inline void expect_error_is_bounded(const ConvexBody& body, const oracle::Enumeration& truth) {
   const Rational allowed = Rational(body.position_error) * Rational(body.position_error);
   std::vector<oracle::RationalVec> exact;
   for (const Vertex& vertex : body.vertices) {
@@ -86,7 +85,7 @@ inline void expect_error_is_bounded(const ConvexPolyhedron& body,
 }
 
 // Same vertices (each rounded once), same rays, as many facets.
-inline void expect_as_enumerated(const ConvexPolyhedron& body, std::span<const HalfSpace> rows) {
+inline void expect_as_enumerated(const ConvexBody& body, std::span<const HalfSpace> rows) {
   const oracle::Enumeration truth = oracle::enumerate(rows);
   EXPECT_EQ(body.vertices.size(), truth.vertices.size());
   EXPECT_EQ(body.rays.size(), truth.rays.size());

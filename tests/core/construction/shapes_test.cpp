@@ -27,7 +27,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMost = std::numeric_limits<double>::max();
 
 TEST(Shapes, BoxIsExactInEveryNumber) {
-  const ConvexPolyhedron body = made(box({0.1, 0.2, 0.3}));
+  const ConvexBody body = made(box({0.1, 0.2, 0.3}));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   ASSERT_EQ(body.facets.size(), 6U);
   ASSERT_EQ(body.edges.size(), 12U);
@@ -48,11 +48,10 @@ TEST(Shapes, BoxIsExactInEveryNumber) {
 }
 
 TEST(Shapes, HalfSpacesAndVerticesOfABoxGiveTheSameBody) {
-  const ConvexPolyhedron from_rows =
-      made(polyhedron_from_halfspaces(box_rows({-1, -2, -3}, {4, 5, 6})));
+  const ConvexBody from_rows = made(polyhedron_from_halfspaces(box_rows({-1, -2, -3}, {4, 5, 6})));
   std::vector<Vec3> corners;
   for (const Vertex& vertex : from_rows.vertices) corners.push_back(vertex.position);
-  const ConvexPolyhedron from_points = made(polyhedron_from_vertices(corners));
+  const ConvexBody from_points = made(polyhedron_from_vertices(corners));
   EXPECT_EQ(from_points.facets.size(), 6U);
   EXPECT_EQ(from_rows.facets.size(), 6U);
   for (const Facet& facet : from_rows.facets) {
@@ -65,7 +64,7 @@ TEST(Shapes, HalfSpacesAndVerticesOfABoxGiveTheSameBody) {
 
 TEST(Shapes, PrismTakesTheHullOfItsBase) {
   const std::vector<Vec2> base = {{0, 0}, {2, 0}, {1, 0}, {2, 2}, {1, 1}, {0, 2}, {2, 0}};
-  const ConvexPolyhedron body = made(prism(base, -0.5, 1.5));
+  const ConvexBody body = made(prism(base, -0.5, 1.5));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   EXPECT_EQ(body.facets.size(), 6U);
   EXPECT_EQ(body.vertices.size(), 8U);
@@ -74,11 +73,11 @@ TEST(Shapes, PrismTakesTheHullOfItsBase) {
 }
 
 TEST(Shapes, PointAndSegmentHaveNoFacets) {
-  const ConvexPolyhedron sphere = made(point({1, 2, 2}, 0.25));
+  const ConvexBody sphere = made(point({1, 2, 2}, 0.25));
   EXPECT_THAT(broken_invariants(sphere), IsEmpty());
   EXPECT_EQ(sphere.radius, 0.25);
   EXPECT_GE(sphere.bounding_radius, 3.0);
-  const ConvexPolyhedron capsule = made(segment({1, 1, 1}, {1, 4, 5}, 0.5));
+  const ConvexBody capsule = made(segment({1, 1, 1}, {1, 4, 5}, 0.5));
   EXPECT_THAT(broken_invariants(capsule), IsEmpty());
   ASSERT_EQ(capsule.edges.size(), 1U);
   EXPECT_EQ(capsule.edges[0].end, 5.0);
@@ -140,12 +139,12 @@ TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
   Random random(1);
   for (int i = 0; i < 20; ++i) {
     const hard::Body hull = hard::random_hull(random, 12);
-    const ConvexPolyhedron body = made(polyhedron_from_vertices(hull.points));
+    const ConvexBody body = made(polyhedron_from_vertices(hull.points));
     for (const int exponent : {-27, -10, 20, 38}) {
       const double size = std::ldexp(1.0, exponent);
       std::vector<Vec3> points = hull.points;
       for (Vec3& point : points) point *= size;
-      const ConvexPolyhedron scaled = made(polyhedron_from_vertices(points));
+      const ConvexBody scaled = made(polyhedron_from_vertices(points));
       EXPECT_THAT(broken_invariants(scaled), IsEmpty()) << exponent;
       EXPECT_EQ(scaled.interior, size * body.interior) << exponent;
       EXPECT_EQ(scaled.inner_radius, size * body.inner_radius) << exponent;
@@ -156,8 +155,8 @@ TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
 TEST(Shapes, TheSameInputGivesTheSameBits) {
   Random random(29);
   const std::vector<HalfSpace> rows = hard::random_polytope(random, 40).rows;
-  const ConvexPolyhedron first = made(polyhedron_from_halfspaces(rows));
-  const ConvexPolyhedron second = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody first = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody second = made(polyhedron_from_halfspaces(rows));
   EXPECT_EQ(first.anchors, second.anchors);
   ASSERT_EQ(first.edges.size(), second.edges.size());
   for (std::size_t e = 0; e < first.edges.size(); ++e) {
@@ -167,10 +166,10 @@ TEST(Shapes, TheSameInputGivesTheSameBits) {
 }
 
 TEST(PolyhedronInvariants, NoticeEveryKindOfDamage) {
-  const ConvexPolyhedron whole = made(box({1, 2, 3}));
+  const ConvexBody whole = made(box({1, 2, 3}));
   ASSERT_THAT(broken_invariants(whole), IsEmpty());
   const auto damaged = [&whole](auto damage) {
-    ConvexPolyhedron body = whole;
+    ConvexBody body = whole;
     damage(body);
     return broken_invariants(body);
   };

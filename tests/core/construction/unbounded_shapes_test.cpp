@@ -31,7 +31,7 @@ TEST(UnboundedShapes, AreRefusedWhoseDirectionsAllButLieInOneLine) {
 }
 
 TEST(UnboundedShapes, HalfSpaceHasOneBarePlane) {
-  const ConvexPolyhedron body =
+  const ConvexBody body =
       made(polyhedron_from_halfspaces(std::vector<HalfSpace>{{{0, 0, 2}, 5}, {{0, 0, 1}, 3}}));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   ASSERT_EQ(body.facets.size(), 1U);
@@ -46,7 +46,7 @@ TEST(UnboundedShapes, HalfSpaceHasOneBarePlane) {
 
 TEST(UnboundedShapes, SlabHasTwoBarePlanesAndTheirLines) {
   const std::vector<HalfSpace> rows = {{{1, 2, 2}, 9}, {{-2, -4, -4}, 9}, {{1, 2, 2}, 10}};
-  const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody body = made(polyhedron_from_halfspaces(rows));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   ASSERT_EQ(body.facets.size(), 2U);
   EXPECT_EQ(body.facets[0].offset, 3.0);
@@ -58,7 +58,7 @@ TEST(UnboundedShapes, SlabHasTwoBarePlanesAndTheirLines) {
 
 TEST(UnboundedShapes, WedgeHasOneFullLine) {
   const std::vector<HalfSpace> rows = {{{1, 1, 0}, 2}, {{-1, 1, 0}, 0}, {{0, 1, 0}, 7}};
-  const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody body = made(polyhedron_from_halfspaces(rows));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   ASSERT_EQ(body.facets.size(), 2U);
   ASSERT_EQ(body.edges.size(), 1U);
@@ -79,7 +79,7 @@ TEST(UnboundedShapes, UnboundedPrismHasALineForEachSide) {
       const double angle = 2.0 * std::numbers::pi * i / sides;
       rows.push_back({{std::cos(angle), std::sin(angle), 0.25 * std::sin(angle)}, 1.0});
     }
-    const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+    const ConvexBody body = made(polyhedron_from_halfspaces(rows));
     EXPECT_THAT(broken_invariants(body), IsEmpty());
     EXPECT_EQ(body.facets.size(), static_cast<std::size_t>(sides));
     EXPECT_EQ(body.edges.size(), static_cast<std::size_t>(sides));
@@ -88,7 +88,7 @@ TEST(UnboundedShapes, UnboundedPrismHasALineForEachSide) {
 }
 
 TEST(UnboundedShapes, OctantHasThreeRaysFromOneCorner) {
-  const ConvexPolyhedron body = made(polyhedron_from_halfspaces(
+  const ConvexBody body = made(polyhedron_from_halfspaces(
       std::vector<HalfSpace>{{{1, 0, 0}, 1}, {{0, 1, 0}, 2}, {{0, 0, 1}, 3}, {{1, 1, 1}, 6}}));
   EXPECT_THAT(broken_invariants(body), IsEmpty());
   EXPECT_EQ(body.facets.size(), 3U);
@@ -102,7 +102,7 @@ TEST(UnboundedShapes, OctantHasThreeRaysFromOneCorner) {
 
 TEST(UnboundedShapes, RecessionConesAreKnownOnceTheyAreMade) {
   const auto opening = [](const std::vector<HalfSpace>& rows) {
-    const ConvexPolyhedron body = made(polyhedron_from_halfspaces(rows));
+    const ConvexBody body = made(polyhedron_from_halfspaces(rows));
     EXPECT_EQ(
         std::count_if(body.rays.begin(), body.rays.end(), [](const Ray& r) { return !r.is_line; }),
         static_cast<std::ptrdiff_t>(body.recession_cone.rays.size()));

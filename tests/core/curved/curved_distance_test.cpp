@@ -31,8 +31,8 @@ using test::made;
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-DistanceResult answer(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                      const Pose& world_from_a, const Pose& world_from_b) {
+DistanceResult answer(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                      const Pose& world_from_b) {
   return test::cold(a, b, relative_pose(world_from_a, world_from_b));
 }
 
@@ -50,7 +50,7 @@ void expect_answer(const DistanceResult& r, double exact, double size, double ro
 
 TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
   // (5.2.2) gives the points to 1e-11; the distance is 1.29549481993874080913966969921.
-  const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({5, 2, 1}));
+  const ConvexBody a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({5, 2, 1}));
   const DistanceResult r = answer(a, b, at(0, 0, 0), at(4, 4, 4));
   expect_answer(r, 1.29549481993874080914, 10.0 + 6.9);
   EXPECT_NEAR(r.point_on_a.x(), 0.13705777781256, 1e-10);
@@ -60,11 +60,11 @@ TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
 }
 
 TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
-  const ConvexPolyhedron point = made(clearance::point({0, 0, 0}, 0.75));
-  const ConvexPolyhedron round[] = {made(ellipsoid({0.75, 0.75, 0.75})), point,
-                                    made(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
-  for (const ConvexPolyhedron& a : round) {
-    for (const ConvexPolyhedron& b : round) {
+  const ConvexBody point = made(clearance::point({0, 0, 0}, 0.75));
+  const ConvexBody round[] = {made(ellipsoid({0.75, 0.75, 0.75})), point,
+                              made(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
+  for (const ConvexBody& a : round) {
+    for (const ConvexBody& b : round) {
       expect_answer(answer(a, b, at(0, 0, 0), at(3, 4, 0)), 3.5, 6.5);
       expect_answer(answer(a, b, at(0, 0, 0), at(0.75, 0, 0)), -0.75, 2.25);
     }
@@ -72,7 +72,7 @@ TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
 }
 
 TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
-  const ConvexPolyhedron a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
+  const ConvexBody a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
   expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);     // coaxial
   expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);  // caps half over each other
   expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);   // side by side
@@ -82,7 +82,7 @@ TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
 }
 
 TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
-  const ConvexPolyhedron cone_a = made(cone(1.0, 1.0)), sphere = made(ellipsoid({1, 1, 1}));
+  const ConvexBody cone_a = made(cone(1.0, 1.0)), sphere = made(ellipsoid({1, 1, 1}));
   expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, 4)), 2.0, 8.0);
   expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, -4)), 2.0, 8.0);
   // The side leads from (1, -1) to (0, 1); its outward normal is (2, 1) / sqrt 5.
@@ -92,15 +92,15 @@ TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
 
 TEST(CurvedDistance, OfAHalfSpaceIsThatOfOneSupportPoint) {
   const HalfSpace rows[] = {{{0, 0, 1}, 0.0}};
-  const ConvexPolyhedron floor = made(polyhedron_from_halfspaces(rows));
-  const ConvexPolyhedron ground = floor, body = made(ellipsoid({3, 2, 1}));
+  const ConvexBody floor = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody ground = floor, body = made(ellipsoid({3, 2, 1}));
   expect_answer(answer(ground, body, at(0, 0, 0), at(5, 6, 4)), 3.0, 12.0);
   expect_answer(answer(body, ground, at(5, 6, 4), at(0, 0, 0)), 3.0, 12.0);
   expect_answer(answer(ground, body, at(0, 0, 0), at(5, 6, 0.25)), -0.75, 12.0);
 }
 
 TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
-  const ConvexPolyhedron a = made(cylinder(1.0, 1.0)), b = made(cylinder(0.5, 1.0));
+  const ConvexBody a = made(cylinder(1.0, 1.0)), b = made(cylinder(0.5, 1.0));
   for (double tilt = 1e-14; tilt < 1e-2; tilt *= 10.0) {
     const Pose pose = turned_at(0, 0, 3, Vec3::UnitY(), tilt);
     const double exact = 3.0 - std::cos(tilt) - 0.5 * std::sin(tilt) - 1.0;
@@ -109,15 +109,15 @@ TEST(CurvedDistance, OfParallelCapsTiltedByLittleIsThatOfTheLowerRim) {
 }
 
 TEST(CurvedDistance, OfDiscsAndNeedlesIsRightAlongTheirAxes) {
-  const ConvexPolyhedron disc = made(ellipsoid({1, 1, 1e-4}));
-  const ConvexPolyhedron needle = made(ellipsoid({1e-4, 1e-4, 1}));
+  const ConvexBody disc = made(ellipsoid({1, 1, 1e-4}));
+  const ConvexBody needle = made(ellipsoid({1e-4, 1e-4, 1}));
   expect_answer(answer(disc, needle, at(0, 0, 0), at(0, 0, 2)), 1.0 - 1e-4, 5.0);
   expect_answer(answer(disc, disc, at(0, 0, 0), at(0, 0, 1)), 1.0 - 2e-4, 4.0);
   expect_answer(answer(needle, needle, at(0, 0, 0), at(1, 0, 0)), 1.0 - 2e-4, 4.0);
 }
 
 TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
-  const ConvexPolyhedron a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
+  const ConvexBody a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
   // Sideways, 1.5 - 1 = 0.5 is shorter than lengthwise, 5.
   expect_answer(answer(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);
   const DistanceResult r = answer(a, b, at(0, 0, 0), at(0, 0, 4.75));
@@ -127,15 +127,15 @@ TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
 }
 
 TEST(CurvedDistance, OfEllipsoidsWithOneCentreIsTheSumOfTheirShortestSemiAxes) {
-  const ConvexPolyhedron a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({1.5, 2, 3}));
+  const ConvexBody a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({1.5, 2, 3}));
   expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 0)), -2.5, 8.0);
 }
 
 TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
   Random random(21);
   for (int k = 0; k < 400; ++k) {
-    const ConvexPolyhedron p = made(box({random.log_uniform(0.1, 1), 0.5, 1}));
-    const ConvexPolyhedron q = made(box({1, random.log_uniform(0.1, 1), 0.25}));
+    const ConvexBody p = made(box({random.log_uniform(0.1, 1), 0.5, 1}));
+    const ConvexBody q = made(box({1, random.log_uniform(0.1, 1), 0.25}));
     const RelativePose pose = relative_pose(random.pose(1.5), random.pose(1.5));
     TrackingState state;
     CurvedTrackingState curved;
@@ -148,7 +148,7 @@ TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
 }
 
 TEST(CurvedDistance, TakesAnyStateAndNoHeap) {
-  const ConvexPolyhedron a = made(cylinder(1, 1)), b = made(ellipsoid({1, 2, 3}));
+  const ConvexBody a = made(cylinder(1, 1)), b = made(ellipsoid({1, 2, 3}));
   const RelativePose pose = relative_pose(at(0, 0, 0), at(4, 1, 0));
   CurvedTrackingState empty;
   const DistanceResult r = curved_distance(a, b, pose, empty);
@@ -165,7 +165,7 @@ TEST(CurvedDistance, TakesAnyStateAndNoHeap) {
 }
 
 TEST(CurvedDistance, OfABadPoseIsUnknown) {
-  const ConvexPolyhedron a = made(cylinder(1, 1));
+  const ConvexBody a = made(cylinder(1, 1));
   Pose bad = at(0, 0, 0);
   bad.position.x() = std::nan("");
   const DistanceResult r = answer(a, a, at(0, 0, 0), bad);
@@ -174,7 +174,7 @@ TEST(CurvedDistance, OfABadPoseIsUnknown) {
 }
 
 // One of every kind.
-std::vector<ConvexPolyhedron> every_kind() {
+std::vector<ConvexBody> every_kind() {
   const std::array<Vec3, 5> hull{Vec3(0, 0, 0.4), Vec3(0.3, 0, 0), Vec3(-0.2, 0.3, 0),
                                  Vec3(-0.2, -0.3, 0), Vec3(0, 0, -0.3)};
   return {made(ellipsoid({0.2, 0.3, 0.5})),
@@ -191,10 +191,10 @@ std::vector<ConvexPolyhedron> every_kind() {
 }
 
 TEST(CurvedBodies, MeetEveryOtherKindByPosesAndByRelativePoseAlike) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const std::vector<ConvexBody> bodies = every_kind();
   Random random(31);
-  for (const ConvexPolyhedron& a : bodies) {
-    for (const ConvexPolyhedron& b : bodies) {
+  for (const ConvexBody& a : bodies) {
+    for (const ConvexBody& b : bodies) {
       TrackingState by_poses, by_relative;
       for (int step = 0; step < 6; ++step) {
         const Pose world_from_a = random.pose(0.8), world_from_b = random.pose(0.8);
@@ -210,13 +210,13 @@ TEST(CurvedBodies, MeetEveryOtherKindByPosesAndByRelativePoseAlike) {
 }
 
 TEST(CurvedBodies, HaveTheSameBitsWithEveryVectorWidth) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const std::vector<ConvexBody> bodies = every_kind();
   const auto answers = [&](std::int64_t width) {
     const OnlyWith only(width);
     Random random(36);
     std::vector<DistanceResult> all;
-    for (const ConvexPolyhedron& a : bodies) {
-      for (const ConvexPolyhedron& b : bodies) {
+    for (const ConvexBody& a : bodies) {
+      for (const ConvexBody& b : bodies) {
         if (!a.is_curved() && !b.is_curved()) continue;
         TrackingState state;
         Pose pose = random.pose(0.6);
@@ -238,8 +238,8 @@ TEST(CurvedBodies, HaveTheSameBitsWithEveryVectorWidth) {
 }
 
 TEST(CurvedBodies, HaveTheSameBitsInABatch) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
-  std::vector<const ConvexPolyhedron*> shapes;
+  const std::vector<ConvexBody> bodies = every_kind();
+  std::vector<const ConvexBody*> shapes;
   std::vector<BodyPair> pairs;
   std::vector<Pose> poses;
   Random random(32);
@@ -265,11 +265,11 @@ TEST(CurvedBodies, HaveTheSameBitsInABatch) {
 }
 
 TEST(CurvedBodies, KeepTheirBoundsWithStatesOfOtherPairs) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const std::vector<ConvexBody> bodies = every_kind();
   Random random(33);
   for (int k = 0; k < 2000; ++k) {
-    const ConvexPolyhedron& a = bodies[random.integer(0, 5)];
-    const ConvexPolyhedron& b = bodies[random.integer(0, static_cast<int>(bodies.size()) - 1)];
+    const ConvexBody& a = bodies[random.integer(0, 5)];
+    const ConvexBody& b = bodies[random.integer(0, static_cast<int>(bodies.size()) - 1)];
     const Pose pose = random.pose(1.0);
     const DistanceResult fresh = cold(a, b, pose);
     TrackingState state = test::nonsense_state(a, b, random);
@@ -284,7 +284,7 @@ TEST(CurvedBodies, KeepTheirBoundsWithStatesOfOtherPairs) {
 }
 
 TEST(CurvedBodies, AreFarAwayBySpheresWhereNobodyAsksByHowMuch) {
-  const ConvexPolyhedron a = made(cylinder(0.3, 0.4)), b = made(ellipsoid({1, 2, 3}, 0.5));
+  const ConvexBody a = made(cylinder(0.3, 0.4)), b = made(ellipsoid({1, 2, 3}, 0.5));
   TrackingState state;
   const RelativePose pose = relative_pose(at(0, 0, 0), at(20, 0, 0));
   const DistanceResult r = distance(a, b, pose, state, {.far_away = 10.0});
@@ -294,7 +294,7 @@ TEST(CurvedBodies, AreFarAwayBySpheresWhereNobodyAsksByHowMuch) {
 }
 
 TEST(CurvedBodies, AreNotAskedHowDeepTheyOverlapUnlessSomebodyAsks) {
-  const ConvexPolyhedron a = made(cylinder(0.3, 0.4)), b = made(cone(0.5, 0.5));
+  const ConvexBody a = made(cylinder(0.3, 0.4)), b = made(cone(0.5, 0.5));
   TrackingState state;
   const RelativePose pose = relative_pose(at(0, 0, 0), at(0.1, 0, 0.2));
   const DistanceResult r = distance(a, b, pose, state, {.depth = false});
@@ -312,10 +312,10 @@ TEST(CurvedBodies, MeetUnboundedBodies) {
   const std::array<HalfSpace, 2> slab_rows{HalfSpace{{0, 0, 1}, 1}, HalfSpace{{0, 0, -1}, 1}};
   const std::array<HalfSpace, 3> corner_rows{HalfSpace{{1, 0, 1}, 0}, HalfSpace{{0, 1, 1}, 0},
                                              HalfSpace{{-1, -1, 1}, 0}};
-  const ConvexPolyhedron wedge = made(polyhedron_from_halfspaces(wedge_rows));
-  const ConvexPolyhedron slab = made(polyhedron_from_halfspaces(slab_rows));
-  const ConvexPolyhedron corner = made(polyhedron_from_halfspaces(corner_rows));
-  const ConvexPolyhedron ball = made(ellipsoid({1, 1, 1}));
+  const ConvexBody wedge = made(polyhedron_from_halfspaces(wedge_rows));
+  const ConvexBody slab = made(polyhedron_from_halfspaces(slab_rows));
+  const ConvexBody corner = made(polyhedron_from_halfspaces(corner_rows));
+  const ConvexBody ball = made(ellipsoid({1, 1, 1}));
   const auto expect = [](const DistanceResult& r, double exact) {
     EXPECT_NEAR(r.distance, exact, 1e-13);
     EXPECT_LE(r.lower, exact + 1e-15);
@@ -329,13 +329,13 @@ TEST(CurvedBodies, MeetUnboundedBodies) {
   expect(cold(slab, ball, at(5, 6, 0.5)), -1.5);
   expect(cold(corner, ball, at(0, 0, 5)), 4.0);  // apex
   expect(cold(ball, slab, at(5, 6, 4)), 2.0);
-  const ConvexPolyhedron rod = made(cylinder(0.5, 2.0));
+  const ConvexBody rod = made(cylinder(0.5, 2.0));
   expect(cold(wedge, rod, at(4, 3, 0)), 4.5);
   expect(cold(slab, rod, at(4, 3, 3.5)), 0.5);
 }
 
 TEST(CurvedBodies, AreInsideTheModelsAroundThem) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const std::vector<ConvexBody> bodies = every_kind();
   Random random(34);
   for (int k = 0; k < 20; ++k) {
     std::vector<PlacedShape> placed;
@@ -362,7 +362,7 @@ TEST(CurvedBodies, AreInsideTheModelsAroundThem) {
 }
 
 TEST(CurvedBodies, ReachNoFartherThanTheirExtents) {
-  const std::vector<ConvexPolyhedron> bodies = every_kind();
+  const std::vector<ConvexBody> bodies = every_kind();
   Random random(35);
   for (int k = 0; k < 500; ++k) {
     const CurvedShape& shape = bodies[random.integer(0, 5)].curved;

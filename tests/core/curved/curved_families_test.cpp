@@ -32,7 +32,7 @@ struct AskedCase {
   }
 
   CurvedCase asked;
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
 };
 
 class CurvedFamilies : public testing::TestWithParam<CurvedFamily> {
@@ -140,7 +140,7 @@ TEST_P(CurvedFamilies, AreNearerByARadiusAroundOne) {
 TEST_P(CurvedFamilies, AreAsFarAsAPointInTheEndWhenTheyShrinkToIt) {
   for_each(kLawfulCases / 4, [](const AskedCase& e, Random&) {
     if (!e.asked.b.points.empty()) return;
-    const ConvexPolyhedron at_origin = made(point(Vec3::Zero(), 0.0));
+    const ConvexBody at_origin = made(point(Vec3::Zero(), 0.0));
     const DistanceResult of_point =
         test::cold(e.a, at_origin, relative_pose(e.asked.pose_a, e.asked.pose_b));
     double before = e.cold().lower;

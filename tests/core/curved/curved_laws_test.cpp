@@ -17,7 +17,7 @@ using test::made;
 constexpr int kExamples = 300;
 
 struct Example {
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
   Pose world_from_a, world_from_b;
 
   [[nodiscard]] double size(const DistanceResult& r) const {
@@ -28,7 +28,7 @@ struct Example {
 
 // Lengths times `scale`.
 // Curved, or a box.
-ConvexPolyhedron body_of(Random& random, double scale) {
+ConvexBody body_of(Random& random, double scale) {
   const auto length = [&] { return scale * random.log_uniform(0.05, 1.0); };
   const double x = length(), y = length(), z = length();
   const double radius = random.chance(0.3) ? 0.2 * length() : 0.0;

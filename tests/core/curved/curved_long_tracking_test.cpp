@@ -56,8 +56,8 @@ class CurvedLongTracking : public testing::TestWithParam<CurvedRun> {};
 
 TEST_P(CurvedLongTracking, HoldsAfterAMillionSteps) {
   const CurvedRun& run = GetParam();
-  const ConvexPolyhedron a = test::made(hard::curved_model(run.a));
-  const ConvexPolyhedron b = test::made(hard::curved_model(run.b));
+  const ConvexBody a = test::made(hard::curved_model(run.a));
+  const ConvexBody b = test::made(hard::curved_model(run.b));
   TrackingState state;
   int converged = 0;
   for (int k = 1; k <= kLongSteps; ++k) {

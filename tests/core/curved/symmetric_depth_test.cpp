@@ -18,8 +18,8 @@ using test::at;
 using test::made;
 
 // Certified from both sides to 1e-13 of the size.
-void expect_depth(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose,
-                  double depth, double slack = 0.0) {
+void expect_depth(const ConvexBody& a, const ConvexBody& b, const Pose& pose, double depth,
+                  double slack = 0.0) {
   const DistanceResult r = test::cold(a, b, relative_pose(at(0, 0, 0), pose));
   const double size = a.bounding_radius + b.bounding_radius + pose.position.norm();
   EXPECT_EQ(r.status, DistanceStatus::kOverlapping) << r.upper - r.lower;
@@ -54,14 +54,14 @@ TEST(SymmetricDepth, OfCoaxialTruncatedConesIsThatOfTheirSections) {
     const Vec2 a[2] = {{-h, random.uniform(0.0, 1.0)}, {h, random.uniform(0.1, 1.0)}};
     const Vec2 b[2] = {{-i, random.uniform(0.1, 1.0)}, {i, random.uniform(0.0, 1.0)}};
     const double apart = random.uniform(-0.7, 0.7) * (h + i);
-    const ConvexPolyhedron body_a = made(truncated_cone(a[0].y(), a[1].y(), h));
-    const ConvexPolyhedron body_b = made(truncated_cone(b[0].y(), b[1].y(), i));
+    const ConvexBody body_a = made(truncated_cone(a[0].y(), a[1].y(), h));
+    const ConvexBody body_b = made(truncated_cone(b[0].y(), b[1].y(), i));
     expect_depth(body_a, body_b, at(0, 0, apart), coaxial_depth(a, b, apart), 1e-15);
   }
 }
 
 TEST(SymmetricDepth, OfCoaxialCylindersIsThatOfTheirRadiiOrTheirEnds) {
-  const ConvexPolyhedron a = made(cylinder(0.5, 2.0)), b = made(cylinder(0.25, 1.0));
+  const ConvexBody a = made(cylinder(0.5, 2.0)), b = made(cylinder(0.25, 1.0));
   expect_depth(a, b, at(0, 0, 0.5), 0.75);
   expect_depth(a, b, at(0, 0, 2.5), 0.5);
   const Vec3 across(1, 0, 0);
@@ -70,7 +70,7 @@ TEST(SymmetricDepth, OfCoaxialCylindersIsThatOfTheirRadiiOrTheirEnds) {
 }
 
 TEST(SymmetricDepth, OfABallOnTheAxisOfASolidOfRevolutionIsKnown) {
-  const ConvexPolyhedron ball = made(ellipsoid({0.5, 0.5, 0.5}));
+  const ConvexBody ball = made(ellipsoid({0.5, 0.5, 0.5}));
   expect_depth(ball, made(cylinder(1.0, 2.0)), at(0, 0, 0), 1.5);
   expect_depth(made(cylinder(1.0, 2.0)), ball, at(0, 0, 0.75), 1.5);
   // A point of the axis is sqrt(1 - z^2 / 8) from the spheroid: of its section, by hand.
@@ -88,7 +88,7 @@ TEST(SymmetricDepth, OfEllipsoidsAroundOneCentreIsTheLeastSumOfTwoSemiAxes) {
 }
 
 TEST(SymmetricDepth, OfShallowEllipsoidsTakesNoCoverOfTheSphere) {
-  const ConvexPolyhedron a = made(ellipsoid({1.0, 1.25, 1.5})), b = made(ellipsoid({1.5, 1, 1}));
+  const ConvexBody a = made(ellipsoid({1.0, 1.25, 1.5})), b = made(ellipsoid({1.5, 1, 1}));
   const DistanceResult r = test::cold(a, b, relative_pose(at(0, 0, 0), at(2.25, 0, 0)));
   EXPECT_NEAR(r.distance, -0.25, 1e-15);
   EXPECT_LE(r.upper - r.lower, 1e-13 * 5.0);

@@ -30,13 +30,13 @@ TEST(SharpCorners, AreHeldToWhateverFeaturesAQueryBeginsAt) {
 
 // A wedge 2e-12 rad wide, 1 m beside the origin.
 TEST(SharpCorners, OfAFacetEndItBelowATipThatPasses) {
-  const ConvexPolyhedron wedge = test::made(oracle::Body{{{{0.0, 1.0, -1e-12}, 1.0},
-                                                          {{0.0, -1.0, -1e-12}, -1.0},
-                                                          {{0.0, 0.0, 1.0}, 1.0},
-                                                          {{1.0, 0.0, 0.0}, 0.0},
-                                                          {{-1.0, 0.0, 0.0}, 1.0}},
-                                                         {}});
-  const ConvexPolyhedron tip = test::made(
+  const ConvexBody wedge = test::made(oracle::Body{{{{0.0, 1.0, -1e-12}, 1.0},
+                                                    {{0.0, -1.0, -1e-12}, -1.0},
+                                                    {{0.0, 0.0, 1.0}, 1.0},
+                                                    {{1.0, 0.0, 0.0}, 0.0},
+                                                    {{-1.0, 0.0, 0.0}, 1.0}},
+                                                   {}});
+  const ConvexBody tip = test::made(
       oracle::Body{{}, {{0.0, 0.0, 0.0}, {1.0, 0.5, -0.5}, {1.0, -0.5, -0.5}, {1.0, 0.0, -1.0}}});
   TrackingState state;
   for (int k = 16; k >= -16; --k) {
@@ -51,7 +51,7 @@ TEST(SharpCorners, OfAFacetEndItBelowATipThatPasses) {
 
 TEST(SharpCorners, LimitTheirFacets) {
   // The sharp corners of a facet: none of a square's, one of a wedge's end, two of a thin rhomb's.
-  const auto most = [](const ConvexPolyhedron& body) {
+  const auto most = [](const ConvexBody& body) {
     std::int32_t out = 0;
     for (const Facet& facet : body.facets) out = std::max(out, facet.limits - facet.sides);
     return out;
@@ -69,7 +69,7 @@ TEST(SharpCorners, LimitTheirFacets) {
   EXPECT_EQ(most(test::cube()), 0);
   EXPECT_EQ(most(prism_over(0.5)), 0);
   EXPECT_EQ(most(prism_over(0.3)), 2);
-  const ConvexPolyhedron rhomb = prism_over(1e-9);
+  const ConvexBody rhomb = prism_over(1e-9);
   for (const Facet& facet : rhomb.facets) {
     if (facet.sides + 2 != facet.limits) continue;
     for (std::int32_t i = facet.sides; i < facet.limits; ++i) {

@@ -22,7 +22,7 @@ using oracle::Real;
 using test::made;
 
 // Round, long, thin, or with a corner that sticks out.
-ConvexPolyhedron some_body(int seed, double scale = 1.0, const Pose& pose = Pose{}) {
+ConvexBody some_body(int seed, double scale = 1.0, const Pose& pose = Pose{}) {
   Random random(static_cast<std::uint64_t>(seed) + 700);
   std::vector<Vec3> points;
   const Vec3 stretch(random.log_uniform(0.02, 1.0), random.log_uniform(0.1, 1.0), 1.0);
@@ -108,7 +108,7 @@ Vec3 sample(const EnclosingModel& model, Random& random) {
 
 TEST(EnclosingModels, HoldEveryVertex) {
   for (int seed = 0; seed < 6; ++seed) {
-    const ConvexPolyhedron body = some_body(seed);
+    const ConvexBody body = some_body(seed);
     for (const EnclosingModel& model : enclosing_models(body)) {
       for (const Vec3& vertex : body.anchors) {
         EXPECT_TRUE(holds(model, vertex)) << seed << " " << name(model.kind);
@@ -119,8 +119,8 @@ TEST(EnclosingModels, HoldEveryVertex) {
 
 TEST(EnclosingModels, ReachNoFartherThanTheirErrorsSay) {
   for (int seed = 0; seed < 6; ++seed) {
-    const ConvexPolyhedron body = some_body(seed);
-    const ConvexPolyhedron at_origin = made(point(Vec3::Zero(), 0.0));
+    const ConvexBody body = some_body(seed);
+    const ConvexBody at_origin = made(point(Vec3::Zero(), 0.0));
     Random random(static_cast<std::uint64_t>(seed));
     for (const EnclosingModel& model : enclosing_models(body)) {
       double farthest = 0.0;
@@ -164,7 +164,7 @@ TEST(EnclosingModels, AreAboutAsGoodWhereverTheBodyIs) {
 }
 
 TEST(EnclosingModels, OfABoxAreTheKnownOnes) {
-  const ConvexPolyhedron body = made(box({0.5, 0.3, 0.2}));
+  const ConvexBody body = made(box({0.5, 0.3, 0.2}));
   const EnclosingModel same = enclosing_box(body);
   EXPECT_LE(same.error, 1e-10);
   // Löwner's ellipsoid of a box has its proportions: sqrt 3 times its half extents.
@@ -179,7 +179,7 @@ TEST(EnclosingModels, OfABoxAreTheKnownOnes) {
 }
 
 TEST(EnclosingModels, OfACubeNeedNoMoreFacetsThanItHas) {
-  const ConvexPolyhedron body = test::cube();
+  const ConvexBody body = test::cube();
   EXPECT_LE(enclosing_facets(body, 6).error, 1e-10);
   EXPECT_EQ(enclosing_models(body).size(), 6u);
 }

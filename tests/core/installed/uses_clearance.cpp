@@ -13,12 +13,12 @@ using clearance::Pose;
 // Of two unit cubes whose centres are 2.5 m apart, alone and in a batch; off `expected` by
 // rounding.
 bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
-  const auto cube = std::get<clearance::ConvexPolyhedron>(clearance::box({0.5, 0.5, 0.5}));
+  const auto cube = std::get<clearance::ConvexBody>(clearance::box({0.5, 0.5, 0.5}));
   clearance::TrackingState state;
   const auto alone =
       clearance::distance(cube, cube, clearance::relative_pose(pose_a, pose_b), state);
 
-  const clearance::ConvexPolyhedron* const bodies[] = {&cube, &cube};
+  const clearance::ConvexBody* const bodies[] = {&cube, &cube};
   const Pose poses[] = {pose_a, pose_b};
   const clearance::BodyPair pairs[] = {{0, 1}};
   clearance::DistanceBatch batch(bodies, pairs);
@@ -33,7 +33,7 @@ bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
 bool shares_shapes() {
   const std::vector<clearance::Vec2> base = {{0, 0}, {1, 0}, {0, 1}};
   const auto made = clearance::prism(base, 0.0, 2.0);
-  const auto* prism = std::get_if<clearance::ConvexPolyhedron>(&made);
+  const auto* prism = std::get_if<clearance::ConvexBody>(&made);
   return prism != nullptr && prism->vertices.size() == 6 && prism->edges.size() == 9 &&
          prism->radius == 0.0;
 }

@@ -21,9 +21,9 @@ using test::made;
 // operator new hands out whole multiples of this.
 constexpr std::uint64_t kGrain = alignof(std::max_align_t);
 
-void expect_counted(const ConvexPolyhedron& body, const std::string& what) {
+void expect_counted(const ConvexBody& body, const std::string& what) {
   const std::uint64_t tables = allocations(), before = allocated_bytes();
-  const ConvexPolyhedron copy = body;
+  const ConvexBody copy = body;
   const std::uint64_t asked = sizeof copy + (allocated_bytes() - before);
   EXPECT_LE(footprint(body), asked) << what;
   EXPECT_GT(footprint(body) + kGrain * (allocations() - tables), asked) << what;

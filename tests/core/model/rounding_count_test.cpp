@@ -101,7 +101,7 @@ struct CountedPlace {
 
 // A pair of features that are closest, each with the ball around its body's origin that holds it.
 struct Pair {
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
   Pose pose_a, pose_b;
   double reach_a, reach_b;
 };
@@ -137,14 +137,14 @@ Made made_of(const Genes& g) {
   return m;
 }
 
-ConvexPolyhedron through(const Vec3& p, const Vec3& along, double from) {
+ConvexBody through(const Vec3& p, const Vec3& along, double from) {
   return made(segment(p - std::abs(from) * along, p + 0.5 * std::abs(from) * along, 0.0));
 }
-ConvexPolyhedron below(const Vec3& p, const Vec3& n) {
+ConvexBody below(const Vec3& p, const Vec3& n) {
   const HalfSpace row{n, n.dot(p)};
   return made(polyhedron_from_halfspaces({&row, 1}));
 }
-ConvexPolyhedron at_point(const Vec3& p) { return made(point(p, 0.0)); }
+ConvexBody at_point(const Vec3& p) { return made(point(p, 0.0)); }
 
 struct Kind {
   const char* name;
@@ -155,10 +155,10 @@ struct Kind {
 
 void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
 
-Counted3 start_of(const ConvexPolyhedron& body) { return counted(body.edges[0].point); }
-Counted3 along(const ConvexPolyhedron& body) { return counted(body.edges[0].direction); }
-Counted3 corner(const ConvexPolyhedron& body) { return counted(body.vertices[0].position); }
-double farthest(const ConvexPolyhedron& body) { return body.bounding_radius; }
+Counted3 start_of(const ConvexBody& body) { return counted(body.edges[0].point); }
+Counted3 along(const ConvexBody& body) { return counted(body.edges[0].direction); }
+Counted3 corner(const ConvexBody& body) { return counted(body.vertices[0].position); }
+double farthest(const ConvexBody& body) { return body.bounding_radius; }
 
 constexpr Kind kKinds[] = {
     {"vertex, vertex", FeatureKind::kVertex, FeatureKind::kVertex,

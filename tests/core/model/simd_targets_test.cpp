@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kFirstSeed = 300, kWidthSeeds = 6;
 
 struct Walk {
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
   std::vector<std::pair<Pose, Pose>> poses;
   std::string name;
 };

@@ -15,7 +15,7 @@ namespace {
 TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) {
   Random random(1);
   for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {
-    const ConvexPolyhedron body = test::made(of);
+    const ConvexBody body = test::made(of);
     const auto expect_farthest = [&](const Vec3& m) {
       EXPECT_EQ(support(body, m).reach, support_by_scan(body, m).reach);
     };

@@ -25,8 +25,7 @@ double way_out(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Vec
   return top - bottom;
 }
 
-double depth_by_trying_all(const ConvexPolyhedron& a, const ConvexPolyhedron& b,
-                           const RelativePose& pose) {
+double depth_by_trying_all(const ConvexBody& a, const ConvexBody& b, const RelativePose& pose) {
   std::vector<Vec3> placed;
   for (const Vec3& p : b.anchors) placed.push_back(pose.rotation * p + pose.translation);
   double least = kInfinity;
@@ -54,15 +53,15 @@ void expect_depth_of_all(const DistanceResult& r, double depth) {
 }
 
 struct TurnedPair {
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
 };
 
 // Balls of facets and of corners, of one size and one small in the other; hulls of scattered
 // points, which are no balls; and one of few corners against one of many.
 std::vector<TurnedPair> pairs_of_many_corners(Random& random) {
-  const ConvexPolyhedron ball = made(hard::facet_ball(6)), dual = made(hard::dual_ball(6));
-  const ConvexPolyhedron small = made(hard::scaled(hard::facet_ball(6), 0.4));
-  const ConvexPolyhedron rough = made(hard::random_hull(random, 60));
+  const ConvexBody ball = made(hard::facet_ball(6)), dual = made(hard::dual_ball(6));
+  const ConvexBody small = made(hard::scaled(hard::facet_ball(6), 0.4));
+  const ConvexBody rough = made(hard::random_hull(random, 60));
   return {{ball, ball},  {dual, ball},  {dual, dual},   {ball, small},
           {small, dual}, {rough, ball}, {rough, rough}, {ball, test::cube()}};
 }
@@ -97,7 +96,7 @@ TEST(DeepOverlap, IsAsDeepTrackedAsItIs) {
 }
 
 TEST(DeepOverlap, OfBodiesOfThousandsOfFacetsIsThatOfTheSwappedPair) {
-  const ConvexPolyhedron ball = made(hard::facet_ball(24)), dual = made(hard::dual_ball(30));
+  const ConvexBody ball = made(hard::facet_ball(24)), dual = made(hard::dual_ball(30));
   Random random(11);
   for (const double apart : {0.0, 1e-3, 0.1, 1.0}) {
     const Pose pose_b{apart * random.direction(), random.rotation()};
@@ -114,7 +113,7 @@ TEST(DeepOverlap, OfBodiesOfThousandsOfFacetsIsThatOfTheSwappedPair) {
 // A plate all but flat, and a pillar that stands through its plane.
 struct PlateAndPillar {
   int rim;  // corners
-  ConvexPolyhedron plate, pillar;
+  ConvexBody plate, pillar;
 
   PlateAndPillar(int corners_of_rim, int sides, double thickness) : rim(corners_of_rim) {
     std::vector<Vec3> corners = {{0.0, 0.0, thickness}, {0.0, 0.0, -thickness}};

@@ -18,12 +18,12 @@ using test::cold;
 using test::made;
 
 // What 1e-14 is promised of, with A at the origin.
-double size_of(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
+double size_of(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
   return a.bounding_radius + a.radius + b.bounding_radius + b.radius + pose_b.position.norm();
 }
 
 TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
-  const ConvexPolyhedron a = made(hard::facet_ball(15)), b = made(hard::dual_ball(10));
+  const ConvexBody a = made(hard::facet_ball(15)), b = made(hard::dual_ball(10));
   Random random(3);
   for (int k = 0; k < 20; ++k) {
     const Pose pose_b{random.direction() * random.uniform(0.0, 1.8), random.rotation()};
@@ -34,8 +34,7 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
 }
 
 // How far B must go along n, of any length, to come clear of A.
-double way_out_along(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b,
-                     const Vec3& n) {
+double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b, const Vec3& n) {
   long double reach_a = -kInfinity, reach_b = -kInfinity;
   const auto along = [&](const Vec3& p) {
     return static_cast<long double>(n.x()) * p.x() + static_cast<long double>(n.y()) * p.y() +
@@ -50,7 +49,7 @@ double way_out_along(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const
 
 // The difference body's facets stand across a facet of one of them or an edge of each; any other
 // direction only takes longer.
-double shortest_way_out(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose_b) {
+double shortest_way_out(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
   const Eigen::Quaterniond turn = pose_b.orientation.normalized();
   double least = kInfinity;
   const auto attempt = [&](const Vec3& n) {
@@ -70,7 +69,7 @@ double shortest_way_out(const ConvexPolyhedron& a, const ConvexPolyhedron& b, co
 }
 
 TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
-  const ConvexPolyhedron a = made(hard::facet_ball(6)), b = made(hard::dual_ball(5));
+  const ConvexBody a = made(hard::facet_ball(6)), b = made(hard::dual_ball(5));
   Random random(4);
   for (int k = 0; k < 8; ++k) {
     const Pose pose_b{random.direction() * random.uniform(0.0, 1.6), random.rotation()};
@@ -79,7 +78,7 @@ TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
   }
 }
 
-ConvexPolyhedron cylinder(int sides) {
+ConvexBody cylinder(int sides) {
   std::vector<Vec2> base;
   for (int i = 0; i < sides; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / sides;
@@ -92,8 +91,8 @@ ConvexPolyhedron cylinder(int sides) {
 // bounds were 8e-5 of the size apart.
 TEST(Penetration, OfACapsuleInACylinderOfManySidesIsFoundToRoundingToo) {
   constexpr int kSides = 9000;
-  const ConvexPolyhedron b = cylinder(kSides);
-  const ConvexPolyhedron capsule = made(segment({0.0, 0.0, -0.5}, {0.0, 0.0, 0.5}, 0.1));
+  const ConvexBody b = cylinder(kSides);
+  const ConvexBody capsule = made(segment({0.0, 0.0, -0.5}, {0.0, 0.0, 0.5}, 0.1));
   const DistanceResult r = cold(capsule, b, Pose{});
   EXPECT_NEAR(r.distance, -(std::cos(std::numbers::pi / kSides) + 0.1), 1e-13);
   EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(capsule, b, Pose{}));
@@ -101,7 +100,7 @@ TEST(Penetration, OfACapsuleInACylinderOfManySidesIsFoundToRoundingToo) {
 
 // Its shortest way out is along x, where both reach farthest at an edge along z.
 TEST(Penetration, OfABoxInACylinderOfManySidesIsHowFarTheyReachAlongAnAxis) {
-  const ConvexPolyhedron a = made(box({0.1, 0.1, 0.5})), b = cylinder(9000);
+  const ConvexBody a = made(box({0.1, 0.1, 0.5})), b = cylinder(9000);
   const DistanceResult r = cold(a, b, Pose{});
   EXPECT_NEAR(r.distance, -1.1, 1e-14 * size_of(a, b, Pose{}));
   EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(a, b, Pose{}));

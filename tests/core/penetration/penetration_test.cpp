@@ -90,7 +90,7 @@ TEST(Penetration, OfCubesIsTheShortestWayOutOfAFace) {
 
 TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
   // Two bars of square section, lying on an edge each and crossing at right angles.
-  const ConvexPolyhedron bar = made(hard::box({0.5, 0.5, 10.0}));
+  const ConvexBody bar = made(hard::box({0.5, 0.5, 10.0}));
   const double quarter = std::numbers::pi / 4;
   const Pose along_x{{0, 0, 0},
                      Eigen::Quaterniond(Eigen::AngleAxisd(2 * quarter, Vec3::UnitY()) *
@@ -124,17 +124,17 @@ TEST(Penetration, KeepsItsDirectionWhereOthersAreAsDeep) {
 }
 
 TEST(Penetration, OfASmallBodyInsideALargeOneIsTheWayToTheNearestFace) {
-  const ConvexPolyhedron room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
+  const ConvexBody room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
   expect_depth(cold(room, cube(), at(1, 2, 0.5)), 2.0, 10);
   expect_depth(cold(room, ball, at(4.5, 2, 0)), 0.75, 10);
   expect_depth(cold(ball, room, at(-4.5, 2, 0)), 0.75, 10);
-  const ConvexPolyhedron capsule = made({{}, {{0, 0, -1}, {0, 0, 1}}, 0.5});
+  const ConvexBody capsule = made({{}, {{0, 0, -1}, {0, 0, 1}}, 0.5});
   expect_depth(cold(room, capsule, at(0, 0, 0.5)), 2.0 - 0.5 + 1.0 + 0.5, 10);
   expect_depth(cold(capsule, room, at(4.8, 0, 0)), 0.2 + 0.5, 10);
 }
 
 TEST(Penetration, OfAFloorIsHowFarTheLowestPointIsBelowIt) {
-  const ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
+  const ConvexBody floor = test::half_space({0, 0, 1}, 0.0);
   const DistanceResult r = cold(floor, cube(), at(3, 4, -2));
   expect_depth(r, 2.5, 10);
   EXPECT_EQ(r.normal, Vec3::UnitZ());
@@ -142,8 +142,8 @@ TEST(Penetration, OfAFloorIsHowFarTheLowestPointIsBelowIt) {
 }
 
 TEST(Penetration, OfTwoUnboundedBodiesIsUnknown) {
-  ConvexPolyhedron floor = test::half_space({0, 0, 1}, 0.0);
-  const ConvexPolyhedron wall = test::half_space({1, 0, 0}, 0.0);
+  ConvexBody floor = test::half_space({0, 0, 1}, 0.0);
+  const ConvexBody wall = test::half_space({1, 0, 0}, 0.0);
   for (const double radius : {0.0, 0.25}) {
     floor.radius = radius;
     const DistanceResult r = cold(floor, wall, at(0, 0, 0));
@@ -159,8 +159,8 @@ TEST(Penetration, OfTwoUnboundedBodiesIsUnknown) {
 }
 
 TEST(Penetration, OfSegmentsThatCrossIsNothingButTheirRadii) {
-  const ConvexPolyhedron a = made({{}, {{-1, 0, 0}, {1, 0, 0}}, 0.25});
-  const ConvexPolyhedron b = made({{}, {{0, -1, 0}, {0, 1, 0}}, 0.5});
+  const ConvexBody a = made({{}, {{-1, 0, 0}, {1, 0, 0}}, 0.25});
+  const ConvexBody b = made({{}, {{0, -1, 0}, {0, 1, 0}}, 0.5});
   expect_depth(cold(a, b, at(0, 0, 0)), 0.75);
 }
 
@@ -203,7 +203,7 @@ TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
 
 TEST(Penetration, SwappingTheBodiesTurnsTheNormal) {
   for_each_overlap(100, [](Overlap& o, Random&) {
-    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const ConvexBody a = made(o.a), b = made(o.b);
     const DistanceResult r = cold(a, b, relative_pose(o.pose_a, o.pose_b));
     const DistanceResult s = cold(b, a, relative_pose(o.pose_b, o.pose_a));
     EXPECT_LE(r.lower, s.upper);
@@ -214,7 +214,7 @@ TEST(Penetration, SwappingTheBodiesTurnsTheNormal) {
 
 TEST(Penetration, MovingByItAlongTheNormalMakesTheBodiesTouch) {
   for_each_overlap(100, [](Overlap& o, Random&) {
-    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const ConvexBody a = made(o.a), b = made(o.b);
     RelativePose pose = relative_pose(o.pose_a, o.pose_b);
     const DistanceResult r = cold(a, b, pose);
     if (r.status != DistanceStatus::kOverlapping) return;
@@ -228,7 +228,7 @@ TEST(Penetration, MovingByItAlongTheNormalMakesTheBodiesTouch) {
 
 TEST(Penetration, ChangesByNoMoreThanTheBodiesMoveThroughContactToo) {
   for_each_overlap(20, [](Overlap& o, Random& random) {
-    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const ConvexBody a = made(o.a), b = made(o.b);
     const double reach = a.bounding_radius + b.bounding_radius;
     const int steps = 200;
     const Vec3 step = random.direction() * 4.0 * reach / steps;
@@ -252,7 +252,7 @@ TEST(Penetration, ChangesByNoMoreThanTheBodiesMoveThroughContactToo) {
 
 TEST(Penetration, AllocatesNothingAndGivesTheSameBits) {
   for_each_overlap(20, [](Overlap& o, Random&) {
-    const ConvexPolyhedron a = made(o.a), b = made(o.b);
+    const ConvexBody a = made(o.a), b = made(o.b);
     const RelativePose pose = relative_pose(o.pose_a, o.pose_b);
     TrackingState state, again;
     const std::uint64_t before = allocations();
@@ -269,7 +269,7 @@ TEST(Penetration, WhereNobodyAsksForTheDepthTheBoundsHoldAndApartNothingChanges)
   Random random(77);
   int overlapping = 0, apart = 0;
   for (int i = 0; i < 500; ++i) {
-    const ConvexPolyhedron a = made(small_body(random)), b = made(small_body(random));
+    const ConvexBody a = made(small_body(random)), b = made(small_body(random));
     const RelativePose pose = relative_pose(Pose{}, {random.in_box(1.0), random.rotation()});
     const DistanceResult whole = cold(a, b, pose);
     // Nor is what a query with the depth has left in the state taken for more than a hint.

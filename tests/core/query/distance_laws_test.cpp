@@ -21,7 +21,7 @@ constexpr std::uint64_t kLawSeeds = 8;
 struct Example {
   std::string name;
   hard::HardCase c;
-  ConvexPolyhedron a, b;
+  ConvexBody a, b;
 
   [[nodiscard]] RelativePose pose() const { return relative_pose(c.pose_a, c.pose_b); }
   // What rounding errors are relative to (see DistanceJudge::size).
@@ -97,7 +97,7 @@ TEST(Distance, LeavesTheWitnessPointsInTheStateEachInItsBodysOwnFrame) {
 
 TEST(Distance, OfABodyFarAwayStillHasAWitnessPointOnTheOtherOneToItsOwnRounding) {
   // A unit cube at the world's origin, the other one 1 km away.
-  const ConvexPolyhedron cube = test::cube();
+  const ConvexBody cube = test::cube();
   Random random(1);
   for (int k = 0; k < 100; ++k) {
     const Pose far{1000.0 * random.direction(), random.rotation()};

@@ -27,12 +27,12 @@ using test::turned;
 // Roundings of numbers of about one.
 constexpr double kRounding = 1e-14;
 
-ConvexPolyhedron ball(double radius) { return made(point(Vec3::Zero(), radius)); }
-ConvexPolyhedron capsule(double half_length, double radius) {
+ConvexBody ball(double radius) { return made(point(Vec3::Zero(), radius)); }
+ConvexBody capsule(double half_length, double radius) {
   return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
 }
 // Along z; each side's normal . x = 0.5.
-ConvexPolyhedron unbounded_prism(std::initializer_list<Vec3> normals) {
+ConvexBody unbounded_prism(std::initializer_list<Vec3> normals) {
   std::vector<HalfSpace> rows;
   for (const Vec3& n : normals) rows.push_back({n, 0.5});
   return made(polyhedron_from_halfspaces(rows));
@@ -108,7 +108,7 @@ TEST(Distance, OfSpheresWithOneCentreIsMinusBothRadii) {
 }
 
 TEST(Distance, OfCapsulesParallelCrossedAndEndToEnd) {
-  const ConvexPolyhedron a = capsule(1.0, 0.25);
+  const ConvexBody a = capsule(1.0, 0.25);
   expect_distance(cold(a, a, at(1, 0, 0.5)), 0.5);
   expect_distance(cold(a, a, Pose{{1, 0, 0}, turned(Vec3::UnitX(), std::numbers::pi / 2)}), 0.5);
   expect_distance(cold(a, a, at(0, 0, 3)), 0.5);
@@ -125,7 +125,7 @@ TEST(Distance, OfASphereAndABoxIsMeasuredFromTheCore) {
 }
 
 TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
-  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
+  const ConvexBody floor = half_space({0, 0, 1}, 0.0);
   expect_distance(cold(floor, cube(), at(100, -100, 2)), 1.5, 200);
   const DistanceResult corner =
       cold(floor, cube(), Pose{{0, 0, 2}, turned({1, -1, 0}, std::acos(1 / std::sqrt(3.0)))});
@@ -136,8 +136,8 @@ TEST(Distance, OfABoxAboveAFloorIsItsLowestPoint) {
 }
 
 TEST(Distance, OfTwoUnboundedBodiesIsBoundedFromBelowWhereRoundingCanTell) {
-  const ConvexPolyhedron floor = half_space({0, 0, 1}, 0.0);
-  const ConvexPolyhedron corner =
+  const ConvexBody floor = half_space({0, 0, 1}, 0.0);
+  const ConvexBody corner =
       made({{{{1, 0, 1}, 0.0}, {{-1, 0, 1}, 0.0}, {{0, 1, 1}, 0.0}, {{0, -1, 1}, 0.0}}, {}, 0.0});
   const Pose upside_down{{0.5, 0.25, 2}, turned(Vec3::UnitX(), std::numbers::pi)};
   expect_distance(cold(floor, corner, upside_down), 2.0, 20);
@@ -173,7 +173,7 @@ TEST(Distance, MeansTheExactNormalisationOfQuaternions) {
 }
 
 TEST(Distance, OfPointsIsEuclid) {
-  const ConvexPolyhedron p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
+  const ConvexBody p = made(point({1, 2, 2}, 0.0)), q = made(point({1, 2, 2}, 0.0));
   const DistanceResult r = cold(p, q, at(2, 3, 6));
   expect_distance(r, 7.0, 10);
   expect_near(r.point_on_a, {1, 2, 2});
@@ -182,7 +182,7 @@ TEST(Distance, OfPointsIsEuclid) {
 
 // Squares of such lengths are zero in doubles.
 TEST(Distance, HoldsWhereSquaresUnderflow) {
-  const ConvexPolyhedron p = made(point(Vec3::Zero(), 0.0));
+  const ConvexBody p = made(point(Vec3::Zero(), 0.0));
   for (const double apart : {1e-150, 1e-160, 1e-200, 1e-300}) {
     for (const DistanceResult& r :
          {cold(p, p, at(apart, 0, 0)), cold(cube(), cube(), at(0, 1, apart)),
@@ -195,8 +195,8 @@ TEST(Distance, HoldsWhereSquaresUnderflow) {
 }
 
 // Of all kinds of features at once, and what they leave behind.
-void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const Pose& pose) {
-  static const ConvexPolyhedron sound = cube();
+void expect_unknown(const ConvexBody& a, const ConvexBody& b, const Pose& pose) {
+  static const ConvexBody sound = cube();
   for (std::uint8_t kinds = 0; kinds < 18; ++kinds) {
     TrackingState state{{static_cast<FeatureKind>(kinds % 3), kinds >= 9, 0},
                         {static_cast<FeatureKind>(kinds / 3 % 3), false, 0}};
@@ -217,11 +217,10 @@ void expect_unknown(const ConvexPolyhedron& a, const ConvexPolyhedron& b, const 
 }
 
 TEST(Distance, OfABadPoseHasInfiniteBoundsAndIsUnknown) {
-  const ConvexPolyhedron bodies[] = {cube(), ball(0.5), capsule(1.0, 0.25),
-                                     half_space({0, 0, 1}, 0.0),
-                                     unbounded_prism({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}})};
-  for (const ConvexPolyhedron& a : bodies) {
-    for (const ConvexPolyhedron& b : bodies) {
+  const ConvexBody bodies[] = {cube(), ball(0.5), capsule(1.0, 0.25), half_space({0, 0, 1}, 0.0),
+                               unbounded_prism({{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}})};
+  for (const ConvexBody& a : bodies) {
+    for (const ConvexBody& b : bodies) {
       for (int k = 0; k < 7; ++k) {
         for (const double x : {std::nan(""), kInfinity, -kInfinity}) {
           Pose pose = at(3, 0.2, 0.1);
@@ -250,7 +249,7 @@ TEST(Distance, HoldsFarAway) {
 TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
   TrackingState state;
   const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));
-  for (const ConvexPolyhedron& body : {cube(), ball(0.5)}) {
+  for (const ConvexBody& body : {cube(), ball(0.5)}) {
     const DistanceResult r = distance(body, body, pose, state, {.far_away = 10.0});
     EXPECT_EQ(r.status, DistanceStatus::kFarAway);
     EXPECT_GE(r.lower, 10.0);
@@ -281,9 +280,9 @@ TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
 }
 
 TEST(Distance, SaysWhichWayTheAnswerCame) {
-  const ConvexPolyhedron column = unbounded_prism({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
+  const ConvexBody column = unbounded_prism({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
   TrackingState state;
-  const auto way = [&](const ConvexPolyhedron& body, const Pose& pose, double far_away) {
+  const auto way = [&](const ConvexBody& body, const Pose& pose, double far_away) {
     const RelativePose b = relative_pose(Pose{}, pose);
     return distance(body, body, b, state, {.far_away = far_away}).path;
   };

@@ -89,8 +89,8 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
 TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
   scene.objects.resize(5);
-  const ConvexPolyhedron cube = test::made(box(Vec3::Ones()));
-  const ConvexPolyhedron floor = test::half_space(Vec3::UnitZ(), -9.0);
+  const ConvexBody cube = test::made(box(Vec3::Ones()));
+  const ConvexBody floor = test::half_space(Vec3::UnitZ(), -9.0);
   scene.objects[0].parts = {{"a", cube, {}}, {"b", cube, {.position = Vec3(3, 0, 0)}}};
   scene.objects[1].parts = {{"a", cube, {}}};
   scene.objects[2].parts = {{"floor", floor, {}}};

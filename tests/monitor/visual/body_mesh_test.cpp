@@ -15,7 +15,7 @@
 namespace clearance {
 namespace {
 
-ConvexPolyhedron made(const ShapeResult& shape) { return std::get<ConvexPolyhedron>(shape); }
+ConvexBody made(const ShapeResult& shape) { return std::get<ConvexBody>(shape); }
 
 // What the triangles enclose, by tetrahedra to the origin.
 double volume(const BodyMesh& mesh) {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance::bench {
 

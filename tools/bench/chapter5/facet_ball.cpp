@@ -26,12 +26,12 @@ std::vector<Vec3> facet_ball_directions(int order) {
   return directions;
 }
 
-ConvexPolyhedron ellipsoid_model(const Vec3& axes, int order) {
+ConvexBody ellipsoid_model(const Vec3& axes, int order) {
   std::vector<HalfSpace> rows;
   for (const Vec3& n : facet_ball_directions(order)) {
     rows.push_back({n, axes.cwiseProduct(n).norm()});
   }
-  return std::get<ConvexPolyhedron>(polyhedron_from_halfspaces(rows));
+  return std::get<ConvexBody>(polyhedron_from_halfspaces(rows));
 }
 
 FacetBallPair::FacetBallPair(const EllipsoidPair& pair, int order)

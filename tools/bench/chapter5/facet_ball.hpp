@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "tools/bench/chapter5/crossed_ellipsoids.hpp"
 #include "tools/bench/variant_loop.hpp"
@@ -17,7 +17,7 @@ namespace clearance::bench {
 [[nodiscard]] std::vector<Vec3> facet_ball_directions(int order);
 
 // Facets touch the ellipsoid: their offsets are the support function (5.3.2).
-[[nodiscard]] ConvexPolyhedron ellipsoid_model(const Vec3& axes, int order);
+[[nodiscard]] ConvexBody ellipsoid_model(const Vec3& axes, int order);
 
 // The pair's models, made before any query.
 class FacetBallPair {
@@ -25,8 +25,8 @@ class FacetBallPair {
   FacetBallPair(const EllipsoidPair& pair, int order);
 
   [[nodiscard]] std::size_t facets() const { return a_.facets.size() + b_.facets.size(); }
-  [[nodiscard]] const ConvexPolyhedron& a() const { return a_; }
-  [[nodiscard]] const ConvexPolyhedron& b() const { return b_; }
+  [[nodiscard]] const ConvexBody& a() const { return a_; }
+  [[nodiscard]] const ConvexBody& b() const { return b_; }
   // The next query starts from the centres.
   void forget() { tracking_ = {}; }
   // The thesis's iteration (base), alpha over all facets as it had it, or over the neighbours.
@@ -44,7 +44,7 @@ class FacetBallPair {
   }
 
  private:
-  ConvexPolyhedron a_, b_;
+  ConvexBody a_, b_;
   TrackingState tracking_;
 };
 

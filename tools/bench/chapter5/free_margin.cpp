@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance::bench {
 namespace {

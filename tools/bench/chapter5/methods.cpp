@@ -20,7 +20,7 @@
 namespace clearance::bench {
 namespace {
 
-ConvexPolyhedron made(const Vec3& axes) { return std::get<ConvexPolyhedron>(ellipsoid(axes)); }
+ConvexBody made(const Vec3& axes) { return std::get<ConvexBody>(ellipsoid(axes)); }
 
 ClosestPoints of(const DistanceResult& r) {
   return {r.point_on_a, r.point_on_b, r.iterations, r.status == DistanceStatus::kConverged};
@@ -36,7 +36,7 @@ Run ours_cold(const EllipsoidPair& pair) {
 // B comes from 2 mm beside every other time, and from there goes back to it.
 Run ours_tracked(const EllipsoidPair& pair) {
   struct Tracked {
-    ConvexPolyhedron a, b;
+    ConvexBody a, b;
     Pose there, beside;
     TrackingState state;
     bool away = false;

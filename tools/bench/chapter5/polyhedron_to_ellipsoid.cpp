@@ -69,8 +69,7 @@ ClosestPoints plane_to_ellipsoid(const Vec3& normal, double offset, const Vec3& 
   return {on_b + (offset - normal.dot(on_b)) * normal, on_b};
 }
 
-ClosestPoints polyhedron_to_ellipsoid(const ConvexPolyhedron& a, const Vec3& axes,
-                                      const Vec3& apart) {
+ClosestPoints polyhedron_to_ellipsoid(const ConvexBody& a, const Vec3& axes, const Vec3& apart) {
   constexpr int kMostCycles = 1000;
   // A release that gains less than this share of the distance is no gain.
   constexpr double kRate = 1e-12;

@@ -23,7 +23,7 @@ struct Line {
 
 // The polyhedron's frame is A's; the ellipsoid's axes are parallel to it, its centre is `apart`.
 // Starts inside; the bodies must be apart.
-[[nodiscard]] ClosestPoints polyhedron_to_ellipsoid(const ConvexPolyhedron& a, const Vec3& axes,
+[[nodiscard]] ClosestPoints polyhedron_to_ellipsoid(const ConvexBody& a, const Vec3& axes,
                                                     const Vec3& apart);
 
 }  // namespace clearance::bench

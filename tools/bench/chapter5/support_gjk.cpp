@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <array>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -84,7 +84,7 @@ class Bullet {
     }
     return std::make_shared<btCylinderShapeZ>(btVector3(low.radius, low.radius, 0.5 * length));
   }
-  static Shape shape(const ConvexPolyhedron& body) {
+  static Shape shape(const ConvexBody& body) {
     if (body.is_curved()) {
       Shape made = curved(body.curved);
       made->setMargin(0.0);

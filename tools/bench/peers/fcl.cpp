@@ -21,7 +21,7 @@ void with_types(const FclShape& a, const FclShape& b, const Use& use) {
 class Pair {
  public:
   using Shape = FclShape;
-  static Shape shape(const ConvexPolyhedron& body) { return fcl_shape(body); }
+  static Shape shape(const ConvexBody& body) { return fcl_shape(body); }
   Pair(Shape a, Shape b) : a_(std::move(a)), b_(std::move(b)) {}
 
  protected:

@@ -7,7 +7,7 @@
 namespace clearance::bench {
 
 // Faces as FCL wants them: the number of corners, then the corners counter-clockwise.
-std::shared_ptr<FclHull> fcl_hull(const ConvexPolyhedron& body) {
+std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body) {
   const Welded mesh = welded(body);
   const auto points =
       std::make_shared<std::vector<fcl::Vector3d>>(mesh.points.begin(), mesh.points.end());
@@ -19,7 +19,7 @@ std::shared_ptr<FclHull> fcl_hull(const ConvexPolyhedron& body) {
   return std::make_shared<FclHull>(points, static_cast<int>(mesh.faces.size()), faces);
 }
 
-FclShape fcl_shape(const ConvexPolyhedron& body) {
+FclShape fcl_shape(const ConvexBody& body) {
   const CurvedShape& shape = body.curved;
   if (shape.kind == CurvedShape::Kind::kEllipsoid) {
     return std::make_shared<fcl::Ellipsoidd>(shape.semi_axes);

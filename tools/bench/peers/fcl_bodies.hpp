@@ -11,7 +11,7 @@
 #include <memory>
 #include <variant>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance::bench {
@@ -19,14 +19,14 @@ namespace clearance::bench {
 using FclHull = fcl::Convex<double>;
 
 // Vertices closer than rounding are welded.
-[[nodiscard]] std::shared_ptr<FclHull> fcl_hull(const ConvexPolyhedron& body);
+[[nodiscard]] std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body);
 
 // Curved bodies as what they are: ellipsoid, cylinder, cone; a capsule along z, a sphere around the
 // origin; others as hulls.
 using FclShape = std::variant<std::shared_ptr<FclHull>, std::shared_ptr<fcl::Ellipsoidd>,
                               std::shared_ptr<fcl::Cylinderd>, std::shared_ptr<fcl::Coned>,
                               std::shared_ptr<fcl::Capsuled>, std::shared_ptr<fcl::Sphered>>;
-[[nodiscard]] FclShape fcl_shape(const ConvexPolyhedron& body);
+[[nodiscard]] FclShape fcl_shape(const ConvexBody& body);
 
 [[nodiscard]] fcl::Transform3d fcl_transform(const Pose& pose);
 

@@ -31,7 +31,7 @@ struct Body {
   Pose part_from_body;
 };
 
-Body body_of(const ConvexPolyhedron& shape) {
+Body body_of(const ConvexBody& shape) {
   if (shape.anchors.size() > 2) return {fcl_hull(shape), {}};
   if (shape.anchors.size() == 1) {
     return {std::make_shared<fcl::Sphere<double>>(shape.radius), {.position = shape.anchors[0]}};

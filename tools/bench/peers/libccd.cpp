@@ -18,7 +18,7 @@ struct Mesh {
   double radius = 0.0;
 };
 
-std::shared_ptr<const Mesh> mesh_of(const ConvexPolyhedron& body) {
+std::shared_ptr<const Mesh> mesh_of(const ConvexBody& body) {
   const auto mesh = std::make_shared<Mesh>();
   mesh->curved = body.curved;
   mesh->radius = body.radius;
@@ -101,7 +101,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* farthe
 class Libccd {
  public:
   using Shape = std::shared_ptr<const Mesh>;
-  static Shape shape(const ConvexPolyhedron& body) { return mesh_of(body); }
+  static Shape shape(const ConvexBody& body) { return mesh_of(body); }
 
   Libccd(Shape a, Shape b) : a_{std::move(a), {}, {}, 0}, b_{std::move(b), {}, {}, 0} {
     CCD_INIT(&ccd_);

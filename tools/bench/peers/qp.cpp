@@ -13,7 +13,7 @@ class Qp {
     QpRows rows;
     Vec3 middle;
   };
-  static Shape shape(const ConvexPolyhedron& body) {
+  static Shape shape(const ConvexBody& body) {
     const auto n = static_cast<Eigen::Index>(body.facets.size());
     Shape shape{{{n, 3}, Eigen::VectorXd(n)}, body.interior};
     for (Eigen::Index i = 0; i < n; ++i) {

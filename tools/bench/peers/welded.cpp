@@ -6,7 +6,7 @@ namespace {
 constexpr double kSame = 1e-12;  // of the bounding radius
 
 // [vertex]: the first vertex that is joined to it by edges too short to count.
-std::vector<int> representatives(const ConvexPolyhedron& body) {
+std::vector<int> representatives(const ConvexBody& body) {
   std::vector<int> first(body.vertices.size());
   for (std::size_t i = 0; i < first.size(); ++i) first[i] = static_cast<int>(i);
   for (bool changed = true; changed;) {
@@ -24,7 +24,7 @@ std::vector<int> representatives(const ConvexPolyhedron& body) {
 
 }  // namespace
 
-Welded welded(const ConvexPolyhedron& body) {
+Welded welded(const ConvexBody& body) {
   const std::vector<int> first = representatives(body);
   Welded mesh;
   std::vector<int> point(first.size());

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/convex_polyhedron.hpp"
+#include "core/convex_body.hpp"
 
 namespace clearance::bench {
 
@@ -14,6 +14,6 @@ struct Welded {
   std::vector<std::vector<int>> faces;  // counter-clockwise as seen from outside
 };
 
-[[nodiscard]] Welded welded(const ConvexPolyhedron& body);
+[[nodiscard]] Welded welded(const ConvexBody& body);
 
 }  // namespace clearance::bench

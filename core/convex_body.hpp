@@ -75,7 +75,7 @@ struct Ray {
   bool is_line = false;  // its opposite, exactly, is one as well
 };
 
-struct ConvexPolyhedron {
+struct ConvexBody {
   std::vector<Facet> facets;
   std::vector<Edge> edges;
   std::vector<Vertex> vertices;
@@ -154,6 +154,6 @@ static_assert(sizeof(std::vector<Facet>) == 3 * sizeof(void*),
               "compiled with _GLIBCXX_DEBUG: the library has the containers without it");
 static_assert(sizeof(Facet) == 48 && sizeof(Edge) == 128 && alignof(Edge) == 16);
 static_assert(sizeof(Vertex) == 32 && sizeof(Ray) == 32 && sizeof(RecessionCone) == 112);
-static_assert(sizeof(ConvexPolyhedron) == 2112 && alignof(ConvexPolyhedron) == 8);
+static_assert(sizeof(ConvexBody) == 2112 && alignof(ConvexBody) == 8);
 
 }  // namespace clearance
