@@ -16,7 +16,7 @@
 #include <limits>
 #include <vector>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/conclude.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/joint_batch.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"

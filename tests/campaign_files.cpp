@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "config/cell_file.hpp"
-#include "config/planning_scene.hpp"
-#include "config/robot_cell.hpp"
+#include "config/cell/cell_file.hpp"
+#include "config/urdf/planning_scene.hpp"
+#include "config/write/robot_cell.hpp"
 #include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/config/box_meshes.hpp"

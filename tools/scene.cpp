@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "config/robot_cell.hpp"
-#include "config/single_robot_cell.hpp"
-#include "config/warehouse_cell.hpp"
+#include "config/write/robot_cell.hpp"
+#include "config/write/single_robot_cell.hpp"
+#include "config/write/warehouse_cell.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"

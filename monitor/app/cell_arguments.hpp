@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/single_robot_cell.hpp"
+#include "config/write/single_robot_cell.hpp"
 
 namespace clearance {
 

@@ -5,7 +5,7 @@
 
 #include <iterator>
 
-#include "config/utf8.hpp"
+#include "config/yaml/utf8.hpp"
 
 namespace clearance {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "monitor/app/stop_signal.hpp"
 
 namespace clearance {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <variant>
 
-#include "config/yaml_node.hpp"
+#include "config/yaml/yaml_node.hpp"
 #include "monitor/files/file_error.hpp"
 
 namespace clearance {

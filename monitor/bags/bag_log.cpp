@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {

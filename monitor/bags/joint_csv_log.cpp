@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {

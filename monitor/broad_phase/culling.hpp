@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/broad_phase/broad_phase.hpp"
 #include "monitor/broad_phase/unseen_pairs.hpp"
 #include "monitor/objects/displacements.hpp"

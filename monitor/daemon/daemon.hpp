@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/pose_reader.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/report_queue.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/app/options.hpp"
 
 namespace clearance {

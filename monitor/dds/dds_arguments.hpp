@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/participant/participant.hpp"
 

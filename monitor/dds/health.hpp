@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/loop_statistics.hpp"

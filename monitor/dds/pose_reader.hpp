@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/pose_sources.hpp"
 #include "monitor/dds/present_topics.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"

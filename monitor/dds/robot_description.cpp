@@ -8,7 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "config/revision.hpp"
+#include "config/scene/revision.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

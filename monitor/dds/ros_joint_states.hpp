@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_stamps.hpp"
 #include "monitor/participant/participant.hpp"

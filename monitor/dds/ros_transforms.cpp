@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/loop/ports.hpp"
 
 namespace clearance {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_stamps.hpp"
 #include "monitor/frames/tracked_frames.hpp"

@@ -1,7 +1,7 @@
 // Tells the log, once each, whose poses or joint states come too seldom for their age limits.
 #pragma once
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/slow_inputs.hpp"
 #include "monitor/pose_batch.hpp"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 

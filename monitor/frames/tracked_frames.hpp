@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/frames/tf_tree.hpp"
 #include "monitor/pose_batch.hpp"
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "core/enclosing_polyhedron.hpp"
 
 namespace clearance {

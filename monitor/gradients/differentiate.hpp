@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/gradients/gradient_rows.hpp"
 #include "monitor/kinematics/joint_screw.hpp"
 #include "monitor/objects/robot_inputs.hpp"

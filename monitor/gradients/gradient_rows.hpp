@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {

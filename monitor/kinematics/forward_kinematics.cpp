@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "config/chain_rounding.hpp"
+#include "config/scene/chain_rounding.hpp"
 #include "core/convex_body.hpp"
 #include "monitor/kinematics/fixed_order.hpp"
 #include "monitor/kinematics/sine_cosine.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "config/robot.hpp"
+#include "config/scene/robot.hpp"
 #include "monitor/kinematics/tracked_variable.hpp"
 
 namespace clearance {

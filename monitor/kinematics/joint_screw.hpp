@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "config/robot.hpp"
+#include "config/scene/robot.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/tracked_variable.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "config/robot.hpp"
+#include "config/scene/robot.hpp"
 #include "monitor/joint_batch.hpp"
 #include "monitor/kinematics/contradiction.hpp"
 #include "monitor/kinematics/input_owner.hpp"

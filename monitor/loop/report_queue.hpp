@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/semaphore.hpp"
 #include "monitor/loop/spsc_ring.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 
 namespace clearance {

@@ -16,7 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/tracked_variable.hpp"
 #include "monitor/objects/tracked_object.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/kinematics/contradiction.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/input_owner.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/objects/tracked_object.hpp"
 
 namespace clearance {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "core/distance.hpp"
 #include "monitor/geometry/posed_part.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/pairs/evaluate_pairs.hpp"
 
 namespace clearance {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/recording/options.hpp"
 

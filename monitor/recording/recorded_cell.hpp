@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "monitor/recording/reader.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "config/mesh_file.hpp"
+#include "config/mesh/mesh_file.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 

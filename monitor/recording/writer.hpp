@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"

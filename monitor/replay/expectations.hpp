@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {

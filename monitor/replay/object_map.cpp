@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

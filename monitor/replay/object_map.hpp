@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

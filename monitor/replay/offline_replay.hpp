@@ -2,7 +2,7 @@
 // and gets the same reports again as fast as they can be computed. This is for a user's own tests,
 // which find_package(clearance) and link clearance::replay:
 //
-//   #include <config/cell_file.hpp>
+//   #include <config/cell/cell_file.hpp>
 //   #include <monitor/replay/offline_replay.hpp>
 //
 //   const CellResult cell = read_cell("cell.yaml");
@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/reference_totals.hpp"

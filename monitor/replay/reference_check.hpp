@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/monitor.hpp"
 #include "monitor/replay/reference_totals.hpp"
 

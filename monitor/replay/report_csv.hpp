@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/replay/offline_replay.hpp"
 
 namespace clearance {

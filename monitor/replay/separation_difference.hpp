@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

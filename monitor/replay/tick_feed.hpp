@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/reader.hpp"

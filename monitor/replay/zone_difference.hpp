@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/ros_types.hpp"

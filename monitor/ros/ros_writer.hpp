@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/ports.hpp"

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 
 namespace clearance {
 

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/pairs/published_pairs.hpp"
 #include "monitor/schedule/evaluator.hpp"
 #include "monitor/schedule/refresh_budget.hpp"

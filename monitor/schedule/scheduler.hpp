@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/broad_phase/culling.hpp"
 #include "monitor/pairs/published_pairs.hpp"
 #include "monitor/schedule/minimum_search.hpp"

@@ -2,7 +2,7 @@
 // the largest speed that keeps it. README.md here derives both.
 #pragma once
 
-#include "config/separation.hpp"
+#include "config/scene/separation.hpp"
 
 namespace clearance {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/objects/tracked_object.hpp"
 #include "monitor/report.hpp"
 #include "monitor/zones/zone_levels.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clearance.h"
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/visual/ros_types.hpp"
 

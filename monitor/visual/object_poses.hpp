@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "clearance.h"
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/objects/ingest.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/source_numbers.hpp"

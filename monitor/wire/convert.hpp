@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"

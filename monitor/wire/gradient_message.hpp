@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/gradients/gradient_rows.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 

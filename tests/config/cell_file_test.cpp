@@ -1,4 +1,4 @@
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

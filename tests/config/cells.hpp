@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 
 namespace clearance {
 

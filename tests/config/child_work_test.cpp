@@ -1,4 +1,4 @@
-#include "config/child_work.hpp"
+#include "config/mesh/child_work.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

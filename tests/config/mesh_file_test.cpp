@@ -1,4 +1,4 @@
-#include "config/mesh_file.hpp"
+#include "config/mesh/mesh_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "config/mesh_file.hpp"
+#include "config/mesh/mesh_file.hpp"
 #include "core/shapes.hpp"
 #include "tests/config/box_meshes.hpp"
 #include "tests/config/cells.hpp"

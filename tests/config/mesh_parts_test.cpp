@@ -1,4 +1,4 @@
-#include "config/mesh_parts.hpp"
+#include "config/mesh/mesh_parts.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "config/file_lock.hpp"
+#include "config/mesh/file_lock.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/scratch_folder.hpp"

@@ -1,5 +1,5 @@
 // Planning scenes in MoveIt's text format, in both of its forms.
-#include "config/planning_scene.hpp"
+#include "config/urdf/planning_scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

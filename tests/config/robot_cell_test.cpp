@@ -1,4 +1,4 @@
-#include "config/robot_cell.hpp"
+#include "config/write/robot_cell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

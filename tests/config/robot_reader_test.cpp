@@ -1,4 +1,4 @@
-#include "config/robot_reader.hpp"
+#include "config/cell/robot_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-#include "config/simulation.hpp"
+#include "config/scene/simulation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 namespace {

@@ -1,4 +1,4 @@
-#include "config/spelling.hpp"
+#include "config/yaml/spelling.hpp"
 
 #include <gtest/gtest.h>
 

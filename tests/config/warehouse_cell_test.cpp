@@ -1,11 +1,11 @@
-#include "config/warehouse_cell.hpp"
+#include "config/write/warehouse_cell.hpp"
 
 #include <gtest/gtest.h>
 
 #include <variant>
 #include <vector>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/shared/simulated_samples.hpp"
 

@@ -1,4 +1,4 @@
-#include "config/yaml_node.hpp"
+#include "config/yaml/yaml_node.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "core/distance.hpp"
 
 namespace clearance::test {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "config/cell_file.hpp"
-#include "config/simulation.hpp"
+#include "config/cell/cell_file.hpp"
+#include "config/scene/simulation.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "core/shapes.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/shared/made.hpp"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "config/simulation.hpp"
+#include "config/scene/simulation.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

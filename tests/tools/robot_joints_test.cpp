@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "config/single_robot_cell.hpp"
+#include "config/write/single_robot_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

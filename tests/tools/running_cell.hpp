@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/child_process.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/joint_screw.hpp"
 

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/client/client.hpp"
 #include "tools/avoid/arm_model.hpp"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "config/simulation.hpp"
+#include "config/scene/simulation.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance::avoid {

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/client/client.hpp"
 #include "tools/avoid/controller.hpp"
 

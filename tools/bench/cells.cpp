@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "core/batch.hpp"
 #include "core/distance.hpp"
 #include "monitor/app/print.hpp"

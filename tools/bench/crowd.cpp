@@ -8,9 +8,9 @@
 #include <numbers>
 #include <variant>
 
-#include "config/cell_file.hpp"
-#include "config/simulation.hpp"
-#include "config/warehouse_cell.hpp"
+#include "config/cell/cell_file.hpp"
+#include "config/scene/simulation.hpp"
+#include "config/write/warehouse_cell.hpp"
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/random.hpp"

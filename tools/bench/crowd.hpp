@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/pose_batch.hpp"
 
 namespace clearance::bench {
@@ -48,8 +48,8 @@ struct OrbitingOptions {
 // obstacle, and all pairs of links that are not neighbours or next neighbours.
 [[nodiscard]] Crowd robot_in_crowd(std::uint32_t obstacles);
 
-// The generated warehouse of config/warehouse_cell.hpp: objects of up to eight parts, of which one
-// in twenty moves.
+// The generated warehouse of config/write/warehouse_cell.hpp: objects of up to eight parts, of
+// which one in twenty moves.
 [[nodiscard]] Crowd warehouse_crowd(std::uint32_t objects);
 
 // A shipped cell, config/cells/NAME.yaml, along its simulated motion.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "config/seeded_draw.hpp"
+#include "config/write/seeded_draw.hpp"
 #include "core/vec.hpp"
 
 namespace clearance::bench {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/single_robot_cell.hpp"
+#include "config/write/single_robot_cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tools/plot/stretches.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/joint_batch.hpp"
 
 namespace clearance {

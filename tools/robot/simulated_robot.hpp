@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/simulation.hpp"
+#include "config/scene/simulation.hpp"
 #include "monitor/client/client.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/participant/participant.hpp"

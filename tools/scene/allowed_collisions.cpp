@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "config/robot_exceptions.hpp"
+#include "config/urdf/robot_exceptions.hpp"
 
 namespace clearance {
 namespace {

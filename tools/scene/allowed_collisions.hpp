@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/urdf.hpp"
+#include "config/urdf/urdf.hpp"
 #include "tools/scene/sampled_contacts.hpp"
 
 namespace clearance {

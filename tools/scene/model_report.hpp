@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 

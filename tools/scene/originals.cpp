@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "config/cell_file.hpp"
+#include "config/cell/cell_file.hpp"
 #include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/surface_error.hpp"
-#include "config/mesh_file.hpp"
-#include "config/single_robot_cell.hpp"
+#include "config/mesh/mesh_file.hpp"
+#include "config/write/single_robot_cell.hpp"
 #include "core/shapes.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/geometry/bounding_hull.hpp"

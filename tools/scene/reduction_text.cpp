@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "config/yaml_emitter.hpp"
+#include "config/yaml/yaml_emitter.hpp"
 #include "tools/scene/reduction.hpp"
 
 namespace clearance {

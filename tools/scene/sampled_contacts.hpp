@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/broad_phase/broad_phase.hpp"
 #include "monitor/schedule/urgency_bins.hpp"
 

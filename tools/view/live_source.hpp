@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_joint_states.hpp"
 #include "monitor/participant/cdr_sample.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance::view {
 

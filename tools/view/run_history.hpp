@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "clearance.h"
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "tools/plot/stretches.hpp"
 
 namespace clearance::view {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 
 namespace clearance::view {
 

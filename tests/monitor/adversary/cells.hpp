@@ -1,7 +1,7 @@
 // Cells for the adversary.
 #pragma once
 
-#include "config/scene.hpp"
+#include "config/scene/scene.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance::test {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/adversary/adversary.hpp"
 #include "tests/monitor/adversary/oracle.hpp"

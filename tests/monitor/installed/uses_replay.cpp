@@ -1,6 +1,6 @@
 // What README shows under "In your tests": the hand comes as near as 0.3 m, so 0.25 m hold and 0.35
 // m do not.
-#include <config/cell_file.hpp>
+#include <config/cell/cell_file.hpp>
 #include <monitor/replay/offline_replay.hpp>
 
 #include <cstdio>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/robot_files.hpp"
+#include "config/urdf/robot_files.hpp"
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/random.hpp"
 

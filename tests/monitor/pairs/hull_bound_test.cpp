@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "config/cell_file.hpp"
-#include "config/warehouse_cell.hpp"
+#include "config/cell/cell_file.hpp"
+#include "config/write/warehouse_cell.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"

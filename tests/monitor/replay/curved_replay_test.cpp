@@ -5,8 +5,8 @@
 #include <array>
 #include <filesystem>
 
-#include "config/cell_file.hpp"
-#include "config/simulation.hpp"
+#include "config/cell/cell_file.hpp"
+#include "config/scene/simulation.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/monitor/small_cells.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "config/refresh_share.hpp"
+#include "config/scene/refresh_share.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/small_cells.hpp"
 

@@ -1,0 +1,305 @@
+// Parses the YAML into a tree that knows its lines, then reads it section by section into a Scene.
+// Each reader reports a mistake and goes on with a default, so that one run finds every mistake; a
+// Scene is returned only if there was none.
+#include "config/cell/cell_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "config/cell/object_reader.hpp"
+#include "config/cell/pair_reader.hpp"
+#include "config/cell/planning_scene_reader.hpp"
+#include "config/cell/robot_reader.hpp"
+#include "config/cell/ros_reader.hpp"
+#include "config/cell/shape_reader.hpp"
+#include "config/cell/simulation_reader.hpp"
+#include "config/cell/zone_reader.hpp"
+#include "config/mesh/mesh_file.hpp"
+#include "config/scene/refresh_share.hpp"
+#include "config/scene/revision.hpp"
+#include "config/yaml/diagnostics.hpp"
+#include "config/yaml/map_reader.hpp"
+#include "config/yaml/quantities.hpp"
+#include "config/yaml/scalar.hpp"
+#include "config/yaml/yaml_node.hpp"
+
+namespace clearance {
+namespace {
+
+// Limits that keep every derived number (periods, counts) within its type.
+constexpr std::int64_t kMaxBudget = 1'000'000'000;
+constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bits
+// Discovery announces names in bounded strings (DDSI-RTPS: string<256>).
+constexpr std::size_t kMaxDdsName = 255;  // bytes
+// The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
+constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
+// From one tick at 1 kHz to some days.
+constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
+
+// The sections of a cell, one function each.
+class CellReader {
+ public:
+  CellReader(const std::filesystem::path& file, const CellOptions& options,
+             Diagnostics& diagnostics, Revision& revision)
+      : file_(file), options_(options), diagnostics_(diagnostics), revision_(revision) {}
+
+  void read(const YamlNode& root, Scene& scene);
+
+ private:
+  std::optional<Units> read_units(const YamlNode& node);
+  void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
+  void read_dds(const YamlNode& node, Scene& scene);
+  void read_topics(const YamlNode& node, Topics& topics);
+  void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
+  void refuse_frames_without_a_world(const YamlNode& root, const Scene& scene);
+  // Has to be last: it needs every pair with its parts.
+  void refuse_small_budget(const YamlNode& root, const Scene& scene);
+
+  const std::filesystem::path& file_;
+  const CellOptions& options_;
+  Diagnostics& diagnostics_;
+  Revision& revision_;
+  const YamlNode* budget_ = nullptr;  // where the cell gives it
+};
+
+// Both units must be named: a default would be wrong for many cells, in silence.
+std::optional<Units> CellReader::read_units(const YamlNode& node) {
+  MapReader map(node, "the units", diagnostics_);
+  const YamlNode* length_node = map.required("length");
+  const YamlNode* angle_node = map.required("angle");
+  map.refuse_unknown_keys();
+  std::optional<LengthUnit> length;
+  std::optional<AngleUnit> angle;
+  if (length_node != nullptr) length = read_length_unit(*length_node, diagnostics_);
+  if (angle_node != nullptr) angle = read_angle_unit(*angle_node, diagnostics_);
+  if (!length || !angle) return std::nullopt;
+  return Units{*length, *angle};
+}
+
+// Rate, budget and time limits; what a cell leaves out keeps the default of Scene.
+void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
+  if (const YamlNode* rate = map.optional("rate_hz")) {
+    scene.rate_hz =
+        read_number(*rate, kRates, "the rate in Hz", diagnostics_).value_or(scene.rate_hz);
+  }
+  budget_ = map.optional("budget");
+  if (budget_ != nullptr) {
+    const auto queries =
+        read_integer(*budget_, 1, kMaxBudget, "distance queries a tick", diagnostics_);
+    if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
+  }
+  if (const YamlNode* refresh = map.optional("refresh_s")) {
+    scene.refresh_s = read_number(*refresh, kRefreshes,
+                                  "seconds within which every pair is refreshed", diagnostics_)
+                          .value_or(scene.refresh_s);
+  }
+  if (const YamlNode* limit = map.optional("future_limit_ms")) {
+    scene.future_limit_ns =
+        quantities.milliseconds(*limit, "how far ahead of now a stamp may be", kNotNegative)
+            .value_or(scene.future_limit_ns);
+  }
+  if (const YamlNode* gradients = map.optional("gradients")) {
+    scene.gradients = read_flag(*gradients, diagnostics_).value_or(false);
+  }
+}
+
+// DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
+void CellReader::read_topics(const YamlNode& node, Topics& topics) {
+  MapReader map(node, "the topics", diagnostics_);
+  std::map<std::string, const char*> taken;
+  for (const auto& [key, topic] : {std::pair("poses", &topics.poses),
+                                   {"distances", &topics.distances},
+                                   {"catalogue", &topics.catalogue},
+                                   {"health", &topics.health},
+                                   {"zones", &topics.zones},
+                                   {"joint_states", &topics.joint_states},
+                                   {"separation", &topics.separation},
+                                   {"gradients", &topics.gradients}}) {
+    const YamlNode* name_node = map.optional(key);
+    const auto name = name_node == nullptr ? std::optional(*topic)
+                                           : read_text(*name_node, "a topic's name", diagnostics_);
+    if (!name) continue;
+    // The characters that every DDS implementation accepts.
+    const bool plain = std::all_of(name->begin(), name->end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+             c == '_' || c == '/';
+    });
+    if (name->empty() || !plain || name->size() > kMaxDdsName ||
+        (name->front() >= '0' && name->front() <= '9')) {
+      diagnostics_.add(
+          *name_node,
+          fmt::format(
+              "found {}; expected a topic's name: letters, digits, '_' and '/', no digit first",
+              describe(*name_node)));
+    } else if (const auto [same, is_new] = taken.emplace(*name, key); !is_new) {
+      diagnostics_.add(
+          name_node == nullptr ? node : *name_node,
+          fmt::format(
+              "found the topic '{}' for both '{}' and '{}'; expected a topic of its own for each",
+              *name, same->second, key));
+    }
+    *topic = *name;
+  }
+  map.refuse_unknown_keys();
+}
+
+// Where the daemon is on DDS. The command line overrides the domain and the partition.
+void CellReader::read_dds(const YamlNode& node, Scene& scene) {
+  MapReader map(node, "the dds settings", diagnostics_);
+  if (const YamlNode* domain = map.optional("domain")) {
+    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics_);
+    scene.domain = static_cast<std::uint32_t>(id.value_or(0));
+  }
+  if (const YamlNode* partition = map.optional("partition")) {
+    scene.partition = read_text(*partition, "a DDS partition", diagnostics_).value_or("");
+    if (!is_partition(scene.partition)) {
+      diagnostics_.add(
+          *partition,
+          fmt::format(
+              "found {}; expected a partition of at most {} bytes without wildcards (* ? [)",
+              describe(*partition), kMaxDdsName));
+    }
+  }
+  if (const YamlNode* interface = map.optional("interface")) {
+    scene.interface =
+        read_text(*interface, "lo, default or the name of a network card", diagnostics_)
+            .value_or("lo");
+  }
+  if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, scene.topics);
+  map.refuse_unknown_keys();
+}
+
+// Objects, robots, then pairs, then zones: each list names what the one before defines, and is
+// checked as far as that could be read.
+void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities,
+                                        Scene& scene) {
+  ObjectDefaults defaults;
+  if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
+  const YamlNode* robots_node = map.optional("robots");
+  const YamlNode* scenes_node = map.optional("scenes");
+  const YamlNode* objects_node = robots_node == nullptr && scenes_node == nullptr
+                                     ? map.required("objects")
+                                     : map.optional("objects");
+  const YamlNode* pairs_node = map.required("pairs");
+  const YamlNode* allowed_node = map.optional("allowed_collisions");
+  const YamlNode* zones_node = map.optional("zones");
+  const YamlNode* simulation_node = map.optional("simulation");
+
+  ObjectList list;
+  MeshLibrary meshes(file_, revision_, options_.tell);
+  ShapeReader shapes(quantities, meshes, defaults.mesh_limits);
+  if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
+  if (scenes_node != nullptr)
+    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
+  RobotList robots;
+  if (robots_node != nullptr) {
+    robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);
+  } else if (objects_node == nullptr && scenes_node == nullptr) {
+    list.names_known = false;
+  }
+  if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
+  refuse_same_names(list, diagnostics_);
+  refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
+  GroupIndex group_index(list, diagnostics_);
+  PairList pairs;
+  pairs.complete = false;
+  if (pairs_node != nullptr)
+    pairs =
+        read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
+  if (zones_node != nullptr)
+    scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
+  if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
+  if (simulation_node != nullptr)
+    scene.simulation = read_simulation(*simulation_node, list, quantities);
+  scene.pairs = std::move(pairs.pairs);
+  scene.objects = std::move(list.objects);
+  scene.robots = std::move(robots.robots);
+  scene.variables = std::move(robots.variables);
+}
+
+// The top level. Units come first, since every other section needs them; without them the rest is
+// not read.
+void CellReader::read(const YamlNode& root, Scene& scene) {
+  MapReader map(root, "a cell", diagnostics_);
+  if (const YamlNode* name = map.required("name")) {
+    scene.name = read_name(*name, "the cell's name", diagnostics_).value_or("");
+  }
+  std::optional<Units> units;
+  if (const YamlNode* node = map.required("units")) units = read_units(*node);
+  // Without units the rest is still read, for what else is wrong with it.
+  const Quantities quantities(units.value_or(Units{}), diagnostics_);
+  read_timing(map, quantities, scene);
+  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
+  if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, scene.ros, diagnostics_);
+  read_objects_and_pairs(map, quantities, scene);
+  map.refuse_unknown_keys();
+  refuse_frames_without_a_world(root, scene);
+  if (diagnostics_.empty()) refuse_small_budget(root, scene);
+}
+
+// Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
+void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Scene& scene) {
+  const auto object =
+      std::ranges::find_if(scene.objects, [](const Object& each) { return !each.frame.empty(); });
+  const auto robot = std::ranges::find_if(
+      scene.robots, [](const Robot& each) { return !each.base.frame.empty(); });
+  if (!scene.ros.world_frame.empty()) return;
+  if (object == scene.objects.end() && robot == scene.robots.end()) return;
+  diagnostics_.add(root,
+                   fmt::format("found that '{}' follows the frame '{}', and no world_frame; "
+                               "expected the frame of tf that is the cell's world: ros2: "
+                               "{{world_frame: map}}",
+                               object == scene.objects.end() ? robot->name : object->name,
+                               object == scene.objects.end() ? robot->base.frame : object->frame));
+}
+
+// A budget that cannot refresh every pair in time would break the promise of refresh_s in silence.
+void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
+  const RefreshShare share = refresh_share(scene);
+  if (share.queries() <= scene.budget) return;
+  diagnostics_.add(
+      budget_ != nullptr ? *budget_ : root,
+      fmt::format("found a budget of {}; expected at least {} queries a tick, which refreshing "
+                  "every pair within refresh_s takes (ticks: {}): raise budget or refresh_s",
+                  scene.budget, share.queries(), share.ticks));
+}
+
+}  // namespace
+
+// The revision covers the text and, through the shape reader, the bytes of every mesh file.
+CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
+                      const CellOptions& options) {
+  Diagnostics diagnostics(file.string());
+  const auto document = parse_yaml(yaml);
+  if (const auto* fault = std::get_if<YamlFault>(&document)) {
+    diagnostics.add(fault->line, fault->column, fault->reason);
+    return diagnostics.sorted();
+  }
+  Scene scene;
+  Revision revision(options.root);
+  revision.add(yaml);
+  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), scene);
+  if (!diagnostics.empty()) return diagnostics.sorted();
+  scene.revision = revision.value();
+  scene.yaml = yaml;
+  scene.file = std::filesystem::absolute(file).lexically_normal();
+  scene.files = revision.files();
+  return scene;
+}
+
+CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {
+  const auto bytes = read_bytes(file.string());
+  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+    Diagnostics diagnostics(file.string());
+    diagnostics.add(1, 1,
+                    fmt::format("found no cell file: {}; expected a YAML file", fault->reason));
+    return diagnostics.sorted();
+  }
+  return parse_cell(std::get<std::string>(bytes), file, options);
+}
+
+}  // namespace clearance

@@ -1,0 +1,104 @@
+// One map holds the names of groups and of objects, since a rule may use either. Each entry
+// remembers whether a rule used it, which is how groups that nothing uses are found.
+#include "config/cell/group_index.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/yaml/spelling.hpp"
+
+namespace clearance {
+
+// Objects go in first: a group that has the name of an object is then the one that is reported.
+GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
+    : list_(list), diagnostics_(diagnostics) {
+  for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
+    if (!list.objects[i].name.empty()) entries_[list.objects[i].name] = {{i}, false, false};
+  }
+  for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
+    for (const std::string& group : list.objects[i].groups) {
+      const auto [entry, is_new] = entries_.try_emplace(group, Entry{{}, true, false});
+      if (entry->second.is_group) {
+        entry->second.objects.push_back(i);
+      } else {
+        diagnostics_.add(*list.places[i],
+                         fmt::format("found the group '{}' of object '{}'; expected another name, "
+                                     "since an object has this one",
+                                     group, list.objects[i].name));
+      }
+    }
+  }
+}
+
+// Unknown names are reported only when all names are known: otherwise the name may belong to an
+// object that could not be read.
+const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const std::string& name) {
+  const auto found = entries_.find(name);
+  if (found != entries_.end()) {
+    found->second.used = true;
+    return &found->second.objects;
+  }
+  if (list_.names_known) {
+    std::vector<std::string> names;
+    for (const auto& [known, entry] : entries_) names.push_back(known);
+    diagnostics_.add(
+        node, fmt::format("found the unknown name '{}'; expected a group or an object{}", name,
+                          did_you_mean(name, names)));
+  }
+  return nullptr;
+}
+
+// Both names are looked up even when the first is unknown, so that one run reports both.
+std::optional<Between> GroupIndex::read_between(MapReader& map) {
+  const YamlNode* node = map.required("between");
+  if (node == nullptr) return std::nullopt;
+  if (node->kind != YamlNode::Kind::kSequence || node->items.size() != 2) {
+    diagnostics_.add(
+        *node, fmt::format("found {}; expected two groups or objects: [A, B]", describe(*node)));
+    return std::nullopt;
+  }
+  Between between{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const YamlNode& item = node->items[side];
+    if (const auto name = read_name(item, "a group or an object", diagnostics_)) {
+      between.names[side] = *name;
+      between.objects[side] = find(item, *name);
+    }
+  }
+  if (between.objects[0] == nullptr || between.objects[1] == nullptr) return std::nullopt;
+  return between;
+}
+
+// Sorted and without repetitions: [arm, arm] meets every pair from both sides.
+std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
+  std::vector<PairKey> keys;
+  for (const std::uint32_t a : *between.objects[0]) {
+    for (const std::uint32_t b : *between.objects[1]) {
+      if (a == b || (list_.objects[a].fixed && list_.objects[b].fixed)) continue;
+      keys.push_back(pair_key(a, b));
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+// The group that was meant is probably one that rules name: those are suggested.
+void GroupIndex::refuse_unused_groups() const {
+  std::vector<std::string> used;
+  for (const auto& [name, entry] : entries_) {
+    if (entry.is_group && entry.used) used.push_back(name);
+  }
+  for (const auto& [name, entry] : entries_) {
+    if (!entry.is_group || entry.used) continue;
+    const std::uint32_t object = entry.objects.front();
+    diagnostics_.add(
+        *list_.places[object],
+        fmt::format("found the group '{}' of object '{}', which nothing under 'pairs', "
+                    "'allowed_collisions' or 'zones' names; expected every group to be used{}",
+                    name, list_.objects[object].name, did_you_mean(name, used)));
+  }
+}
+
+}  // namespace clearance

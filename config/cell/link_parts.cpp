@@ -1,0 +1,92 @@
+#include "config/cell/link_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+namespace clearance {
+namespace {
+
+constexpr std::array<const char*, 5> kKinds = {"mesh", "box", "cylinder", "sphere",
+                                               "capsule"};  // as the variant
+
+}  // namespace
+
+void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics) {
+  for (const UrdfFault& fault : faults) {
+    diagnostics.add(at, fmt::format("found a robot that cannot be used: {}", fault.text));
+  }
+}
+
+// A mesh that is not there is reported as the URDF names it.
+std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const UrdfMesh& mesh) {
+  const auto path = files_.find(mesh.file);
+  if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) {
+    return shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_}, at_,
+                              at_);
+  }
+  const std::string package = package_of(mesh.file);
+  const std::string missing =
+      path ? fmt::format("no file '{}'", path->string())
+           : fmt::format("no directory for the package '{}'; expected packages: {{{}: DIRECTORY}}",
+                         package, package);
+  refuse_robot(at_,
+               {{mesh.line, fmt::format("{}:{}: found the mesh '{}', and {}",
+                                        files_.named_in.string(), mesh.line, mesh.file, missing)}},
+               diagnostics_);
+  return std::nullopt;
+}
+
+std::optional<std::variant<MeshParts, ShapeError>> LinkParts::shapes_of(
+    const UrdfCollision& collision) {
+  const auto one = [](ShapeResult made) -> std::variant<MeshParts, ShapeError> {
+    if (auto* error = std::get_if<ShapeError>(&made)) return std::move(*error);
+    MeshParts parts;
+    parts.shapes.push_back(std::get<ConvexBody>(std::move(made)));
+    return parts;
+  };
+  if (const auto* shape = std::get_if<UrdfBox>(&collision.shape)) {
+    return one(box(0.5 * shape->size));
+  }
+  if (const auto* shape = std::get_if<UrdfSphere>(&collision.shape)) {
+    return one(point(Vec3::Zero(), shape->radius));
+  }
+  if (const auto* shape = std::get_if<UrdfCapsule>(&collision.shape)) {
+    const Vec3 end(0.0, 0.0, 0.5 * shape->length);
+    return one(segment(-end, end, shape->radius));
+  }
+  if (const auto* shape = std::get_if<UrdfCylinder>(&collision.shape)) {
+    return one(cylinder(shape->radius, 0.5 * shape->length));
+  }
+  return parts_of(std::get<UrdfMesh>(collision.shape));
+}
+
+double LinkParts::add(const UrdfLink& link, Object& object) {
+  double mesh_error = 0.0;
+  for (std::size_t place = 0; place < link.collisions.size(); ++place) {
+    const UrdfCollision& collision = link.collisions[place];
+    auto result = shapes_of(collision);
+    if (!result) continue;
+    const char* kind = kKinds[collision.shape.index()];
+    if (const auto* error = std::get_if<ShapeError>(&*result)) {
+      diagnostics_.add(
+          at_, fmt::format("found a {} of the link '{}' that is not a solid convex body: {}", kind,
+                           link.name, error->reason));
+      continue;
+    }
+    auto& parts = std::get<MeshParts>(*result);
+    mesh_error = std::max(mesh_error, parts.error);
+    for (std::size_t i = 0; i < parts.shapes.size(); ++i) {
+      object.parts.push_back({name_of_part(kind + std::to_string(place), i, parts.shapes.size()),
+                              std::move(parts.shapes[i]), pose_of(collision.link_from_shape)});
+    }
+  }
+  return mesh_error;
+}
+
+}  // namespace clearance

@@ -1,0 +1,212 @@
+// Rules add candidates, which are then sorted and made unique; exceptions mark candidates as
+// allowed. The unmarked candidates are the pairs of the scene.
+#include "config/cell/pair_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
+
+// Rules first, then exceptions from them; finish() turns what is left into the pairs of the scene.
+class PairReader {
+ public:
+  PairReader(const ObjectList& objects, GroupIndex& group_index, Diagnostics& diagnostics)
+      : objects_(objects), group_index_(group_index), diagnostics_(diagnostics) {}
+
+  void read_rules(const YamlNode& node);
+  void allow(const PairExceptions& exceptions);
+  void read_exceptions(const YamlNode& node);
+  PairList finish(const YamlNode& rules);
+
+ private:
+  // A watched pair while the exceptions are read.
+  struct Candidate {
+    PairKey key;
+    bool publish;
+    int allowed_line;  // of the exception that removed it; 0: none did
+  };
+
+  void read_rule(const YamlNode& node);
+  void read_exception(const YamlNode& node);
+  Candidate* find(PairKey key);
+  std::string why_nothing(const Between& between, const std::vector<PairKey>& keys);
+  void refuse_unwatched_objects() const;
+
+  const ObjectList& objects_;
+  GroupIndex& group_index_;
+  Diagnostics& diagnostics_;
+  // Sorted by key once the rules have been read.
+  std::vector<Candidate> candidates_;
+  // False after a rule that could not be read.
+  bool complete_ = true;
+};
+
+// All pairs of one rule. A rule that cannot be read leaves the list incomplete, and what depends on
+// a complete list is not checked then: its reports would be consequences of the first mistake.
+void PairReader::read_rule(const YamlNode& node) {
+  MapReader map(node, "a rule for pairs", diagnostics_);
+  const auto between = group_index_.read_between(map);
+  bool publish = true;
+  if (const YamlNode* flag = map.optional("publish")) {
+    publish = read_flag(*flag, diagnostics_).value_or(true);
+  }
+  map.refuse_unknown_keys();
+  if (!between) {
+    complete_ = false;
+    return;
+  }
+  const std::vector<PairKey> keys = group_index_.pairs(*between);
+  if (keys.empty()) {
+    diagnostics_.add(node, fmt::format("found no pair between '{}' and '{}'; expected at least two "
+                                       "different objects, one of them moving",
+                                       between->names[0], between->names[1]));
+  }
+  for (const PairKey key : keys) candidates_.push_back({key, publish, 0});
+}
+
+// The same pair from two rules is one pair, published when either rule says so.
+void PairReader::read_rules(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kSequence && node.items.empty()) {
+    diagnostics_.add(node, "found an empty list; expected at least one rule: {between: [A, B]}");
+  }
+  for (const YamlNode& item : read_list(node, "rules {between: [A, B]}", diagnostics_))
+    read_rule(item);
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.key, !a.publish) < std::pair(b.key, !b.publish);
+  });
+  const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
+  candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same), candidates_.end());
+  complete_ = complete_ && node.kind == YamlNode::Kind::kSequence;
+  if (complete_ && objects_.names_known) refuse_unwatched_objects();
+}
+
+// An object that no rule covers would be a robot link without any monitored pair.
+void PairReader::refuse_unwatched_objects() const {
+  std::vector<bool> watched(objects_.objects.size(), false);
+  for (const Candidate& candidate : candidates_) {
+    watched[first_of(candidate.key)] = watched[second_of(candidate.key)] = true;
+  }
+  for (std::size_t i = 0; i < watched.size(); ++i) {
+    if (watched[i]) continue;
+    diagnostics_.add(*objects_.places[i],
+                     fmt::format("found the object '{}', which no rule under 'pairs' covers; "
+                                 "expected every object to be watched against some other",
+                                 objects_.objects[i].name));
+  }
+}
+
+// Candidates are sorted by key.
+PairReader::Candidate* PairReader::find(PairKey key) {
+  const auto found = std::lower_bound(candidates_.begin(), candidates_.end(), key,
+                                      [](const Candidate& a, PairKey b) { return a.key < b; });
+  return found != candidates_.end() && found->key == key ? &*found : nullptr;
+}
+
+// Of these many are not watched anyway: they are said of a whole robot.
+void PairReader::allow(const PairExceptions& exceptions) {
+  for (const auto& [key, line] : exceptions) {
+    Candidate* candidate = find(key);
+    if (candidate != nullptr && candidate->allowed_line == 0) candidate->allowed_line = line;
+  }
+}
+
+// The reason why an exception removes nothing, as the end of a sentence.
+std::string PairReader::why_nothing(const Between& between, const std::vector<PairKey>& keys) {
+  if (keys.empty()) {
+    const bool itself =
+        *between.objects[0] == *between.objects[1] && between.objects[0]->size() == 1;
+    return itself ? "an object has no pair with itself" : "two fixed objects never make a pair";
+  }
+  for (const PairKey key : keys) {
+    if (const Candidate* candidate = find(key)) {
+      return fmt::format("line {} has already allowed it", candidate->allowed_line);
+    }
+  }
+  return "no rule under 'pairs' covers it";
+}
+
+// Marks the pairs of one exception. Only the first exception that covers a pair is remembered; a
+// second one that removes nothing new is refused with the line of the first.
+void PairReader::read_exception(const YamlNode& node) {
+  MapReader map(node, "an allowed collision", diagnostics_);
+  const auto between = group_index_.read_between(map);
+  const YamlNode* reason_node = map.required("reason");
+  map.refuse_unknown_keys();
+  if (reason_node != nullptr) {
+    const auto reason = read_text(*reason_node, "the reason why these may touch", diagnostics_);
+    if (reason && reason->find_first_not_of(" \t\n") == std::string::npos) {
+      diagnostics_.add(*reason_node, "found an empty reason; expected why these may touch");
+    }
+  }
+  if (!between) return;
+  const std::vector<PairKey> keys = group_index_.pairs(*between);
+  bool removed = false;
+  for (const PairKey key : keys) {
+    Candidate* candidate = find(key);
+    if (candidate == nullptr || candidate->allowed_line != 0) continue;
+    candidate->allowed_line = node.line;
+    removed = true;
+  }
+  if (!removed && complete_) {
+    diagnostics_.add(
+        node,
+        fmt::format("found an exception that changes nothing: '{}' against '{}' is not watched "
+                    "anyway, since {}; expected a watched pair, perhaps misspelt here",
+                    between->names[0], between->names[1], why_nothing(*between, keys)));
+  }
+}
+
+// In the order of the file, so that of two equal exceptions the second one is refused.
+void PairReader::read_exceptions(const YamlNode& node) {
+  for (const YamlNode& item :
+       read_list(node, "exceptions {between: [A, B], reason: ...}", diagnostics_)) {
+    read_exception(item);
+  }
+}
+
+// Candidates are sorted by key, hence so are both lists.
+PairList PairReader::finish(const YamlNode& rules) {
+  PairList list;
+  list.complete = complete_;
+  std::size_t published = 0;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.allowed_line != 0) {
+      list.allowed.push_back(candidate.key);
+      continue;
+    }
+    list.pairs.push_back({first_of(candidate.key), second_of(candidate.key), candidate.publish});
+    published += candidate.publish ? 1 : 0;
+  }
+  if (published > kMaxPublished) {
+    diagnostics_.add(
+        rules, fmt::format(
+                   "found {} pairs to publish; expected at most {}, which is what a report can "
+                   "carry: put publish: false on some rules (their pairs are watched all the same)",
+                   published, kMaxPublished));
+  }
+  if (list.pairs.empty() && !candidates_.empty()) {
+    diagnostics_.add(rules, "found every pair allowed to touch; expected at least one to watch");
+  }
+  return list;
+}
+
+}  // namespace
+
+// Exceptions are read after all rules: they refer to what the rules as a whole watch.
+PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
+                    const PairExceptions& exceptions, GroupIndex& group_index,
+                    Diagnostics& diagnostics) {
+  PairReader reader(objects, group_index, diagnostics);
+  reader.read_rules(pairs);
+  reader.allow(exceptions);
+  if (allowed != nullptr) reader.read_exceptions(*allowed);
+  return reader.finish(pairs);
+}
+
+}  // namespace clearance

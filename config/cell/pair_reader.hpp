@@ -1,0 +1,29 @@
+// Reads which objects are watched against which: `pairs:`, less `allowed_collisions:`.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "config/cell/group_index.hpp"
+#include "config/scene/scene.hpp"
+
+namespace clearance {
+
+// The pairs to watch, and those that the cell allows to touch.
+struct PairList {
+  std::vector<ObjectPair> pairs;  // ascending by first, then second
+  std::vector<PairKey> allowed;   // ascending: pairs that an exception removed
+  bool complete = true;           // false: a rule could not be read, and its pairs are missing
+};
+
+// Pairs that may touch since a robot's description says so, and the line of the robot.
+using PairExceptions = std::vector<std::pair<PairKey, int>>;
+
+// `allowed` may be nullptr. Reports rules and exceptions that change nothing, about objects
+// that nothing watches, and about more published pairs than a report can carry.
+[[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
+                                  const ObjectList& objects, const PairExceptions& exceptions,
+                                  GroupIndex& group_index, Diagnostics& diagnostics);
+
+}  // namespace clearance

@@ -1,0 +1,18 @@
+// Reads `scenes:` of a cell: the obstacles of MoveIt's planning scenes as fixed objects.
+#pragma once
+
+#include <filesystem>
+
+#include "config/cell/object_reader.hpp"
+#include "config/scene/revision.hpp"
+#include "config/yaml/quantities.hpp"
+
+namespace clearance {
+
+// Adds them behind the objects of the list. Files are relative to `directory`; their bytes go into
+// the revision.
+void read_planning_scenes(const YamlNode& node, const std::filesystem::path& directory,
+                          const ObjectDefaults& defaults, const Quantities& quantities,
+                          Revision& revision, ObjectList& list);
+
+}  // namespace clearance

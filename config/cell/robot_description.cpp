@@ -1,0 +1,78 @@
+#include "config/cell/robot_description.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+
+#include "config/cell/link_parts.hpp"
+#include "config/mesh/mesh_file.hpp"
+#include "config/urdf/robot_exceptions.hpp"
+#include "config/yaml/scalar.hpp"
+
+namespace clearance {
+namespace {
+
+// The file that a key names, which has to be there.
+std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles& files,
+                                          Diagnostics& diagnostics, Revision& revision) {
+  const auto name = read_text(node, "a file", diagnostics);
+  if (!name) return std::nullopt;
+  const auto path = files.find(*name);
+  if (!path) {
+    const std::string package = package_of(*name);
+    diagnostics.add(node, fmt::format("found '{}', and no directory for the package '{}'; expected "
+                                      "packages: {{{}: DIRECTORY}}",
+                                      *name, package, package));
+    return std::nullopt;
+  }
+  const auto bytes = read_bytes(path->string());
+  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+    diagnostics.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
+                                      "relative to the cell file",
+                                      fault->reason));
+    return std::nullopt;
+  }
+  revision.add_file(*path, std::get<std::string>(bytes));
+  return path;
+}
+
+}  // namespace
+
+// Both files are read even if the first is wrong, so that one run reports what is wrong with
+// either.
+std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
+                                                 Diagnostics& diagnostics, Revision& revision) {
+  if (keys.urdf == nullptr) return std::nullopt;
+  RobotDescription description;
+  const auto urdf = find(*keys.urdf, keys.files, diagnostics, revision);
+  const auto srdf =
+      keys.srdf == nullptr ? std::nullopt : find(*keys.srdf, keys.files, diagnostics, revision);
+  const std::size_t before = diagnostics.count();
+  if (srdf) {
+    auto read = read_srdf(*srdf);
+    if (const auto* faults = std::get_if<UrdfFaults>(&read))
+      refuse_robot(*keys.srdf, *faults, diagnostics);
+    if (auto* good = std::get_if<Srdf>(&read)) description.srdf = std::move(*good);
+  }
+  if (!urdf || (keys.srdf != nullptr && !srdf)) return std::nullopt;
+  description.urdf = *urdf;
+  auto read = read_urdf(*urdf);
+  if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
+    refuse_robot(*keys.urdf, *faults, diagnostics);
+    return std::nullopt;
+  }
+  description.robot = std::get<UrdfRobot>(std::move(read));
+  if (description.srdf) {
+    refuse_robot(*keys.srdf, faults_of(*description.srdf, *srdf, description.robot, *urdf),
+                 diagnostics);
+  }
+  auto model = robot_model(description.robot, *urdf, keys.prefix);
+  if (const auto* faults = std::get_if<UrdfFaults>(&model))
+    refuse_robot(*keys.urdf, *faults, diagnostics);
+  if (diagnostics.count() != before) return std::nullopt;
+  description.model = std::get<RobotModel>(std::move(model));
+  return description;
+}
+
+}  // namespace clearance

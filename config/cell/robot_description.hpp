@@ -1,0 +1,37 @@
+// Reads the files that describe a robot, as a cell names them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "config/scene/revision.hpp"
+#include "config/urdf/robot_files.hpp"
+#include "config/urdf/robot_model.hpp"
+#include "config/urdf/urdf.hpp"
+#include "config/yaml/diagnostics.hpp"
+
+namespace clearance {
+
+// Where a cell names them, and what it says of them.
+struct DescriptionKeys {
+  const YamlNode* urdf = nullptr;  // null: missing, which has been reported
+  const YamlNode* srdf = nullptr;  // null: there is none
+  RobotFiles files;                // of the cell
+  std::string prefix;
+};
+
+// A URDF, its SRDF if there is one, and the tree that they describe.
+struct RobotDescription {
+  std::filesystem::path urdf;
+  UrdfRobot robot;
+  std::optional<Srdf> srdf;
+  RobotModel model;
+};
+
+// Nothing after a diagnostic. The files' bytes go into the revision.
+[[nodiscard]] std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
+                                                               Diagnostics& diagnostics,
+                                                               Revision& revision);
+
+}  // namespace clearance

@@ -1,0 +1,377 @@
+// Each robot is read by itself: its description, then its tree of joints, then what it stands on,
+// and then its links, which need all of these.
+#include "config/cell/robot_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "config/cell/joint_reader.hpp"
+#include "config/cell/link_parts.hpp"
+#include "config/cell/robot_description.hpp"
+#include "config/cell/ros_reader.hpp"
+#include "config/scene/chain_rounding.hpp"
+#include "config/urdf/robot_exceptions.hpp"
+#include "config/urdf/robot_files.hpp"
+#include "config/yaml/spelling.hpp"
+
+namespace clearance {
+namespace {
+
+// What a robot's own keys say.
+struct RobotKeys {
+  const YamlNode* name_node = nullptr;
+  const YamlNode* urdf_node = nullptr;
+  const YamlNode* srdf_node = nullptr;
+  const YamlNode* base_node = nullptr;
+  const YamlNode* joints_node = nullptr;
+  std::string name, prefix, joint_states;
+  RosStamps stamps = RosStamps::kMessage;
+  std::vector<std::pair<std::string, std::filesystem::path>> packages;
+  ObjectDefaults limits;
+  std::int64_t base_age_limit_ns = 0;  // of a base that follows a frame
+};
+
+class RobotReader {
+ public:
+  RobotReader(const std::filesystem::path& file, const ObjectDefaults& defaults,
+              const Quantities& quantities, ShapeReader& shapes, Revision& revision,
+              ObjectList& objects)
+      : file_(file),
+        defaults_(defaults),
+        quantities_(quantities),
+        diagnostics_(quantities.diagnostics()),
+        shapes_(shapes),
+        revision_(revision),
+        objects_(objects) {}
+
+  // False when its links are not known.
+  bool read(const YamlNode& node, RobotList& list);
+
+ private:
+  RobotKeys read_keys(const YamlNode& node);
+  void read_packages(const YamlNode& node, RobotKeys& keys);
+  void read_joint_topic(MapReader& map, RobotKeys& keys);
+  bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
+  void read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys, RobotBase& base);
+  void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
+  void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
+  void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
+             PairExceptions& may_touch);
+  void account_for_rounding(const RobotList& list);
+
+  const std::filesystem::path& file_;
+  const ObjectDefaults& defaults_;
+  const Quantities& quantities_;
+  Diagnostics& diagnostics_;
+  ShapeReader& shapes_;
+  Revision& revision_;
+  ObjectList& objects_;
+  std::map<std::string, int> names_;         // of robots, and their lines
+  std::set<std::string> links_, variables_;  // of all robots
+  // Of every link of every robot that nothing moves: its place in the world.
+  std::map<std::string, Pose> at_rest_;
+};
+
+void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
+  if (node.kind != YamlNode::Kind::kMap) {
+    diagnostics_.add(node, fmt::format("found {}; expected packages and their directories: {{NAME: "
+                                       "DIRECTORY}}",
+                                       describe(node)));
+  }
+  for (const YamlEntry& entry : node.entries) {
+    const auto name = read_name(entry.key, "a package's name", diagnostics_);
+    const auto path = read_text(entry.value, "the directory of a package", diagnostics_);
+    if (name && path)
+      keys.packages.emplace_back(*name, path_in(revision_.root(), file_.parent_path(), *path));
+  }
+}
+
+// Where on ROS 2 its joint states are, and what their stamps are worth.
+void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
+  if (const YamlNode* node = map.optional("joint_states")) {
+    const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
+    if (topic && !topic->starts_with('/')) {
+      diagnostics_.add(*node, fmt::format("found '{}'; expected a topic of ROS 2 with its "
+                                          "namespace: /joint_states, /left/joint_states",
+                                          *topic));
+    }
+    keys.joint_states = topic.value_or("");
+  }
+  if (const YamlNode* node = map.optional("stamps")) keys.stamps = read_stamps(*node, diagnostics_);
+}
+
+RobotKeys RobotReader::read_keys(const YamlNode& node) {
+  RobotKeys keys;
+  keys.limits = defaults_;
+  MapReader map(node, "a robot", diagnostics_);
+  keys.name_node = map.required("name");
+  keys.urdf_node = map.required("urdf");
+  keys.srdf_node = map.optional("srdf");
+  keys.base_node = map.optional("base");
+  keys.joints_node = map.optional("joints");
+  read_joint_topic(map, keys);
+  if (keys.name_node != nullptr) {
+    keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
+  }
+  if (const YamlNode* prefix = map.optional("prefix")) {
+    keys.prefix = read_text(*prefix, "what the names of links and joints begin with", diagnostics_)
+                      .value_or("");
+  }
+  if (const YamlNode* packages = map.optional("packages")) read_packages(*packages, keys);
+  if (const YamlNode* margin = map.optional("margin")) {
+    keys.limits.margin =
+        quantities_.length(*margin, "the margin", kNotNegative).value_or(defaults_.margin);
+  }
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    keys.limits.age_limit_ns =
+        quantities_.milliseconds(*age, "the age limit", kPositive).value_or(defaults_.age_limit_ns);
+  }
+  if (const YamlNode* source = map.optional("source")) {
+    keys.limits.source = read_source(*source, diagnostics_).value_or("");
+  }
+  read_part_limits(map, quantities_, keys.limits.mesh_limits);
+  map.refuse_unknown_keys();
+  if (keys.name.empty()) return keys;
+  if (const auto [same, is_new] = names_.emplace(keys.name, node.line); !is_new) {
+    diagnostics_.add(*keys.name_node,
+                     fmt::format("found the robot name '{}' again; expected it once (first in line "
+                                 "{})",
+                                 keys.name, same->second));
+  }
+  return keys;
+}
+
+// Poses and joint states of two links or joints of one name could not be told apart.
+bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& model) {
+  const auto take = [&](std::set<std::string>& taken, const std::string& name, const char* what) {
+    if (taken.insert(name).second) return true;
+    diagnostics_.add(*keys.name_node,
+                     fmt::format("found the {} '{}' of '{}', which another robot has as well; "
+                                 "expected another prefix for each",
+                                 what, name, keys.name));
+    return false;
+  };
+  for (const RobotLink& link : model.robot.links) {
+    if (!take(links_, link.name, "link")) return false;
+  }
+  for (const JointVariable& variable : model.variables) {
+    if (!take(variables_, variable.name, "joint")) return false;
+  }
+  return true;
+}
+
+// A link of a robot before this one, or an object; what is at rest is a place in the world.
+void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBase& base) {
+  const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
+  if (!name) return;
+  std::vector<std::string> names;
+  for (std::uint32_t robot = 0; robot < list.robots.size(); ++robot) {
+    const std::vector<RobotLink>& links = list.robots[robot].links;
+    for (std::uint32_t link = 0; link < links.size(); ++link) {
+      names.push_back(links[link].name);
+      if (links[link].name != *name) continue;
+      const auto place = at_rest_.find(*name);
+      if (place != at_rest_.end())
+        base.base_from_root = compose(place->second, base.base_from_root);
+      if (place == at_rest_.end()) base.kind = RobotBase::Kind::kLink;
+      base.robot = robot;
+      base.link = link;
+      return;
+    }
+  }
+  for (std::uint32_t i = 0; i < objects_.objects.size(); ++i) {
+    const Object& object = objects_.objects[i];
+    names.push_back(object.name);
+    if (object.name != *name) continue;
+    if (object.fixed) {
+      base.base_from_root = compose(object.world_from_object, base.base_from_root);
+    } else {
+      base.kind = RobotBase::Kind::kObject;
+      base.object = i;
+    }
+    return;
+  }
+  if (!objects_.names_known) return;
+  diagnostics_.add(node,
+                   fmt::format("found the unknown name '{}'; expected an object, or a link of "
+                               "a robot that stands before this one{}",
+                               *name, did_you_mean(*name, names)));
+}
+
+void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys,
+                            RobotBase& base) {
+  MapReader map(node, "a robot's base", diagnostics_);
+  Pose pose;
+  if (const YamlNode* given = map.optional("pose"))
+    pose = quantities_.pose(*given).value_or(Pose{});
+  const YamlNode* on = map.optional("on");
+  const YamlNode* frame = map.optional("frame");
+  if (frame != nullptr) {
+    base.frame = read_frame(*frame, diagnostics_).value_or("");
+    base.frame_from_root = pose;
+    if (on != nullptr) {
+      diagnostics_.add(*on, "found 'on' of a base that follows a frame; expected one of the two");
+    }
+    if (const YamlNode* age = map.optional("age_limit_ms")) {
+      keys.base_age_limit_ns =
+          quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
+    }
+  } else {
+    base.base_from_root = pose;
+    if (on != nullptr) stand_on(*on, list, base);
+  }
+  map.refuse_unknown_keys();
+}
+
+// Joints come in an order in which the link before is known to move or not.
+void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
+                            Robot& robot) {
+  std::map<std::string, const UrdfLink*> written;
+  for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
+  LinkParts parts({description.urdf, keys.packages, revision_.root()}, *keys.urdf_node, shapes_,
+                  keys.limits.mesh_limits, diagnostics_);
+  for (std::uint32_t i = 0; i < robot.links.size(); ++i) {
+    RobotLink& link = robot.links[i];
+    if (i == 0) {
+      if (robot.base.kind == RobotBase::Kind::kWorld)
+        at_rest_[link.name] = robot.base.base_from_root;
+    } else if (const RobotJoint& joint = robot.joints[i - 1]; joint.type == JointType::kFixed) {
+      const auto parent = at_rest_.find(robot.links[joint.parent].name);
+      if (parent != at_rest_.end())
+        at_rest_[link.name] = compose(parent->second, joint.parent_from_joint);
+    }
+    const auto description_of = written.find(link.name);
+    if (description_of == written.end() || description_of->second->collisions.empty()) continue;
+    YamlNode name = *keys.name_node;
+    name.text = link.name;
+    name.quoted = true;
+    static_cast<void>(read_name(name, "the name of a link with its prefix", diagnostics_));
+    Object object;
+    object.name = link.name;
+    object.groups = {keys.name};
+    object.margin = keys.limits.margin;
+    if (const double error = parts.add(*description_of->second, object); error > 0.0) {
+      objects_.mesh_errors[object.name] = error;
+    }
+    if (const auto place = at_rest_.find(link.name); place != at_rest_.end()) {
+      object.fixed = true;
+      object.world_from_object = place->second;
+      object.max_speed = 0.0;
+    } else {
+      object.age_limit_ns = keys.limits.age_limit_ns;
+      object.may_jump = keys.limits.may_jump;
+      object.source = keys.limits.source;
+    }
+    link.object = static_cast<std::uint32_t>(objects_.objects.size());
+    objects_.objects.push_back(std::move(object));
+    objects_.places.push_back(keys.name_node);
+  }
+}
+
+// What may touch is said of links, without the prefix.
+void RobotReader::allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
+                        PairExceptions& may_touch) {
+  LinkNames shaped, fixed;
+  std::map<std::string, std::uint32_t> objects;
+  for (const RobotLink& link : robot.links) {
+    const std::string name = link.name.substr(keys.prefix.size());
+    if (at_rest_.contains(link.name)) fixed.insert(name);
+    if (link.object == RobotLink::kNoObject) continue;
+    shaped.insert(name);
+    objects[name] = link.object;
+  }
+  const std::vector<SrdfDisabled> pairs =
+      description.srdf ? exceptions_of(*description.srdf, shaped, fixed, robot.notes)
+                       : neighbours_of(description.robot, shaped, fixed, robot.notes);
+  for (const SrdfDisabled& pair : pairs) {
+    may_touch.emplace_back(pair_key(objects[pair.link_a], objects[pair.link_b]),
+                           keys.name_node->line);
+  }
+}
+
+// Of the robot that was read last. What nothing moves is where the cell says.
+void RobotReader::account_for_rounding(const RobotList& list) {
+  const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
+  const std::vector<RobotLink>& links = list.robots.back().links;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].object == RobotLink::kNoObject) continue;
+    Object& object = objects_.objects[links[i].object];
+    if (!object.fixed) account_for(errors[i], object);
+  }
+}
+
+bool RobotReader::read(const YamlNode& node, RobotList& list) {
+  RobotKeys keys = read_keys(node);
+  auto description = read_description({.urdf = keys.urdf_node,
+                                       .srdf = keys.srdf_node,
+                                       .files = {file_, keys.packages, revision_.root()},
+                                       .prefix = keys.prefix},
+                                      diagnostics_, revision_);
+  RobotBase base;
+  if (keys.base_node != nullptr) read_base(*keys.base_node, list, keys, base);
+  Robot robot;
+  if (description) {
+    if (!base.frame.empty()) float_root(description->model, keys.prefix, keys.name);
+    robot = std::move(description->model.robot);
+  }
+  robot.base = base;
+  robot.name = keys.name;
+  robot.prefix = keys.prefix;
+  robot.joint_states = keys.joint_states;
+  robot.stamps = keys.stamps;
+  if (!description || keys.name.empty()) return false;
+  if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
+  const auto first = static_cast<std::uint32_t>(list.variables.size());
+  std::vector<JointVariable>& variables = description->model.variables;
+  for (JointVariable& variable : variables) {
+    variable.age_limit_ns = keys.limits.age_limit_ns;
+    variable.source = keys.limits.source;
+    variable.robot = static_cast<std::uint32_t>(list.robots.size());
+  }
+  if (!base.frame.empty()) {
+    for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
+      variables[i].source.clear();
+      if (keys.base_age_limit_ns > 0) variables[i].age_limit_ns = keys.base_age_limit_ns;
+    }
+  }
+  if (keys.joints_node != nullptr)
+    read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
+  list.variables.insert(list.variables.end(), variables.begin(), variables.end());
+  for (RobotJoint& joint : robot.joints) joint.variable += first;
+  add_links(keys, *description, robot);
+  allow(keys, *description, robot, list.may_touch);
+  list.robots.push_back(std::move(robot));
+  account_for_rounding(list);
+  return true;
+}
+
+}  // namespace
+
+RobotList read_robots(const YamlNode& node, const std::filesystem::path& file,
+                      const ObjectDefaults& defaults, const Quantities& quantities,
+                      ShapeReader& shapes, Revision& revision, ObjectList& objects) {
+  RobotList list;
+  RobotReader reader(file, defaults, quantities, shapes, revision, objects);
+  const std::vector<YamlNode>& items = read_list(node, "robots", quantities.diagnostics());
+  if (items.empty()) objects.names_known = false;
+  if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
+    quantities.diagnostics().add(node, "found an empty list; expected at least one robot");
+  }
+  for (const YamlNode& item : items) {
+    objects.names_known = reader.read(item, list) && objects.names_known;
+    if (objects.objects.size() <= kMaxObjects) continue;
+    quantities.diagnostics().add(
+        item,
+        fmt::format("found {} objects with the links of this robot; expected at most {}, which "
+                    "is what a report can carry",
+                    objects.objects.size(), kMaxObjects));
+    break;
+  }
+  return list;
+}
+
+}  // namespace clearance

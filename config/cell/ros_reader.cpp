@@ -1,0 +1,102 @@
+#include "config/cell/ros_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "config/yaml/map_reader.hpp"
+#include "config/yaml/scalar.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr Range kMarkerRates{.least = 0.1, .most = 1000.0};  // Hz
+
+// `true`: the standard topic; `false`: none; or the topic's name.
+std::string read_output(const YamlNode& node, const RosOutput& output, Diagnostics& diagnostics) {
+  if (node.kind == YamlNode::Kind::kScalar && scalar_type(node) == ScalarType::kFlag) {
+    return read_flag(node, diagnostics).value_or(false) ? std::string(output.standard_topic) : "";
+  }
+  const auto topic = read_text(node, "true, false or a topic of ROS 2", diagnostics);
+  if (topic && !is_ros_topic(*topic)) {
+    diagnostics.add(node, fmt::format("found '{}'; expected true, false or a topic of ROS 2 with "
+                                      "its namespace: {}",
+                                      *topic, output.standard_topic));
+  }
+  return topic.value_or("");
+}
+
+void refuse_same_topics(const YamlNode& node, const RosOutputs& outputs, Diagnostics& diagnostics) {
+  std::map<std::string, std::string_view> taken;
+  for (const RosOutput& output : kRosOutputs) {
+    const std::string& topic = outputs.*output.topic;
+    if (topic.empty()) continue;
+    const auto [same, is_new] = taken.emplace(topic, output.key);
+    if (is_new) continue;
+    diagnostics.add(node, fmt::format("found the topic '{}' for both '{}' and '{}'; expected a "
+                                      "topic of its own for each",
+                                      topic, same->second, output.key));
+  }
+}
+
+bool is_word(char c) noexcept {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+}  // namespace
+
+bool is_ros_topic(std::string_view name) noexcept {
+  // In DDS it begins with "rt", and discovery has room for 255 bytes.
+  constexpr std::size_t kMostBytes = 253;
+  if (name.size() < 2 || name.size() > kMostBytes || name.front() != '/' || name.back() == '/')
+    return false;
+  for (std::size_t i = 1; i < name.size(); ++i) {
+    const bool begins = name[i - 1] == '/';
+    if (begins ? !is_word(name[i]) || (name[i] >= '0' && name[i] <= '9')
+               : !is_word(name[i]) && name[i] != '/') {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::optional<std::string> read_frame(const YamlNode& node, Diagnostics& diagnostics) {
+  auto frame = read_text(node, "a frame of tf", diagnostics);
+  if (frame && frame->starts_with('/')) frame->erase(0, 1);
+  if (!frame || !frame->empty()) return frame;
+  diagnostics.add(node,
+                  fmt::format("found {}; expected the name of a frame of tf", describe(node)));
+  return std::nullopt;
+}
+
+RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics) {
+  const auto text = read_text(node, "message or sent", diagnostics);
+  if (text && *text != "message" && *text != "sent") {
+    diagnostics.add(node, fmt::format("found '{}'; expected message (the stamp in it) or sent "
+                                      "(when it was sent)",
+                                      *text));
+  }
+  return text == "sent" ? RosStamps::kSent : RosStamps::kMessage;
+}
+
+void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnostics) {
+  MapReader map(node, "the settings of ROS 2", diagnostics);
+  for (const RosOutput& output : kRosOutputs) {
+    if (const YamlNode* topic = map.optional(std::string(output.key)))
+      settings.outputs.*output.topic = read_output(*topic, output, diagnostics);
+  }
+  refuse_same_topics(node, settings.outputs, diagnostics);
+  if (const YamlNode* rate = map.optional("markers_hz")) {
+    settings.markers_hz =
+        read_number(*rate, kMarkerRates, "the rate of the markers in Hz", diagnostics)
+            .value_or(settings.markers_hz);
+  }
+  if (const YamlNode* frame = map.optional("world_frame"))
+    settings.world_frame = read_frame(*frame, diagnostics).value_or("");
+  if (const YamlNode* stamps = map.optional("stamps"))
+    settings.stamps = read_stamps(*stamps, diagnostics);
+  map.refuse_unknown_keys();
+}
+
+}  // namespace clearance

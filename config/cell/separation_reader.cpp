@@ -1,0 +1,137 @@
+// What has a value in a standard has it as default; what only the cell's owner can know is
+// required.
+#include "config/cell/separation_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/yaml/spelling.hpp"
+
+namespace clearance {
+namespace {
+
+// One map with the quantities that it reads.
+class SeparationReader {
+ public:
+  SeparationReader(const YamlNode& node, const Quantities& quantities)
+      : map_(node, "the separation of a zone", quantities.diagnostics()), quantities_(quantities) {}
+
+  Separation read();
+  // 0 or 1: which side of `between` are people; nothing after a diagnostic.
+  std::optional<std::size_t> read_human_side(const Between& between);
+  void refuse_unknown_keys() { map_.refuse_unknown_keys(); }
+
+ private:
+  void read_human(Separation& separation);
+  void read_robot(Separation& separation);
+  double length_or(const YamlNode* node, const std::string& what, double otherwise) const {
+    return node == nullptr ? otherwise
+                           : quantities_.length(*node, what, kNotNegative).value_or(otherwise);
+  }
+  std::int64_t required_time(const char* key, const std::string& what) {
+    const YamlNode* node = map_.required(key);
+    return node == nullptr ? 0 : quantities_.milliseconds(*node, what, kNotNegative).value_or(0);
+  }
+
+  MapReader map_;
+  const Quantities& quantities_;
+};
+
+std::optional<std::size_t> SeparationReader::read_human_side(const Between& between) {
+  const YamlNode* node = map_.required("human");
+  if (node == nullptr) return std::nullopt;
+  const auto name =
+      read_name(*node, "the side of the zone where people are", quantities_.diagnostics());
+  if (!name) return std::nullopt;
+  const auto found = std::ranges::find(between.names, *name);
+  if (found != between.names.end()) return found - between.names.begin();
+  quantities_.diagnostics().add(
+      *node, fmt::format("found human: '{}'; expected one of the two sides of the zone, {}", *name,
+                         one_of(between.names)));
+  return std::nullopt;
+}
+
+// Of a person who stands a measured speed says nothing about the next second.
+void SeparationReader::read_human(Separation& separation) {
+  if (const YamlNode* speed = map_.optional("human_speed")) {
+    separation.human_speed =
+        quantities_.speed(*speed, "the speed of people").value_or(separation.human_speed);
+  }
+  const YamlNode* measured = map_.optional("human_speed_measured");
+  const YamlNode* acceleration = map_.optional("human_acceleration");
+  Diagnostics& diagnostics = quantities_.diagnostics();
+  if (measured != nullptr)
+    separation.human_speed_is_measured = read_flag(*measured, diagnostics).value_or(false);
+  if (acceleration != nullptr) {
+    separation.human_acceleration =
+        quantities_.acceleration(*acceleration, "the acceleration of people").value_or(0.0);
+  }
+  if (separation.human_speed_is_measured == (acceleration != nullptr)) return;
+  const YamlNode& at = acceleration != nullptr ? *acceleration : *measured;
+  diagnostics.add(at, acceleration != nullptr
+                          ? "found human_acceleration without human_speed_measured: true; expected "
+                            "both or none"
+                          : "found human_speed_measured without human_acceleration; expected what "
+                            "a person can accelerate by until the robot stands");
+}
+
+void SeparationReader::read_robot(Separation& separation) {
+  if (const YamlNode* speed = map_.optional("robot_speed")) {
+    separation.robot_speed =
+        quantities_.speed(*speed, "the robot's largest speed").value_or(separation.robot_speed);
+  }
+  if (const YamlNode* acceleration = map_.optional("robot_acceleration")) {
+    separation.robot_acceleration =
+        quantities_.acceleration(*acceleration, "the robot's acceleration").value_or(0.0);
+  }
+  separation.reaction_time_ns =
+      required_time("reaction_time_ms", "the time until the robot brakes");
+  separation.stopping_time_ns = required_time("stopping_time_ms", "the time of braking");
+  separation.stopping_distance = length_or(map_.required("stopping_distance"),
+                                           "the way that the robot goes while it brakes", 0.0);
+  if (const YamlNode* speed = map_.optional("stopping_speed")) {
+    separation.stopping_speed =
+        quantities_.speed(*speed, "the speed from which the robot was stopped").value_or(0.0);
+  }
+}
+
+Separation SeparationReader::read() {
+  Separation separation;
+  read_human(separation);
+  read_robot(separation);
+  separation.intrusion_distance =
+      length_or(map_.required("intrusion_distance"), "how far people can be in unseen", 0.0);
+  separation.human_uncertainty =
+      length_or(map_.optional("human_uncertainty"), "how far off people's poses are", 0.0);
+  separation.robot_uncertainty =
+      length_or(map_.optional("robot_uncertainty"), "how far off the robot's pose is", 0.0);
+  return separation;
+}
+
+}  // namespace
+
+Separation read_separation(const YamlNode& node, const Between& between, const Zone& zone,
+                           const std::vector<ObjectPair>& pairs, const ObjectList& objects,
+                           const Quantities& quantities) {
+  SeparationReader reader(node, quantities);
+  const auto side = reader.read_human_side(between);
+  Separation separation = reader.read();
+  reader.refuse_unknown_keys();
+  if (!side) return separation;
+  const std::vector<std::uint32_t>&people = *between.objects[*side],
+        &robots = *between.objects[1 - *side];
+  for (const std::uint32_t person : people) {
+    if (!std::ranges::binary_search(robots, person)) continue;
+    quantities.diagnostics().add(
+        node, fmt::format("found '{}' on both sides of the zone; expected people on one and the "
+                          "robot on the other",
+                          objects.objects[person].name));
+    return separation;
+  }
+  for (const std::uint32_t pair : zone.pairs)
+    separation.human_is_first.push_back(std::ranges::binary_search(people, pairs[pair].first));
+  return separation;
+}
+
+}  // namespace clearance

@@ -1,0 +1,25 @@
+#include "config/mesh/file_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+namespace clearance {
+
+FileLock::FileLock(const std::filesystem::path& file, const std::function<void()>& wait)
+    : file_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+  if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  waited_ = true;
+  wait();
+  while (::flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+// Closing gives it back.
+FileLock::~FileLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+}  // namespace clearance

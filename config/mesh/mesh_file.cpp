@@ -1,0 +1,165 @@
+// A mesh file is bytes of unknown origin, read by a library that some of them crash: it runs in a
+// child process, and what comes back is checked once more. Vertices and triangles are sorted and
+// made unique, so that the result does not depend on the order of faces in the file.
+#include "config/mesh/mesh_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "config/mesh/child_work.hpp"
+#include "config/mesh/mesh_import.hpp"
+#include "config/yaml/utf8.hpp"
+
+namespace clearance {
+namespace {
+
+// What robots come with, and what the mutations of tests/config/mesh_mutation_test.cpp were tried
+// on.
+constexpr std::array<std::string_view, 4> kFormats = {"stl", "obj", "ply", "dae"};
+
+// Far beyond any mesh that describes a robot; an endless file ends here.
+constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
+
+// Assimp reads some damaged files for ever; good ones take it 0.003 to 0.03 s a MiB.
+unsigned seconds_for(std::size_t bytes) { return 2 + static_cast<unsigned>(bytes >> 20); }
+
+// The first byte of what the child says.
+constexpr char kMesh = 'm', kFault = 'f';
+
+// Any order serves that depends on the coordinates only.
+bool lexicographic(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+// Vertices are numbered in their order, and each triangle starts at its first.
+TriangleMesh indexed(const std::vector<Triangle>& triangles) {
+  TriangleMesh mesh;
+  for (const Triangle& t : triangles) mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
+  std::sort(mesh.vertices.begin(), mesh.vertices.end(), lexicographic);
+  mesh.vertices.erase(std::unique(mesh.vertices.begin(), mesh.vertices.end()), mesh.vertices.end());
+  const auto index_of = [&](const Vec3& v) {
+    return static_cast<std::uint32_t>(
+        std::lower_bound(mesh.vertices.begin(), mesh.vertices.end(), v, lexicographic) -
+        mesh.vertices.begin());
+  };
+  for (const Triangle& t : triangles) {
+    std::array<std::uint32_t, 3> corners = {index_of(t[0]), index_of(t[1]), index_of(t[2])};
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
+    mesh.triangles.push_back(corners);
+  }
+  std::ranges::sort(mesh.triangles);
+  const auto again = std::ranges::unique(mesh.triangles);
+  mesh.triangles.erase(again.begin(), again.end());
+  return mesh;
+}
+
+template <class Item>
+void append(const std::vector<Item>& items, std::string& bytes) {
+  const std::uint64_t count = items.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(Item));
+}
+
+// False when the bytes end before.
+template <class Item>
+bool take(std::string_view& bytes, std::vector<Item>& items) {
+  std::uint64_t count = 0;
+  if (bytes.size() < sizeof count) return false;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  bytes.remove_prefix(sizeof count);
+  if (count == 0 || count > bytes.size() / sizeof(Item)) return false;
+  items.resize(count);
+  std::memcpy(static_cast<void*>(items.data()), bytes.data(), count * sizeof(Item));
+  bytes.remove_prefix(count * sizeof(Item));
+  return true;
+}
+
+// In the child.
+std::string import_into_bytes(const std::string& bytes, const std::string& format) {
+  const auto result = import_mesh(bytes, format);
+  if (const auto* fault = std::get_if<MeshFault>(&result)) return kFault + fault->reason;
+  const auto& triangles = std::get<std::vector<Triangle>>(result);
+  for (const Triangle& t : triangles) {
+    if (!std::ranges::all_of(t, [](const Vec3& v) { return v.allFinite(); })) {
+      return std::string(1, kFault) + "a vertex is not finite";
+    }
+  }
+  const TriangleMesh mesh = indexed(triangles);
+  std::string said(1, kMesh);
+  append(mesh.vertices, said);
+  append(mesh.triangles, said);
+  return said;
+}
+
+// In the parent. A child that was led astray may say anything.
+std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
+  if (said.starts_with(kFault)) return MeshFault{printable(said.substr(1))};
+  const MeshFault no_answer{"the library that reads it gave no answer"};
+  if (!said.starts_with(kMesh)) return no_answer;
+  TriangleMesh mesh;
+  std::string_view left = std::string_view(said).substr(1);
+  if (!take(left, mesh.vertices) || !take(left, mesh.triangles) || !left.empty()) return no_answer;
+  for (const auto& corners : mesh.triangles) {
+    if (*std::ranges::max_element(corners) >= mesh.vertices.size()) return no_answer;
+  }
+  return mesh;
+}
+
+// "STL" of "x.STL" or ".STL", in lower case and without the dot.
+std::string format_of(const std::string& extension) {
+  std::string format = extension.substr(extension.starts_with('.') ? 1 : 0);
+  std::ranges::transform(format, format.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return format;
+}
+
+}  // namespace
+
+// The whole file, so that its bytes can go into the revision and be parsed without reading it
+// again.
+std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
+  std::error_code fault;
+  if (std::filesystem::is_directory(path, fault))
+    return MeshFault{fmt::format("'{}' is a directory", path)};
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    return MeshFault{fmt::format("'{}' cannot be opened: {}", path, std::strerror(errno))};
+  std::string bytes;
+  std::array<char, 1 << 16> piece;
+  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0) {
+    bytes.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (bytes.size() > kMaxFileBytes) {
+      return MeshFault{fmt::format("'{}' has more than {} MiB", path, kMaxFileBytes >> 20)};
+    }
+  }
+  if (stream.bad())
+    return MeshFault{fmt::format("'{}' cannot be read: {}", path, std::strerror(errno))};
+  return bytes;
+}
+
+std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
+                                                const std::string& extension) {
+  const std::string format = format_of(extension);
+  if (std::ranges::find(kFormats, format) == kFormats.end()) {
+    return MeshFault{fmt::format("its format is none of {}", fmt::join(kFormats, ", "))};
+  }
+  const ChildWork work =
+      in_child([&] { return import_into_bytes(bytes, format); },
+               {.cpu_s = seconds_for(bytes.size()), .wall_s = 30 * seconds_for(bytes.size())});
+  if (!work.fault.empty()) return MeshFault{"the library that reads it " + work.fault};
+  return taken(work.bytes);
+}
+
+}  // namespace clearance

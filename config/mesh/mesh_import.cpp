@@ -1,0 +1,136 @@
+// Assimp parses the bytes in memory (but PLY), and the scene graph's transforms place each mesh.
+// What it gives is checked before it is used: it takes indices and accessors as the file has them.
+#include "config/mesh/mesh_import.hpp"
+
+#include <fmt/format.h>
+
+#include <assimp/config.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "config/mesh/collada_check.hpp"
+#include "config/mesh/ply.hpp"
+
+namespace clearance {
+namespace {
+
+// Left through import_mesh() only.
+struct BadMesh {
+  std::string reason;
+};
+
+// Assimp's floats, widened without rounding.
+Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+// Where the vertex is that corner `k` of a face names.
+Vec3 corner(const aiMesh& mesh, unsigned f, unsigned k, const aiMatrix4x4& placed) {
+  const unsigned index = mesh.mFaces[f].mIndices[k];
+  if (index >= mesh.mNumVertices || mesh.mVertices == nullptr) {
+    throw BadMesh{fmt::format("face {} names vertex {} of {}", f, index, mesh.mNumVertices)};
+  }
+  return to_vec3(placed * mesh.mVertices[index]);
+}
+
+// Depth first through the scene graph; `outer` is the transform from the node's parent to the
+// file's root, column vectors on the right.
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
+             std::vector<Triangle>& triangles) {
+  const aiMatrix4x4 placed = outer * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    if (node.mMeshes[i] >= scene.mNumMeshes) throw BadMesh{"it places a mesh that it lacks"};
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) continue;  // stray points and lines are no part of the surface
+      for (unsigned k = 1; k + 1 < face.mNumIndices; ++k) {
+        triangles.push_back({corner(mesh, f, 0, placed), corner(mesh, f, k, placed),
+                             corner(mesh, f, k + 1, placed)});
+      }
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    collect(scene, *node.mChildren[i], placed, triangles);
+}
+
+// Assimp's message, without the name that it invents for what it reads from memory.
+std::string plain(std::string message) {
+  const std::size_t start = message.find("$$$___magic___$$$");
+  if (start == std::string::npos) return message;
+  const bool quoted = start > 0 && message[start - 1] == '"';
+  const std::size_t first = start - (quoted ? 1 : 0);
+  const std::size_t end =
+      quoted ? message.find('"', start) + 1 : message.find_first_of(" :,", start);
+  return message.replace(first, end - first, "it");
+}
+
+// Assimp tries its other readers, too, where a file is not what its name says.
+void keep_one_format(Assimp::Importer& importer, const std::string& format) {
+  Assimp::BaseImporter* const wanted = importer.GetImporter(format.c_str());
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* const reader = importer.GetImporter(i);
+    if (reader != wanted) importer.UnregisterLoader(reader);
+  }
+}
+
+// Assimp takes an ASCII STL that is cut off for a smaller one. A binary one has the length that its
+// number of triangles says.
+void refuse_cut_off_stl(const std::string& bytes) {
+  constexpr std::size_t kHeader = 80, kTriangle = 50;
+  std::uint32_t triangles = 0;
+  if (bytes.size() >= kHeader + sizeof triangles) {
+    std::memcpy(&triangles, bytes.data() + kHeader, sizeof triangles);
+    if (bytes.size() == kHeader + sizeof triangles + kTriangle * triangles) return;
+  }
+  const std::size_t end = bytes.find_last_not_of(std::string_view(" \t\r\n\0", 5));
+  const std::size_t last = bytes.find_last_of("\r\n", end);
+  const std::size_t word = bytes.find_first_not_of(" \t", last + 1);
+  if (end == std::string::npos || bytes.compare(word, 8, "endsolid") != 0) {
+    throw BadMesh{"its length is not that of its triangles, and its last line not 'endsolid'"};
+  }
+}
+
+// Of STL, OBJ and COLLADA.
+std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::string& format) {
+  if (format == "stl") refuse_cut_off_stl(bytes);
+  if (format == "dae") {
+    if (const std::string fault = fault_of_collada(bytes); !fault.empty()) throw BadMesh{fault};
+  }
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  keep_one_format(importer, format);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
+  if (scene == nullptr) throw BadMesh{plain(importer.GetErrorString())};
+  std::vector<Triangle> triangles;
+  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), triangles);
+  return triangles;
+}
+
+}  // namespace
+
+// No post-processing step of assimp is used: what it would join and triangulate is joined and
+// triangulated here. Assimp throws for some malformed files, so everything is caught.
+std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
+                                                           const std::string& format) {
+  try {
+    auto result =
+        format == "ply"
+            ? ply_triangles(bytes)
+            : std::variant<std::vector<Triangle>, MeshFault>(import_with_assimp(bytes, format));
+    const auto* triangles = std::get_if<std::vector<Triangle>>(&result);
+    if (triangles != nullptr && triangles->empty()) return MeshFault{"it has no faces"};
+    return result;
+  } catch (const BadMesh& fault) {
+    return MeshFault{fault.reason};
+  } catch (const std::bad_alloc&) {
+    throw;  // the child process says how much it may have
+  } catch (const std::exception& fault) {
+    return MeshFault{fault.what()};
+  }
+}
+
+}  // namespace clearance

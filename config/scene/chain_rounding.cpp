@@ -1,0 +1,98 @@
+// The sums of ForwardKinematics::carry, with the largest lengths that can stand in them.
+#include "config/scene/chain_rounding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearance {
+namespace {
+
+// The sums below round, too: by less than this in all.
+constexpr double kRounded = 1.0 + 0x1p-40;
+
+// Of one link: its error, and how far it can be from the world's origin, m.
+struct LinkBound {
+  ChainError error;
+  double farthest = 0.0;
+};
+
+// The largest length that a position can have.
+double largest(const JointVariable& variable, double multiplier, double offset) noexcept {
+  const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
+  const double way = std::isfinite(limit) ? limit : kSureWay;
+  return std::abs(multiplier) * way + std::abs(offset);
+}
+
+// As of the joint's largest_slide.
+double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
+  switch (joint.type) {
+    case JointType::kPrismatic:
+      return largest(variables[joint.variable], joint.multiplier, joint.offset);
+    case JointType::kPlanar:
+      return 2.0 * kSureWay;
+    case JointType::kFloating:
+      return 3.0 * kSureWay;
+    default:
+      return 0.0;
+  }
+}
+
+bool turns_by_an_angle(JointType type) noexcept {
+  return type == JointType::kRevolute || type == JointType::kContinuous ||
+         type == JointType::kPlanar;
+}
+
+LinkBound carried(const LinkBound& parent, double step, double slide, double angle) noexcept {
+  const double far = step + slide;
+  LinkBound link;
+  link.error.turn = kRounded * (parent.error.turn + kJointError + kPositionError * angle);
+  link.error.shift = kRounded * (parent.error.shift + (parent.error.turn + kJointError) * far +
+                                 kPositionError * slide + kPlacingError * (parent.farthest + far));
+  link.farthest = kRounded * (parent.farthest + far);
+  return link;
+}
+
+}  // namespace
+
+std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
+                                       const std::vector<JointVariable>& variables) {
+  std::vector<std::vector<LinkBound>> bounds;
+  for (const Robot& robot : robots) {
+    LinkBound parent;
+    if (robot.base.kind == RobotBase::Kind::kObject) parent.farthest = kSureWay;
+    if (robot.base.kind == RobotBase::Kind::kLink)
+      parent = bounds[robot.base.robot][robot.base.link];
+    std::vector<LinkBound>& links = bounds.emplace_back();
+    links.push_back(carried(parent, robot.base.base_from_root.position.norm(), 0.0, 0.0));
+    for (const RobotJoint& joint : robot.joints) {
+      links.push_back(carried(links[joint.parent], joint.parent_from_joint.position.norm(),
+                              slide_of(joint, variables),
+                              turns_by_an_angle(joint.type) ? kSureAngle : 0.0));
+    }
+  }
+  std::vector<ChainError> errors;
+  for (const LinkBound& link : bounds.back()) errors.push_back(link.error);
+  return errors;
+}
+
+void account_for(const ChainError& error, Object& object) {
+  double reach = 0.0;
+  for (const Part& part : object.parts) {
+    for (const Vec3& anchor : part.shape.anchors) {
+      reach = std::max(reach, transform(part.object_from_part, anchor).norm());
+    }
+    reach = std::max(reach, part.object_from_part.position.norm() + part.shape.bounding_radius);
+    reach += part.shape.radius + part.shape.position_error;
+  }
+  // Twice the arm: what asks for the error at run time takes a sphere around the parts for them.
+  object.pose_error = kRounded * (error.shift + 2.0 * error.turn * reach);
+  for (Part& part : object.parts) {
+    ConvexBody& shape = part.shape;
+    shape.position_error += object.pose_error;
+    shape.error_bound_as_a += object.pose_error;
+    shape.error_bound_as_b += object.pose_error;
+    shape.inner_radius = std::max(0.0, shape.inner_radius - object.pose_error);
+  }
+}
+
+}  // namespace clearance

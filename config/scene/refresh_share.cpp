@@ -1,0 +1,38 @@
+// Part pairs are counted once when a cell is loaded. With the published pairs apart, each of the
+// two sets gets a share of its own; together they need less, since the largest pair counts once.
+#include "config/scene/refresh_share.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+
+void RefreshCost::add(std::uint64_t part_pairs_of_one) noexcept {
+  part_pairs += part_pairs_of_one;
+  most = std::max(most, part_pairs_of_one);
+}
+
+// An equal share of all part pairs in each tick, and the largest pair on top: a pair is evaluated
+// whole, so a tick may exceed its equal share by one pair.
+std::uint64_t RefreshCost::queries(std::uint64_t ticks) const noexcept {
+  return std::min(part_pairs, part_pairs / ticks + most);
+}
+
+RefreshShare refresh_share(const Scene& scene) {
+  const auto ticks =
+      static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
+  RefreshCost published, others, all;
+  for (const ObjectPair& pair : scene.pairs) {
+    const std::uint64_t part_pairs =
+        scene.objects[pair.first].parts.size() * scene.objects[pair.second].parts.size();
+    (is_published(pair, scene) ? published : others).add(part_pairs);
+    all.add(part_pairs);
+  }
+  const RefreshShare together{.ticks = ticks, .published = {}, .others = all};
+  const RefreshShare apart{
+      .ticks = ticks, .published_every_tick = true, .published = published, .others = others};
+  if (published.part_pairs > scene.budget) return together;
+  const bool only_together = apart.queries() > scene.budget && together.queries() <= scene.budget;
+  return only_together ? together : apart;
+}
+
+}  // namespace clearance

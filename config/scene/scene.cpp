@@ -1,0 +1,54 @@
+// What is asked of a Scene as a whole.
+#include "config/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace clearance {
+namespace {
+
+// "1 object", "2 objects".
+std::string counted(std::size_t count, const std::string& singular) {
+  return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+// Partition names are matched as POSIX fnmatch patterns (DDS 1.4, section 2.2.3.13), hence no *, ?
+// and [.
+bool is_partition(const std::string& name) noexcept {
+  constexpr std::size_t kLongest = 255;
+  return name.find_first_of("*?[") == std::string::npos && name.size() <= kLongest;
+}
+
+SeparatedCount separated_count(const Scene& scene) noexcept {
+  SeparatedCount count;
+  for (const Zone& zone : scene.zones) {
+    if (!zone.separation) continue;
+    ++count.zones;
+    count.pairs += zone.pairs.size();
+  }
+  return count;
+}
+
+std::string summary(const Scene& scene) {
+  std::size_t fixed = 0, parts = 0, facets = 0;
+  for (const Object& object : scene.objects) {
+    fixed += object.fixed ? 1 : 0;
+    parts += object.parts.size();
+    for (const Part& part : object.parts) facets += part.shape.facets.size();
+  }
+  const auto published = static_cast<std::size_t>(std::count_if(
+      scene.pairs.begin(), scene.pairs.end(), [](const ObjectPair& pair) { return pair.publish; }));
+  const std::string robots =
+      scene.robots.empty() ? "" : counted(scene.robots.size(), "robot") + ", ";
+  return fmt::format("{}: {} ({} moving, {} fixed), {}{}, {}, {} ({} published), {}", scene.name,
+                     counted(scene.objects.size(), "object"), scene.objects.size() - fixed, fixed,
+                     robots, counted(parts, "part"), counted(facets, "facet"),
+                     counted(scene.pairs.size(), "pair"), published,
+                     counted(scene.zones.size(), "zone"));
+}
+
+}  // namespace clearance

@@ -1,0 +1,115 @@
+// A robot cell as the monitor needs it: plain structs, already checked. Read from YAML by
+// config/cell/cell_file.hpp.
+//
+// Ids are indices: object i is scene.objects[i], in the order of the file. SI units; stamps in ns.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scene/robot.hpp"
+#include "config/scene/ros_settings.hpp"
+#include "config/scene/separation.hpp"
+#include "config/scene/simulation.hpp"
+#include "config/scene/topics.hpp"
+#include "core/convex_body.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// One convex piece of an object, with its place in the object's frame.
+struct Part {
+  std::string name;
+  ConvexBody shape;
+  Pose object_from_part;
+};
+
+// A rigid body of one or more convex parts. Fixed objects have a pose; the poses of moving ones
+// arrive at run time.
+struct Object {
+  std::string name;
+  std::vector<std::string> groups;
+  std::vector<Part> parts;
+  bool fixed = false;
+  Pose world_from_object;  // of a fixed object; of a moving one: meaningless until a pose arrives
+  double margin = 0.0;     // m, >= 0: zones subtract it; published distances do not
+  double max_speed = kInfinity;  // m/s, of any point of the object; infinity: not stated
+  // An older pose makes the object's pairs stale; unused by fixed objects.
+  std::int64_t age_limit_ns = 0;
+  // A pose that comes again, bit for bit, for longer than this is frozen; 0: it may, as of an
+  // object at rest.
+  std::int64_t frozen_limit_ns = 0;
+  // Of a link whose pose follows from joints: no point of it is farther from where the chain has
+  // it, m. Its parts' own errors have been widened by it. 0: of poses that are sent.
+  double pose_error = 0.0;
+  bool may_jump = false;  // poses need not be such as the object can have reached: a simulation's
+  // Only poses of this source are used; empty: of the first that sends some, while it does.
+  std::string source;
+  std::string frame;  // of tf, whose poses are the object's; empty: none
+};
+
+// Two objects to be watched. first < second; every pair once.
+struct ObjectPair {
+  std::uint32_t first = 0, second = 0;
+  bool publish = false;  // in every report's pair list, not only when it is the minimum
+};
+
+// A named threshold on the distance less both margins, for every watched pair between two groups.
+struct Zone {
+  std::string name;
+  std::string group_a, group_b;               // a group, or one object by its name
+  double enter_below = 0.0;                   // m
+  double leave_above = 0.0;                   // m, >= enter_below: hysteresis
+  std::vector<std::uint32_t> pairs;           // indices into Scene::pairs
+  std::optional<Separation> separation = {};  // of people and a robot; its pairs are published
+};
+
+// All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and
+// the budget covers the refreshing: whoever has a Scene checks none of this again.
+struct Scene {
+  std::string name;
+  std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
+                               // scenes that differ have different revisions; never 0
+  std::string yaml;            // the text it was read from, for recordings
+  // Where that text stood, and the files that it names, directly or not: meshes, URDF, SRDF,
+  // planning scenes. Absolute; each once, in the order in which they were read.
+  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;
+  double rate_hz = 1000.0;
+  std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
+  double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
+                                // whatever else is urgent: the budget covers it (RefreshShare)
+  bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
+                              // budget allows. For tables and measurements: cells do not ask for it
+  std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
+  bool gradients = false;        // of published pairs by the joints of robots: in every report
+  std::uint32_t domain = 0;      // DDS
+  std::string partition;         // DDS; empty: the default partition
+  std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
+  Topics topics;
+  RosSettings ros;
+  std::vector<Object> objects;
+  std::vector<Robot> robots;  // each stands on the world, an object, or a robot before it
+  std::vector<JointVariable> variables;  // of all robots: what joint states can give
+  std::vector<ObjectPair> pairs;
+  std::vector<Zone> zones;
+  Simulation simulation;  // may be empty; the monitor never looks at it
+};
+
+// Whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
+// default partition, and without wildcards, which would join cells that were to be kept apart.
+[[nodiscard]] bool is_partition(const std::string& name) noexcept;
+
+// How many zones have `separation`, and how many pairs these have, each counted once a zone.
+struct SeparatedCount {
+  std::size_t zones = 0, pairs = 0;
+};
+[[nodiscard]] SeparatedCount separated_count(const Scene& scene) noexcept;
+
+// One line: how many objects, robots, parts, facets, pairs and zones.
+[[nodiscard]] std::string summary(const Scene& scene);
+
+}  // namespace clearance

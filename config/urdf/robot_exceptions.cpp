@@ -1,0 +1,139 @@
+// Faults and notes are made for people who have the wrong file, or none: they name links and lines.
+#include "config/urdf/robot_exceptions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "config/yaml/utf8.hpp"
+
+namespace clearance {
+
+// An SRDF of another robot disables pairs that have nothing to do with this one, and leaves
+// neighbours watched.
+UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
+                     const UrdfRobot& robot, const std::filesystem::path& urdf_file) {
+  UrdfFaults faults;
+  const auto refuse = [&](int line, const std::string& text) {
+    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, printable(text))});
+  };
+  const std::string urdf = urdf_file.filename().string();
+  if (srdf.robot != robot.name) {
+    refuse(srdf.line, fmt::format("found the robot '{}'; expected '{}', as {} calls it", srdf.robot,
+                                  robot.name, urdf));
+  }
+  std::set<std::string> links;
+  for (const UrdfLink& link : robot.links) links.insert(link.name);
+  // Each name once, where it stands first.
+  const auto check = [&](const std::string& link, int line) {
+    if (!links.insert(link).second) return;
+    refuse(line, fmt::format("found the link '{}'; expected one of the links of {}", link, urdf));
+  };
+  for (const std::vector<SrdfDisabled>* pairs : {&srdf.disabled, &srdf.enabled}) {
+    for (const SrdfDisabled& entry : *pairs) {
+      check(entry.link_a, entry.line);
+      check(entry.link_b, entry.line);
+    }
+  }
+  for (const SrdfDefault& entry : srdf.disabled_by_default) check(entry.link, entry.line);
+  return faults;
+}
+
+namespace {
+
+using LinkPair = std::pair<std::string, std::string>;
+
+LinkPair in_order(const std::string& a, const std::string& b) { return std::minmax(a, b); }
+
+// As MoveIt: what is disabled by default, less what is enabled, and what is disabled one by one.
+std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped,
+                                       std::vector<std::string>& notes) {
+  std::vector<SrdfDisabled> all = srdf.disabled;
+  if (srdf.disabled_by_default.empty()) return all;
+  std::set<LinkPair> enabled, one_by_one;
+  for (const SrdfDisabled& entry : srdf.enabled)
+    enabled.insert(in_order(entry.link_a, entry.link_b));
+  for (const SrdfDisabled& entry : srdf.disabled)
+    one_by_one.insert(in_order(entry.link_a, entry.link_b));
+  std::set<LinkPair> added;
+  for (const SrdfDefault& entry : srdf.disabled_by_default) {
+    if (!shaped.contains(entry.link)) continue;
+    for (const std::string& other : shaped) {
+      const LinkPair pair = in_order(entry.link, other);
+      if (other == entry.link || enabled.contains(pair) || one_by_one.contains(pair)) continue;
+      if (added.insert(pair).second)
+        all.push_back({pair.first, pair.second, "disabled by default in the SRDF", entry.line});
+    }
+  }
+  if (!added.empty()) {
+    notes.push_back(
+        fmt::format("{} pairs are disabled by default in the SRDF and not enabled", added.size()));
+  }
+  return all;
+}
+
+}  // namespace
+
+// The SRDF speaks of links without shapes too, and sometimes of a pair twice: neither is an
+// exception of ours.
+std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shaped,
+                                        const LinkNames& fixed, std::vector<std::string>& notes) {
+  std::set<LinkPair> seen;
+  std::vector<SrdfDisabled> useful;
+  const std::vector<SrdfDisabled> disabled = all_disabled(srdf, shaped, notes);
+  std::map<std::string, int> left_out;  // by reason
+  for (const SrdfDisabled& entry : disabled) {
+    if (!shaped.contains(entry.link_a) || !shaped.contains(entry.link_b)) {
+      ++left_out["with a link without collision shapes"];
+    } else if (entry.link_a == entry.link_b) {
+      ++left_out["of a link with itself"];
+    } else if (fixed.contains(entry.link_a) && fixed.contains(entry.link_b)) {
+      ++left_out["of two fixed links"];
+    } else if (!seen.insert(in_order(entry.link_a, entry.link_b)).second) {
+      ++left_out["named twice"];
+    } else {
+      useful.push_back(entry);
+    }
+  }
+  std::string reasons;
+  for (const auto& [reason, count] : left_out) {
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+  }
+  if (!left_out.empty()) {
+    notes.push_back(
+        fmt::format("{} disabled pairs left out: {}", disabled.size() - useful.size(), reasons));
+  }
+  return useful;
+}
+
+// A link and the next one above it that has shapes: what joins them overlaps by design. Of links
+// that only hang on the same frame nothing is known, so they stay watched.
+std::vector<SrdfDisabled> neighbours_of(const UrdfRobot& robot, const LinkNames& shaped,
+                                        const LinkNames& fixed, std::vector<std::string>& notes) {
+  std::map<std::string, std::string> parents;
+  for (const UrdfJoint& joint : robot.joints) parents[joint.child] = joint.parent;
+  std::vector<SrdfDisabled> pairs;
+  std::string names;
+  for (const UrdfLink& link : robot.links) {
+    if (!shaped.contains(link.name)) continue;
+    auto above = parents.find(link.name);
+    while (above != parents.end() && !shaped.contains(above->second)) {
+      above = parents.find(above->second);
+    }
+    if (above == parents.end()) continue;
+    const std::string& parent = above->second;
+    if (fixed.contains(link.name) && fixed.contains(parent)) continue;
+    pairs.push_back({parent, link.name, "Adjacent in the URDF", 0});
+    names += fmt::format("{}{} - {}", names.empty() ? "" : ", ", parent, link.name);
+  }
+  notes.push_back(
+      pairs.empty() ? "no SRDF, and no neighbours: every pair of links is watched"
+                    : fmt::format("no SRDF: neighbours are left out, and every other pair of links "
+                                  "is watched: {}",
+                                  names));
+  return pairs;
+}
+
+}  // namespace clearance

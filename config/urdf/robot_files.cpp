@@ -1,0 +1,82 @@
+#include "config/urdf/robot_files.hpp"
+
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+
+#include "config/scene/revision.hpp"
+
+namespace clearance {
+namespace {
+
+const std::string kPackage = "package://", kFile = "file://";
+
+// Where an installation of ROS 2 or a workspace of it says that packages are: PREFIX/share/NAME.
+std::optional<std::filesystem::path> installed_package(const std::string& package) {
+  const char* const prefixes = std::getenv("AMENT_PREFIX_PATH");
+  std::istringstream list(prefixes == nullptr ? "" : prefixes);
+  for (std::string prefix; std::getline(list, prefix, ':');) {
+    const std::filesystem::path directory = std::filesystem::path(prefix) / "share" / package;
+    if (std::error_code fault; !prefix.empty() && std::filesystem::is_directory(directory, fault))
+      return directory;
+  }
+  return std::nullopt;
+}
+
+// Under the root of another machine: what was installed there, wherever that was.
+std::optional<std::filesystem::path> kept_package(const std::string& package,
+                                                  const std::filesystem::path& root) {
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root, fault)) {
+    if (entry.is_directory(fault) && entry.path().filename() == package) return entry.path();
+  }
+  return std::nullopt;
+}
+
+// A package that is named wins. Otherwise the search goes upwards, as packages usually contain the
+// description that refers to them; what ROS 2 has installed comes last.
+std::optional<std::filesystem::path> directory_of(const std::string& package,
+                                                  const RobotFiles& files) {
+  for (const auto& [name, directory] : files.packages) {
+    if (name == package) return directory;
+  }
+  std::filesystem::path at =
+      std::filesystem::absolute(files.named_in).lexically_normal().parent_path();
+  for (; at.has_relative_path(); at = at.parent_path()) {
+    if (at.filename() == package) return at;
+    if (std::error_code fault; std::filesystem::is_directory(at / package, fault))
+      return at / package;
+  }
+  return files.root.empty() ? installed_package(package) : kept_package(package, files.root);
+}
+
+}  // namespace
+
+std::string package_of(const std::string& name) {
+  if (!name.starts_with(kPackage)) return "";
+  return name.substr(kPackage.size(), name.find('/', kPackage.size()) - kPackage.size());
+}
+
+std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) const {
+  std::filesystem::path path;
+  if (name.starts_with(kPackage)) {
+    const std::size_t slash = name.find('/', kPackage.size());
+    const auto directory = directory_of(package_of(name), *this);
+    if (!directory || slash == std::string::npos) return std::nullopt;
+    path = *directory / name.substr(slash + 1);
+  } else if (name.starts_with(kFile)) {
+    path = path_in(root, "", name.substr(kFile.size()));
+  } else {
+    path = path_in(root, named_in.parent_path(), name);
+  }
+  return std::filesystem::absolute(path).lexically_normal();
+}
+
+// The matrix product has z on the left.
+Pose pose_of(const UrdfOrigin& origin) {
+  return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
+                          Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *
+                          Eigen::AngleAxisd(origin.rpy.x(), Vec3::UnitX())};
+}
+
+}  // namespace clearance

@@ -1,0 +1,32 @@
+// Makes the tree of joints of a robot from its URDF.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/scene/robot.hpp"
+#include "config/urdf/urdf.hpp"
+
+namespace clearance {
+
+// The links and joints of one robot, with its joints' variables counted from 0.
+struct RobotModel {
+  Robot robot;  // of the URDF's name; without a base and without objects
+  std::vector<JointVariable> variables;
+};
+
+// Every name gets the prefix. Refused, by line of `urdf`: more than one root, joints of unknown
+// types or without what their type needs, axes of no length, limits the wrong way round, and mimic
+// joints that follow nothing or themselves.
+[[nodiscard]] std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,
+                                                               const std::filesystem::path& urdf,
+                                                               const std::string& prefix);
+
+// Puts a floating joint below the root, as a robot has it whose base follows a frame of tf: its
+// first link is then the world, "PREFIXNAME_world", its first joint and variables those of
+// "PREFIXNAME_base".
+void float_root(RobotModel& model, const std::string& prefix, const std::string& name);
+
+}  // namespace clearance

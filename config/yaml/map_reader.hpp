@@ -1,0 +1,42 @@
+// Reads one YAML map key by key, and refuses the keys that no reader knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/yaml/diagnostics.hpp"
+#include "config/yaml/yaml_node.hpp"
+
+namespace clearance {
+
+// Readers ask for each key that they know and call refuse_unknown_keys() at the end. A node that is
+// no map answers every request with nullptr, after one diagnostic.
+class MapReader {
+ public:
+  // `what` names the map in messages: "a zone". Reports a node that is no map, and a key
+  // that stands twice. The node and the diagnostics must outlive the reader.
+  MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics);
+
+  [[nodiscard]] bool is_map() const { return is_map_; }
+
+  // The value of a key, or nullptr. Asking makes the key known.
+  [[nodiscard]] const YamlNode* optional(const std::string& key);
+  [[nodiscard]] const YamlNode* required(const std::string& key);  // reports when it is missing
+
+  // To be called after the last key was asked for.
+  void refuse_unknown_keys();
+
+ private:
+  const YamlNode& node_;
+  std::string what_;
+  Diagnostics& diagnostics_;
+  bool is_map_;
+  std::vector<std::string> known_;
+};
+
+// The items of a list; reports and returns an empty list when it is none. `what` finishes
+// "expected a list of ...".
+[[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
+                                                     Diagnostics& diagnostics);
+
+}  // namespace clearance
