@@ -148,7 +148,7 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
   if (bodies->error > use.limits.tolerance) {
     say(fmt::format(
         "warning: {}: its {} part{} reach {:.1f} mm beyond it, more than the tolerance "
-        "of {:g} mm: raise {} in the cell (clearance-scene --from-urdf writes one)",
+        "of {:g} mm: raise {} in the cell (clearance-scene import writes one)",
         path.filename().string(), bodies->shapes.size(), bodies->shapes.size() == 1 ? "" : "s",
         1e3 * bodies->error, 1e3 * use.limits.tolerance,
         bodies->shapes.size() < use.limits.max_parts

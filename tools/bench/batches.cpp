@@ -1,4 +1,4 @@
-#include "tools/bench/batches.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-// Pairs of penetrating bodies, to measure the cost of a depth (tools/README.md, "Overlapping").
+// Pairs of penetrating bodies, to measure the cost of a depth (tools/bench/measured/report.md,
+// "Overlapping").
 #pragma once
 
 #include <string>

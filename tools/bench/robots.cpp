@@ -1,4 +1,4 @@
-#include "tools/bench/robots.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "tools/bench/cells.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/ticks.hpp"
-#include "tools/robot/joint_sweep.hpp"
+#include "tools/shared/joint_sweep.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
-#include "tools/bench/chapter5/crossed_ellipsoids.hpp"
+#include "tools/bench/crossed_ellipsoids.hpp"
 #include "tools/bench/overlaps.hpp"
 
 namespace clearance::bench {

@@ -13,7 +13,7 @@ namespace clearance {
 std::string plot_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    // A backslash for the string, and one for the markup.
+    // One backslash is for the string, one for the markup.
     if (c == '_' || c == '^' || c == '@' || c == '&' || c == '{' || c == '}' || c == '~') {
       out += "\\\\";
     }
@@ -22,7 +22,7 @@ std::string plot_text(const std::string& text) {
   return out + "\"";
 }
 
-// The script goes through a file: what gnuplot says comes back through the pipe.
+// The script goes through a file, because gnuplot's messages come back through the pipe.
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
   const std::filesystem::path file = svg.string() + ".gnuplot";

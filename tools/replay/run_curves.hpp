@@ -1,4 +1,4 @@
-// --plot and --report: gathers the curves of a replay and writes what is made of them.
+// --plot and --report: gathers the curves of a replay and writes picture and page.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@ namespace clearance {
 
 class RunCurves {
  public:
-  // Both must outlive it.
-  RunCurves(const ReplayArguments& arguments, const Scene& scene)
+  // Both arguments must outlive the object.
+  RunCurves(const CheckArguments& arguments, const Scene& scene)
       : arguments_(arguments), scene_(scene), series_(scene) {}
 
   void add(const ReplayedTick& tick) { series_.add(tick); }
 
-  // Empty, or what could not be written and why.
+  // Returns an empty text, or the file that could not be written and why.
   [[nodiscard]] std::string write(const OfflineReplay& replay) const;
 
  private:
   [[nodiscard]] std::string write_report(const OfflineReplay& replay) const;
   [[nodiscard]] std::string unknown_pair() const;
 
-  const ReplayArguments& arguments_;
+  const CheckArguments& arguments_;
   const Scene& scene_;
   RunSeries series_;
 };

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -127,9 +127,9 @@ class Libccd {
 
 }  // namespace
 
-void register_libccd() {
-  register_rows<Libccd>("peer/libccd/");
-  register_kind_rows<Libccd>("peer/libccd/");
+// It has no distance that the thesis's tables could compare.
+void register_libccd(RowSet set) {
+  if (set == RowSet::kBench) register_peer<Libccd>(set, "libccd");
 }
 
 }  // namespace clearance::bench

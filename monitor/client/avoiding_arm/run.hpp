@@ -1,0 +1,32 @@
+// One run of the example: the controller's arm and the obstacles of the cell, closed over DDS
+// through the daemon's gradients.
+#pragma once
+
+#include <functional>
+
+#include "config/scene/scene.hpp"
+#include "monitor/client/avoiding_arm/controller.hpp"
+#include "monitor/client/client.hpp"
+
+namespace clearance::avoid {
+
+struct RunOptions {
+  double seconds = 10.0;  // of the motion; a machine that is held up takes longer
+  std::string end_link = "hand";
+  ControllerOptions controller;
+};
+
+struct RunResult {
+  bool heard = false;                                // the daemon answered all the time
+  std::uint64_t steps = 0;                           // of the controller
+  double mean_error_m = 0.0, largest_error_m = 0.0;  // of the end point on its path
+  double least_distance_m = kInfinity;               // of the robot from the obstacles
+  std::string nearest;                               // the pair that it was of
+};
+
+// Both obstacles and path are functions of the run's own time, which stands while the daemon does
+// not answer: every run meets the same motion. `go_on` is asked before each step.
+[[nodiscard]] RunResult run(const Scene& scene, client::Connection& connection,
+                            const RunOptions& options, const std::function<bool()>& go_on);
+
+}  // namespace clearance::avoid
