@@ -37,9 +37,9 @@ int write_text(const std::string& text, const std::filesystem::path& output) {
 // A cell that was written is read back, so that its mistakes show at once.
 int write_cell(const std::string& yaml, const std::string& output) {
   if (const int failed = write_text(yaml, output); failed != kOk) return failed;
-  const auto scene = scene_or_errors(read_cell(output, told_on_stderr()));
-  if (!scene) return kBadCell;
-  print(stdout, "{}: {}\n", output, summary(*scene));
+  const auto cell = cell_or_errors(read_cell(output, told_on_stderr()));
+  if (!cell) return kBadCell;
+  print(stdout, "{}: {}\n", output, summary(cell->scene));
   return kOk;
 }
 
@@ -89,18 +89,19 @@ int allow_collisions(const AllowArguments& arguments) {
     const int refused = check_output(robot, arguments.output, arguments.force);
     if (refused != kOk) return refused;
   }
-  const auto scene =
-      scene_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
-  if (!scene) return kBadCell;
-  const std::vector<SampledPair> pairs = sample_with_progress(*scene, arguments.sampling);
+  const auto cell =
+      cell_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
+  if (!cell) return kBadCell;
+  const Scene& scene = cell->scene;
+  const std::vector<SampledPair> pairs = sample_with_progress(scene, arguments.sampling);
   const std::uint64_t samples = arguments.sampling.samples;
   if (!robot.srdf.empty()) {
     const auto srdf = read_srdf(robot.srdf);
     if (const auto* faults = std::get_if<UrdfFaults>(&srdf)) return print_faults(*faults);
-    print(stderr, "{}", agreement(*scene, pairs, samples, std::get<Srdf>(srdf)));
+    print(stderr, "{}", agreement(scene, pairs, samples, std::get<Srdf>(srdf)));
   }
   const std::string text =
-      arguments.form == "srdf" ? as_srdf(*scene, pairs, samples) : as_cell(*scene, pairs, samples);
+      arguments.form == "srdf" ? as_srdf(scene, pairs, samples) : as_cell(scene, pairs, samples);
   if (!arguments.output.empty()) return write_text(text, arguments.output);
   print(stdout, "{}", text);
   return kOk;
@@ -115,10 +116,11 @@ int report_models(const ReportArguments& arguments) {
   MeshErrors mesh_errors;
   CellOptions options = told_on_stderr();
   options.mesh_errors = &mesh_errors;
-  const auto scene = scene_or_errors(read_cell(arguments.cell, options));
-  if (!scene) return kBadCell;
+  const auto cell = cell_or_errors(read_cell(arguments.cell, options));
+  if (!cell) return kBadCell;
   print(stdout, "{}",
-        arguments.json ? model_json(*scene, mesh_errors) : model_table(*scene, mesh_errors));
+        arguments.json ? model_json(cell->scene, mesh_errors)
+                       : model_table(cell->scene, mesh_errors));
   return kOk;
 }
 
