@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 
@@ -25,15 +24,10 @@ struct InputAge {
   std::uint32_t source = kNoSource, other_source = kNoSource;
 };
 
-struct MonitorOptions {
-  unsigned workers = 1;  // threads that evaluate pairs, the one that calls tick() included
-  std::function<void()> on_worker_start = {};  // runs first in each of the others
-};
-
 class Monitor {
  public:
   // Allocates all it will ever need. The scene must outlive the monitor.
-  explicit Monitor(const Scene& scene, const MonitorOptions& options = {});
+  explicit Monitor(const Scene& scene);
   ~Monitor();
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
@@ -41,7 +35,7 @@ class Monitor {
   // One cycle: takes in the samples in the given order, those of joints first (refused ones are
   // counted, never used), moves the objects, carries every bound forward, evaluates what is due
   // within the budget, updates zones. The report stays valid until the next tick. Allocates, throws
-  // and locks nothing; same inputs, same bits, with one worker or several.
+  // and locks nothing; same inputs, same bits.
   const Report& tick(std::span<const PoseSample> samples, std::span<const JointSample> joints,
                      const TickTime& time) noexcept;
   // Of a cell without robots.

@@ -17,8 +17,7 @@ constexpr std::int64_t kFirst = 1'000'000'000;
 
 std::int64_t stamp_ns(int tick) { return kFirst + (kStartUpTicks + tick) * kPeriod; }
 
-TickRun::TickRun(const Crowd& crowd, unsigned workers)
-    : crowd_(crowd), monitor_(crowd.scene, {.workers = workers}) {}
+TickRun::TickRun(const Crowd& crowd) : crowd_(crowd), monitor_(crowd.scene) {}
 
 std::vector<double> TickRun::start_up() {
   std::vector<double> times;
