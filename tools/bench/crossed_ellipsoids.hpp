@@ -7,14 +7,14 @@
 
 namespace clearance::bench {
 
-// Both frames are parallel and A is at the origin, as in the thesis: turning a body is left to
-// whoever calls.
+// Both frames are parallel and A is at the origin, as in the thesis. A caller rotates a body
+// itself.
 struct EllipsoidPair {
   Vec3 axes_a, axes_b;
   Vec3 apart;  // from A's centre to B's
 };
 
-// Where an iteration ended; A's frame.
+// The closest points that an iteration ended with, in A's frame.
 struct ClosestPoints {
   Vec3 on_a, on_b;
   int rounds = 0;
@@ -22,7 +22,7 @@ struct ClosestPoints {
   [[nodiscard]] double distance() const { return (on_b - on_a).norm(); }
 };
 
-// (5.2.1): over all six coordinates.
+// The error (5.2.1) over all six coordinates.
 [[nodiscard]] double x_error(const ClosestPoints& found, const ClosestPoints& truth);
 
 inline constexpr double kSeparations[] = {0.001, 0.1, 0.5, 1.2955, 5.0};

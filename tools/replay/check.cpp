@@ -140,7 +140,7 @@ class Outputs {
   }
 
  private:
-  // Whether there is nothing to say.
+  // Prints the error; true: there is none.
   static bool said(const std::string& error) {
     if (!error.empty()) say(error);
     return error.empty();

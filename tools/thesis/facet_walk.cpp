@@ -6,7 +6,7 @@
 namespace clearance::bench {
 namespace {
 
-constexpr double kSpread = 0.05;  // of (3.6.2): less is too flat a corner
+constexpr double kSpread = 0.05;  // of (3.6.2): a vertex with less is too flat
 constexpr double kInside = 1e-12;
 
 struct Corner {
@@ -25,7 +25,7 @@ double spread(std::span<const HalfSpace> rows, int i, int j, int k) {
   return std::abs(rows[i].normal.cross(rows[j].normal).dot(rows[k].normal));
 }
 
-// Any two facets that make a corner with k.
+// Finds two facets that meet k in a vertex.
 bool first_guess(std::span<const HalfSpace> rows, int k, int& j1, int& j2) {
   const int n = static_cast<int>(rows.size());
   for (j1 = 0; j1 < n; ++j1) {
@@ -37,8 +37,8 @@ bool first_guess(std::span<const HalfSpace> rows, int k, int& j1, int& j2) {
   return false;
 }
 
-// From there to a true vertex: the most violated half-space (3.6.4) replaces whichever leaves the
-// better corner; none is taken twice.
+// Moves from there to a true vertex: the most violated half-space (3.6.4) replaces the facet whose
+// removal leaves the better vertex. No half-space is used twice.
 bool first_corner(std::span<const HalfSpace> rows, int k, Corner& corner) {
   int j1 = 0, j2 = 0;
   if (!first_guess(rows, k, j1, j2)) return false;

@@ -11,7 +11,7 @@
 namespace clearance::bench {
 namespace {
 
-// As in the thesis, starts from the last active set, or else from the centres.
+// Starts from the last active set or from the centres, as the thesis does.
 void place(ActiveFeature& side, const TrackingState::Side& hint) {
   if (!side.place_tracked(hint)) side.place_inside(side.body().interior);
 }

@@ -42,8 +42,8 @@ namespace clearance::bench {
     best.blocking = side.edge().vertex[side.edge().direction.dot(move) > 0.0 ? 1 : 0];
     return best;
   }
-  // Where more than three facets meet, the one that was hit first may touch this one in a vertex
-  // only: then the facet's own boundary decides.
+  // More than three facets may meet. Then the facet that was hit first may touch this one in a
+  // vertex only, and the facet's own boundary decides.
   best.blocking = edge_between(body, side.facet(), best.blocking);
   return best.blocking == kNone ? alpha(side, move_in_common) : best;
 }

@@ -20,19 +20,19 @@ class ArmModel {
   // The positions that move the end point: indices into Scene::variables, from the base outwards.
   [[nodiscard]] const std::vector<std::uint32_t>& variables() const noexcept { return variables_; }
 
-  // Whether this object is one of the arm's links.
+  // True if this object is one of the arm's links.
   [[nodiscard]] bool has(std::uint32_t object) const;
 
   // `positions` as Scene::variables.
   void place(const std::vector<double>& positions);
-  // As of the last place(): m in the world, and m for each rad or m of variables().
+  // After the last place(): m in the world, and m for each rad or m of variables().
   [[nodiscard]] Vec3 end_point() const;
   [[nodiscard]] Eigen::Matrix3Xd jacobian() const;
 
  private:
   const Robot& robot_;
   std::uint32_t end_ = 0;              // index into Robot::links
-  std::vector<std::uint32_t> joints_;  // on the way to it, of one position each
+  std::vector<std::uint32_t> joints_;  // from the base to it, of one position each
   std::vector<std::uint32_t> variables_;
   std::vector<TrackedVariable> states_;
   ForwardKinematics kinematics_;

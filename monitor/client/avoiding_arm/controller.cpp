@@ -9,12 +9,12 @@
 namespace clearance::avoid {
 namespace {
 
-constexpr double kFollow = 4.0;    // 1/s: how fast an error of the end point is made up for
-constexpr double kHoming = 0.5;    // 1/s: and one of the posture
+constexpr double kFollow = 4.0;    // 1/s: rate at which an error of the end point is corrected
+constexpr double kHoming = 0.5;    // 1/s: rate at which an error of the posture is corrected
 constexpr double kDamping = 1e-3;  // of joint velocities, beside (m/s)^2 of the task
-constexpr double kNear = 0.4;      // m: pairs farther apart ask for nothing
+constexpr double kNear = 0.4;      // m: pairs at a larger distance add no constraint
 constexpr double kOwnKeep = 0.01;  // m: between links of the arm
-constexpr double kFleeing = 0.5;   // m/s: no pair is asked to part faster
+constexpr double kFleeing = 0.5;   // m/s: the largest separating speed of a constraint
 constexpr double kStopping = 0.1;  // s: within which a joint may reach the end of its range
 constexpr double kPrice = 1e3;     // of violating an inequality by 1 m/s or rad/s
 

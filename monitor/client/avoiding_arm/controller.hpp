@@ -1,11 +1,11 @@
-// A controller with a barrier: joint velocities that take the end point along its path while
-// distances shrink no faster than what is left of them allows.
+// A controller with a barrier. Its joint velocities move the end point along its path, and
+// distances shrink no faster than their value above a minimum allows.
 //
 //   minimise   |J dq - v|^2 + damping |dq - home|^2
 //   subject to gradient . dq + drift >= -rate (lower - keep)    for each pair that is near
 //              limits of joint velocities and positions
 //
-// So the null space of the task gives way first, and the task only where that is not enough.
+// The null space of the task gives way first, and the task only where that is not enough.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,23 @@ struct ControllerOptions {
   bool avoids = true;  // false: the task alone
   double keep_m =
       0.08;  // the lower bound that pairs keep; the arm's own links from each other 0.01
-  double rate_hz = 4.0;  // how fast what is above that may be used up
+  double rate_hz = 4.0;  // how fast the distance above that may shrink
 };
 
-// Where the end point is to be, and how fast.
+// The wanted position and velocity of the end point.
 struct Target {
   Vec3 position, velocity;  // m, m/s
 };
 
 class Controller {
  public:
-  // `home`: positions that the arm prefers where nothing else is asked, as Scene::variables. Scene
+  // `home`: positions that the arm prefers, in the order of Scene::variables. Scene
   // and model must outlive this.
   Controller(const Scene& scene, const ArmModel& arm, std::vector<double> home,
              const ControllerOptions& options);
 
   // Velocities as Scene::variables, rad/s or m/s, for the positions that the arm was placed at.
-  // `gradients`: of these, all known.
+  // `gradients`: those of the same positions, all known.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& positions,
                                                const Target& target,
                                                const clearance_msg_Gradients& gradients) const;

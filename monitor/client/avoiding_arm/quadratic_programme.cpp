@@ -7,8 +7,8 @@
 namespace clearance::avoid {
 namespace {
 
-// A round looks at every inequality once. Multipliers that still change by less than the tolerance,
-// of the largest one, are settled.
+// A round updates every multiplier once. It converges when they change by less than this share of
+// the largest one.
 constexpr int kRounds = 500;
 constexpr double kSettled = 1e-9;
 
@@ -19,13 +19,13 @@ Eigen::VectorXd minimise(const Eigen::MatrixXd& h, const Eigen::VectorXd& f,
   const Eigen::MatrixXd& a = inequalities.a;
   const Eigen::LLT<Eigen::MatrixXd> factor(h);
   Eigen::VectorXd x = factor.solve(f);
-  const Eigen::MatrixXd towards = factor.solve(a.transpose());  // a column an inequality
+  const Eigen::MatrixXd towards = factor.solve(a.transpose());  // a column per inequality
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(a.rows());
   for (int round = 0; round < kRounds; ++round) {
     double change = 0.0;
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
       const double curvature = a.row(i).dot(towards.col(i));
-      if (!(curvature > 0.0)) continue;  // nothing that moves changes it
+      if (!(curvature > 0.0)) continue;  // no motion changes it
       const double missing = inequalities.b[i] - a.row(i).dot(x);
       const double wanted = std::clamp(multipliers[i] + missing / curvature, 0.0, price);
       x += (wanted - multipliers[i]) * towards.col(i);

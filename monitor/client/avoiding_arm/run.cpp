@@ -13,12 +13,12 @@ namespace clearance::avoid {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience(500);
-// A step moves the run's time by no more than this, however long the machine was held up.
+// A step advances the run's time by at most this, however long the machine stalled.
 constexpr std::int64_t kLongestStepNs = 5'000'000;
-// The first second leads from rest onto the path and does not count.
+// The first second leads from rest to the path and does not count.
 constexpr double kLeadIn = 1.0;  // s
 
-// Positions of an elbow that is bent, within the limits of the cell's arm.
+// Positions with a bent elbow, within the limits of the cell's arm.
 std::vector<double> home_of(const Scene& scene) {
   constexpr double kHome[] = {0.0, -0.6, 0.0, 1.4, 0.0, 0.8, 0.0};
   std::vector<double> home(scene.variables.size(), 0.0);
@@ -26,7 +26,7 @@ std::vector<double> home_of(const Scene& scene) {
   return home;
 }
 
-// An upright figure of eight about where the arm is at home, in 8 s; at first slowly.
+// An upright figure of eight around the home position, in 8 s; it starts slowly.
 class Path {
  public:
   explicit Path(const Vec3& middle) : middle_(middle) {}
@@ -44,7 +44,7 @@ class Path {
   Vec3 middle_;
 };
 
-// What one run sends: the arm and the obstacles, under one stamp.
+// Sends the arm and the obstacles of one run under one stamp.
 class World {
  public:
   World(const Cell& cell, client::Connection& connection)
@@ -85,12 +85,12 @@ class World {
   std::vector<clearance_msg_ObjectPose> sent_;
 };
 
-// The least distance from what moves by itself.
+// The least distance of the arm from the obstacles.
 class Nearest {
  public:
   Nearest(const Scene& scene, const ArmModel& arm, RunResult& result)
       : scene_(scene), arm_(arm), result_(result) {}
-  void look(const clearance_msg_Gradients& gradients) {
+  void update(const clearance_msg_Gradients& gradients) {
     for (const auto& pair : std::span(gradients.pairs._buffer, gradients.pairs._length)) {
       const ObjectPair& objects = scene_.pairs[pair.pair];
       const Object &a = scene_.objects[objects.first], &b = scene_.objects[objects.second];
@@ -108,7 +108,7 @@ class Nearest {
   RunResult& result_;
 };
 
-// Nothing is known of an arm that is late, or put elsewhere between two runs.
+// An arm that is late, or was moved between two runs, is unknown.
 bool all_known(const clearance_msg_Gradients& gradients) {
   const auto known = [](const clearance_msg_PairGradient& pair) {
     return std::isfinite(pair.drift) &&
@@ -120,7 +120,8 @@ bool all_known(const clearance_msg_Gradients& gradients) {
 
 }  // namespace
 
-// Each step: what the daemon made of the last positions, new velocities, a step in time.
+// Each step waits for the daemon's answer to the last positions, computes new velocities, and
+// advances the time.
 RunResult run(const Cell& cell, client::Connection& connection, const RunOptions& options,
               const std::function<bool()>& go_on) {
   RunResult result;
@@ -139,7 +140,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
   std::int64_t now_ns = client::now_ns(), answered_ns = now_ns;
   while (t_s < options.seconds && go_on()) {
     const std::int64_t stamp_ns = world.send(t_s, positions, velocities);
-    // A tick that began after that; what it knows is no older than a tick.
+    // Waits for a tick that began after that.
     while (gradients.next(std::chrono::milliseconds(20)) && gradients->now_ns < stamp_ns) {
     }
     const std::int64_t before_ns = now_ns;
@@ -150,7 +151,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
       continue;
     }
     answered_ns = now_ns;
-    nearest.look(*gradients);
+    nearest.update(*gradients);
     arm.place(positions);
     const Target target = path.at(t_s);
     if (t_s > kLeadIn) {

@@ -11,7 +11,7 @@
 namespace clearance::avoid {
 
 struct RunOptions {
-  double seconds = 10.0;  // of the motion; a machine that is held up takes longer
+  double seconds = 10.0;  // of the motion; a machine that stalls takes longer
   std::string end_link = "hand";
   ControllerOptions controller;
 };
@@ -20,12 +20,13 @@ struct RunResult {
   bool heard = false;                                // the daemon answered all the time
   std::uint64_t steps = 0;                           // of the controller
   double mean_error_m = 0.0, largest_error_m = 0.0;  // of the end point on its path
-  double least_distance_m = kInfinity;               // of the robot from the obstacles
-  std::string nearest;                               // the pair that it was of
+  double least_distance_m = kInfinity;               // between robot and obstacles
+  std::string nearest;                               // the pair at that distance
 };
 
-// Both obstacles and path are functions of the run's own time, which stands while the daemon does
-// not answer: every run meets the same motion. `go_on` is asked before each step.
+// Obstacles and path are functions of the run's own time, which stands still while the daemon does
+// not answer. Every run therefore has the same motion. The run ends when `go_on`, which is called
+// before each step, returns false.
 [[nodiscard]] RunResult run(const Cell& cell, client::Connection& connection,
                             const RunOptions& options, const std::function<bool()>& go_on);
 

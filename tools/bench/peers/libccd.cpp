@@ -65,8 +65,8 @@ std::size_t climb(const Mesh& mesh, std::size_t from, const Vec3& towards) {
   return from;
 }
 
-// As libccd's own examples write them: of an ellipsoid its scaled direction, of a cylinder or a
-// cone the higher one of its discs.
+// Support functions as libccd's own examples write them: an ellipsoid scales the direction, a
+// cylinder or a cone chooses the higher one of its discs.
 Vec3 curved_support(const CurvedShape& shape, const Vec3& d) {
   if (shape.kind == CurvedShape::Kind::kEllipsoid) {
     const Vec3 scaled = shape.semi_axes.cwiseProduct(d);

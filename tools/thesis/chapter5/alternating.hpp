@@ -13,7 +13,8 @@ enum class Turns {
   kTogether,  // both move to where the other was, as the thesis's program has it: twice the rounds
 };
 
-// From A's centre or another start, for so many rounds or until the points stay where they are.
+// Starts from A's centre or another point. Ends after so many rounds, or when the points do not
+// move.
 [[nodiscard]] ClosestPoints alternate(const EllipsoidPair& pair, NearestPointMethod* nearest,
                                       int most_rounds, Turns turns = Turns::kInTurn);
 [[nodiscard]] ClosestPoints alternate_from(const ClosestPoints& start, const EllipsoidPair& pair,

@@ -27,7 +27,7 @@ Vec3 rounded(const Point& p) {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-// Of q / |q|, columns as rows.
+// The rotation matrix of q / |q|, transposed.
 Matrix rotation(const Eigen::Quaterniond& q) {
   const Real w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const Real s = 2 / (w * w + x * x + y * y + z * z);

@@ -13,9 +13,9 @@ struct TruePoints {
   double distance;
 };
 
-// Of ellipsoids that are apart. The vector v from A's closest point to B's is where the convex
-// function |v|^2 / 2 + h_A(v) + h_B(v) - v.apart is least, h being the support functions of bodies
-// around the origin; Newton's method finds it.
+// The closest points of ellipsoids that do not overlap. The vector v from A's closest point to B's
+// minimises the convex function |v|^2 / 2 + h_A(v) + h_B(v) - v.apart, where h are the support
+// functions of bodies around the origin. Newton's method finds it.
 [[nodiscard]] TruePoints true_closest_points(const EllipsoidPair& pair);
 
 struct CrossedTest {

@@ -6,8 +6,8 @@
 //
 //     lambda' = (a_i^2 + lambda) sqrt(S) - a_i^2.
 //
-// From there the steps shrink by a constant ratio, by which every other step is extrapolated to its
-// limit; what makes S worse is taken back.
+// The later steps shrink by a constant ratio, with which every other step is extrapolated to its
+// limit. An extrapolation that makes S worse is taken back.
 #pragma once
 
 #include <algorithm>

@@ -25,8 +25,9 @@ Vec3 nearest_of_sphere(const Vec3& h, const Vec3& g) {
 
 }  // namespace
 
-// Where A is the unit sphere, B has the semi-axes b_i / a_i (the axes are parallel) and the centre
-// c_i / a_i: the nearest point of that to the origin. Then the same of A and that point.
+// In the space where A is the unit sphere, B has the semi-axes b_i / a_i (the axes are parallel)
+// and the centre c_i / a_i. The first step finds the point of B nearest to the origin there, the
+// second the point of A nearest to that point.
 FreeMargin free_margin(const EllipsoidPair& pair) {
   const Vec3 ratios = pair.axes_b.cwiseQuotient(pair.axes_a);
   const Vec3 centre = pair.apart.cwiseQuotient(pair.axes_a);

@@ -31,7 +31,7 @@ inline constexpr int kModelOrder = 15;
 
 // §5.1: the nearest point, as §5.2 calls it.
 [[nodiscard]] NearestPoint<3> by_dominant_term(const Vec3& axes, const Vec3& p);
-// With the limits that the thesis's program, as printed in its appendix, has.
+// The same with the limits of the thesis's program, as printed in its appendix.
 [[nodiscard]] NearestPoint<3> by_dominant_term_as_printed(const Vec3& axes, const Vec3& p);
 [[nodiscard]] NearestPoint<3> by_newton(const Vec3& axes, const Vec3& p);
 

@@ -1,5 +1,5 @@
-// What the methods of §5.1 return: the point of an ellipsoid's surface nearest to p, which may be
-// outside or inside; the ellipsoid is around the origin, along the axes, in any dimension.
+// The result of the methods of §5.1: the point of an ellipsoid's surface nearest to p, which may be
+// outside or inside. The ellipsoid is around the origin, along the axes, in any dimension.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Where the methods of §5.1 are compared: seeded ellipsoids and points.
+// Seeded ellipsoids and points on which the methods of §5.1 are compared.
 #pragma once
 
 #include <string>

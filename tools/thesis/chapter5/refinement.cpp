@@ -12,7 +12,7 @@
 namespace clearance::bench {
 namespace {
 
-// Of each body: the first six, those active, and the newest.
+// The largest number of facets per body: the first six, the active ones, and the newest.
 constexpr std::size_t kPrism = 6, kKept = 20;
 
 class Model {

@@ -62,8 +62,8 @@ void register_crossed(const Method& method, double separation) {
   });
 }
 
-// Where B goes while it is tracked: a circle around the test's place, 0.02 a step, as §4.1 moves
-// balls of radius 1.
+// The places of B while it is tracked: a circle around the test's place in steps of 0.02, as §4.1
+// moves balls of radius 1.
 std::vector<Vec3> circle_around(const Vec3& place) {
   constexpr int kSteps = 100;
   constexpr double kStep = 0.02, kRadius = kSteps * kStep / (2.0 * std::numbers::pi);

@@ -13,7 +13,7 @@ struct Corner {
   [[nodiscard]] Vec3 between() const { return on_b - on_a; }
 };
 
-// Some of a simplex's corners, in their order, and the weights of a point between them.
+// Some of a simplex's vertices, in their order, and the weights of a point between them.
 struct Part {
   std::array<int, 4> corner{};
   std::array<double, 4> weight{};
@@ -26,7 +26,7 @@ class Simplex {
   void add(const Corner& corner) { corners_[static_cast<std::size_t>(part_.size++)] = corner; }
 
   // Leaves the smallest simplex that holds the point nearest to the origin (Johnson's
-  // sub-algorithm): of all that have the newest corner, the nearest one inside itself. None, where
+  // sub-algorithm): of all that have the newest vertex, the nearest one inside itself. None, where
   // rounding leaves no such point.
   void reduce() {
     Part best;
@@ -63,7 +63,7 @@ class Simplex {
   [[nodiscard]] const Corner& of(const Part& part, std::size_t k) const {
     return corners_[static_cast<std::size_t>(part.corner[k])];
   }
-  // The weights of the nearest point of the corners' affine hull; false if it is outside.
+  // The weights of the nearest point of the vertices' affine hull; false if it is outside.
   [[nodiscard]] bool weigh(Part& part) const {
     const Vec3 first = of(part, 0).between();
     const auto side = [&](std::size_t k) { return Vec3(of(part, k).between() - first); };
