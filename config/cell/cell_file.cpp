@@ -18,9 +18,9 @@
 #include "config/cell/shape_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
 #include "config/cell/zone_reader.hpp"
-#include "config/mesh/mesh_file.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/scene/revision.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"
@@ -43,9 +43,13 @@ constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 // The sections of a cell, one function each.
 class CellReader {
  public:
-  CellReader(const std::filesystem::path& file, const CellOptions& options,
+  CellReader(const std::filesystem::path& file, const CellOptions& options, MeshLibrary& meshes,
              Diagnostics& diagnostics, Revision& revision)
-      : file_(file), options_(options), diagnostics_(diagnostics), revision_(revision) {}
+      : file_(file),
+        options_(options),
+        meshes_(meshes),
+        diagnostics_(diagnostics),
+        revision_(revision) {}
 
   void read(const YamlNode& root, Cell& cell);
 
@@ -61,6 +65,7 @@ class CellReader {
 
   const std::filesystem::path& file_;
   const CellOptions& options_;
+  MeshLibrary& meshes_;
   Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // where the cell gives it
@@ -189,8 +194,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
-  MeshLibrary meshes(file_, revision_, options_.tell);
-  ShapeReader shapes(quantities, meshes, defaults.mesh_limits);
+  ShapeReader shapes(quantities, meshes_, defaults.mesh_limits);
   if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
   if (scenes_node != nullptr)
     read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
@@ -237,7 +241,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
-  if (diagnostics_.empty()) refuse_small_budget(root, cell.scene);
+  if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell.scene);
 }
 
 // Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
@@ -270,7 +274,9 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 
 }  // namespace
 
-// The revision covers the text and, through the shape reader, the bytes of every mesh file.
+// The revision covers the text and, through the readers, the bytes of every file that it names.
+// Where a mesh has to be split, which takes seconds, the cell is read twice: its mistakes come
+// first.
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                       const CellOptions& options) {
   Diagnostics diagnostics(file.string());
@@ -279,10 +285,22 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
     diagnostics.add(fault->line, fault->column, fault->reason);
     return diagnostics.sorted();
   }
-  Cell cell;
   Revision revision(options.root);
-  revision.add(yaml);
-  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), cell);
+  MeshLibrary meshes(file, revision, options.tell,
+                     options.is_of_urdf ? Advice::kUrdf : Advice::kCell);
+  const auto read = [&] {
+    Cell cell;
+    revision = Revision(options.root);
+    revision.add(yaml);
+    CellReader(file, options, meshes, diagnostics, revision)
+        .read(std::get<YamlNode>(document), cell);
+    return cell;
+  };
+  Cell cell = read();
+  if (diagnostics.empty() && meshes.has_put_off()) {
+    meshes.split_from_here();
+    cell = read();
+  }
   if (!diagnostics.empty()) return diagnostics.sorted();
   cell.scene.revision = revision.value();
   cell.yaml = yaml;
@@ -293,7 +311,7 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
 
 CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {
   const auto bytes = read_bytes(file.string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     Diagnostics diagnostics(file.string());
     diagnostics.add(1, 1,
                     fmt::format("found no cell file: {}; expected a YAML file", fault->reason));

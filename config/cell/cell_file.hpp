@@ -24,13 +24,15 @@ struct CellOptions {
   // Where wanted: of each object with meshes, by its name, how far from these the surface of its
   // parts is at most, m.
   std::map<std::string, double>* mesh_errors = nullptr;
+  // The text was made from a URDF: advice tells how to get a cell.
+  bool is_of_urdf = false;
   // The directory in which the files of another machine stand as they did there, the cell among
   // them; empty: they are this machine's.
   std::filesystem::path root = {};
 };
 
 // Reads the file. A file that cannot be opened is a CellError at line 1 as well. The parts of
-// meshes are kept beside the file (config/mesh/parts_cache.hpp).
+// meshes are kept beside it (config/mesh/parts_cache.hpp).
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file,
                                    const CellOptions& options = {});
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 namespace clearance {
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "config/cell/object_reader.hpp"
+#include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/scalar.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
+#include "config/text/printable.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/yaml/map_reader.hpp"
-#include "config/yaml/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -21,7 +21,7 @@ std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem:
   if (!name) return {};
   const std::filesystem::path path = path_in(revision.root(), directory, *name);
   const auto bytes = read_bytes(path.string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(file_node, fmt::format("found a file that cannot be used: {}; expected a path "
                                            "relative to the cell file",
                                            fault->reason));
@@ -31,7 +31,7 @@ std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem:
   auto read = read_planning_scene(std::get<std::string>(bytes));
   if (const auto* fault = std::get_if<PlanningSceneFault>(&read)) {
     diagnostics.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{}: {}",
-                                           *name, fault->line, printable(fault->reason)));
+                                           *name, fault->line, excerpt(fault->reason)));
     return {};
   }
   std::vector<Object> objects = std::get<PlanningScene>(std::move(read)).objects;

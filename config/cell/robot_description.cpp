@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "config/cell/link_parts.hpp"
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/yaml/scalar.hpp"
 
@@ -27,7 +27,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
                                       "relative to the cell file",
                                       fault->reason));

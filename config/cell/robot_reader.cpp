@@ -14,9 +14,9 @@
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
+#include "config/text/spelling.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {

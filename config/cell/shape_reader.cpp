@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {

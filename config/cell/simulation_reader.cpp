@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {

@@ -13,15 +13,11 @@
 #include <variant>
 #include <vector>
 
+#include "config/decomposition/part_limits.hpp"
 #include "config/decomposition/triangle_mesh.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
-
-struct PartLimits {
-  double tolerance = 5e-3;     // m
-  std::size_t max_parts = 24;  // however far beyond the tolerance these are
-};
 
 struct ConvexParts {
   // Each the hull of its vertices, m.

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/open_space.hpp"
+#include "config/decomposition/part_limits.hpp"
 #include "config/decomposition/piece.hpp"
 #include "core/convex_body.hpp"
 

@@ -9,18 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "config/mesh/child_work.hpp"
 #include "config/mesh/mesh_import.hpp"
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 namespace {
@@ -28,9 +24,6 @@ namespace {
 // What robots come with, and what the mutations of tests/config/mesh_mutation_test.cpp were tried
 // on.
 constexpr std::array<std::string_view, 4> kFormats = {"stl", "obj", "ply", "dae"};
-
-// Far beyond any mesh that describes a robot; an endless file ends here.
-constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
 
 // Assimp reads some damaged files for ever; good ones take it 0.003 to 0.03 s a MiB.
 unsigned seconds_for(std::size_t bytes) { return 2 + static_cast<unsigned>(bytes >> 20); }
@@ -105,7 +98,7 @@ std::string import_into_bytes(const std::string& bytes, const std::string& forma
 
 // In the parent. A child that was led astray may say anything.
 std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
-  if (said.starts_with(kFault)) return MeshFault{printable(said.substr(1))};
+  if (said.starts_with(kFault)) return MeshFault{excerpt(std::string_view(said).substr(1))};
   const MeshFault no_answer{"the library that reads it gave no answer"};
   if (!said.starts_with(kMesh)) return no_answer;
   TriangleMesh mesh;
@@ -126,28 +119,6 @@ std::string format_of(const std::string& extension) {
 }
 
 }  // namespace
-
-// The whole file, so that its bytes can go into the revision and be parsed without reading it
-// again.
-std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
-  std::error_code fault;
-  if (std::filesystem::is_directory(path, fault))
-    return MeshFault{fmt::format("'{}' is a directory", path)};
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    return MeshFault{fmt::format("'{}' cannot be opened: {}", path, std::strerror(errno))};
-  std::string bytes;
-  std::array<char, 1 << 16> piece;
-  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0) {
-    bytes.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-    if (bytes.size() > kMaxFileBytes) {
-      return MeshFault{fmt::format("'{}' has more than {} MiB", path, kMaxFileBytes >> 20)};
-    }
-  }
-  if (stream.bad())
-    return MeshFault{fmt::format("'{}' cannot be read: {}", path, std::strerror(errno))};
-  return bytes;
-}
 
 std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
                                                 const std::string& extension) {

@@ -5,16 +5,9 @@
 #include <variant>
 
 #include "config/decomposition/triangle_mesh.hpp"
+#include "config/mesh/mesh_fault.hpp"
 
 namespace clearance {
-
-// The end of a sentence: "'x.stl' cannot be opened: ...".
-struct MeshFault {
-  std::string reason;
-};
-
-// The bytes of a file, at most 256 MiB, or why there are none.
-[[nodiscard]] std::variant<std::string, MeshFault> read_bytes(const std::string& path);
 
 // Every triangle of the mesh, once, and its vertices, placed by the file's scene graph, in the
 // file's own unit (for DAE: metres, as its <unit> says) and axes (a DAE's up-axis is ignored, as in

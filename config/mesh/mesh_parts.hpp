@@ -1,6 +1,7 @@
 // The convex parts of the mesh files of a cell: read, split, kept.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -23,8 +24,8 @@ struct MeshUse {
   std::string file;  // relative to the reader's directory
   Vec3 scale = Vec3::Ones();
   LengthUnit unit = LengthUnit::kMetre;
-  // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file,
-  // or another unit, would make a body so large that it contains the whole cell.
+  // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file, or
+  // another unit, would make a body so large that it contains the whole cell.
   double reach = 100.0;
   PartLimits limits = {};
 };
@@ -42,31 +43,50 @@ struct MeshRefusal {
   std::string reason;
 };
 
+// How a person raises the limits of a mesh: in the cell, or in the cell that has to be written
+// first where a program was given a URDF instead of one.
+enum class Advice : std::uint8_t { kCell, kUrdf };
+
 // Files are read once, and parts of the same use are made once, as long as this lives.
+//
+// A cell is read twice where a mesh has to be split: first to find its mistakes, with a small body
+// in the place of each mesh whose parts are not kept yet, then with the parts.
 class MeshLibrary {
  public:
-  // Mesh paths are relative to the folder of `cell`; the bytes of every mesh, and what it was split
+  // Mesh paths are relative to the folder of `cell`. The bytes of every mesh, and what it was split
   // into, go into `revision` once. `tell` gets a line, without its end, when a mesh is being split,
-  // and where its parts are farther from it than the tolerance; may be empty.
+  // and when its parts are farther from it than the tolerance; it may be empty.
   MeshLibrary(const std::filesystem::path& cell, Revision& revision,
-              std::function<void(const std::string&)> tell)
-      : directory_(cell.parent_path()),
-        revision_(revision),
-        cache_(revision.root().empty() ? cell : std::filesystem::path()),
-        tell_(std::move(tell)) {}
+              std::function<void(const std::string&)> tell, Advice advice = Advice::kCell);
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
+
+  // Whether parts() has returned a body in the place of a mesh.
+  [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
+  // The cell is read again, into a revision that begins anew, and meshes are split.
+  void split_from_here();
 
  private:
   struct File {
     std::string bytes;
-    std::optional<TriangleMesh> mesh;  // once it was needed
+    std::optional<TriangleMesh> mesh;  // once it was needed; in the file's unit
     std::optional<MeshRefusal> refusal;
+    bool counted = false;  // in the revision
+  };
+  struct Made {
+    MeshParts parts;
+    bool counted = false;  // in the revision
   };
   [[nodiscard]] std::filesystem::path path_of(const MeshUse& use) const;
   File& load(const std::filesystem::path& path);
+  // The mesh in metres, not too large.
+  std::variant<TriangleMesh, MeshRefusal> mesh_of(const MeshUse& use, File& file);
+  [[nodiscard]] std::optional<MeshParts> kept(const std::string& key) const;
+  std::variant<MeshParts, MeshRefusal> put_off(const MeshUse& use, File& file);
+  std::variant<MeshParts, MeshRefusal> make(const MeshUse& use, const std::string& key, File& file);
   std::variant<ConvexParts, MeshRefusal> split(const MeshUse& use, const std::string& key,
                                                File& file);
+  void warn_of_error(const MeshUse& use, const MeshParts& parts) const;
   void say(const std::string& line) const {
     if (tell_) tell_(line);
   }
@@ -75,8 +95,10 @@ class MeshLibrary {
   Revision& revision_;
   PartsCache cache_;
   std::function<void(const std::string&)> tell_;
+  Advice advice_;
+  bool splits_ = false, has_put_off_ = false;
   std::map<std::string, File> files_;
-  std::map<std::string, MeshParts> made_;  // by key
+  std::map<std::string, Made> made_;  // by key
 };
 
 }  // namespace clearance

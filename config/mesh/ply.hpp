@@ -6,7 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/decomposition/triangle_mesh.hpp"
+#include "config/mesh/mesh_fault.hpp"
 
 namespace clearance {
 

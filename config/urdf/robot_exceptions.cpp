@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 
@@ -17,7 +17,7 @@ UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
                      const UrdfRobot& robot, const std::filesystem::path& urdf_file) {
   UrdfFaults faults;
   const auto refuse = [&](int line, const std::string& text) {
-    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, printable(text))});
+    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, excerpt(text))});
   };
   const std::string urdf = urdf_file.filename().string();
   if (srdf.robot != robot.name) {

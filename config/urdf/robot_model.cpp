@@ -11,9 +11,10 @@
 #include <set>
 #include <string_view>
 
+#include "config/text/printable.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "config/urdf/robot_files.hpp"
-#include "config/yaml/spelling.hpp"
-#include "config/yaml/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -61,7 +62,7 @@ class ModelBuilder {
 };
 
 void ModelBuilder::refuse(int line, const std::string& text) {
-  faults_.push_back({line, fmt::format("{}:{}: {}", urdf_.string(), line, printable(text))});
+  faults_.push_back({line, fmt::format("{}:{}: {}", urdf_.string(), line, excerpt(text))});
 }
 
 // The link that no joint carries.

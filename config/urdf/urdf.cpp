@@ -17,7 +17,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 namespace {
@@ -33,6 +33,8 @@ std::vector<const XMLElement*> children(const XMLElement& element, const char* n
   }
   return found;
 }
+
+enum class Sign { kAny, kPositive };
 
 // An XML file, and what is wrong with it. A value that cannot be read is reported and left at its
 // default.
@@ -80,30 +82,19 @@ class XmlReader {
     return found == nullptr ? "" : attribute(*found, name);
   }
 
-  // A length or a radius. URDF is in SI units.
-  double size(const XMLElement& element, const char* name) {
+  // Finite numbers in SI units; of lengths and radii only positive ones.
+  double number(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
     double value = 0.0;
-    numbers(element, name, std::span(&value, 1), Sign::kPositive);
+    numbers(element, name, std::span(&value, 1), sign);
     return value;
   }
-  Vec3 sizes(const XMLElement& element, const char* name) {
+  Vec3 vector(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
     std::array<double, 3> values{};
-    numbers(element, name, values, Sign::kPositive);
+    numbers(element, name, values, sign);
     return {values[0], values[1], values[2]};
   }
-
-  // A finite number.
-  double number(const XMLElement& element, const char* name) {
-    double value = 0.0;
-    numbers(element, name, std::span(&value, 1), Sign::kAny);
-    return value;
-  }
-
-  // Three finite numbers.
-  Vec3 vector(const XMLElement& element, const char* name) {
-    std::array<double, 3> values{};
-    numbers(element, name, values, Sign::kAny);
-    return {values[0], values[1], values[2]};
+  double length(const XMLElement& element, const char* name) {
+    return number(element, name, Sign::kPositive);
   }
 
   // <origin xyz="..." rpy="..."/>: the element and both attributes are optional, zero by default.
@@ -117,8 +108,6 @@ class XmlReader {
   }
 
  private:
-  enum class Sign { kAny, kPositive };
-
   // Exactly values.size() finite numbers, separated by blanks.
   void numbers(const XMLElement& element, const char* name, std::span<double> values, Sign sign) {
     if (element.Attribute(name) == nullptr) {
@@ -149,7 +138,7 @@ class XmlReader {
   }
 
   void add(int line, const std::string& text) {
-    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, printable(text))});
+    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, excerpt(text))});
   }
 
   std::string file_;
@@ -170,15 +159,15 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
     if (mesh->Attribute("scale") != nullptr) shape.scale = xml.vector(*mesh, "scale");
     collision.shape = shape;
   } else if (const XMLElement* box = geometry->FirstChildElement("box")) {
-    collision.shape = UrdfBox{xml.sizes(*box, "size")};
+    collision.shape = UrdfBox{xml.vector(*box, "size", Sign::kPositive)};
   } else if (const XMLElement* cylinder = geometry->FirstChildElement("cylinder")) {
-    const double radius = xml.size(*cylinder, "radius");
-    collision.shape = UrdfCylinder{radius, xml.size(*cylinder, "length")};
+    const double radius = xml.length(*cylinder, "radius");
+    collision.shape = UrdfCylinder{radius, xml.length(*cylinder, "length")};
   } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
-    collision.shape = UrdfSphere{xml.size(*sphere, "radius")};
+    collision.shape = UrdfSphere{xml.length(*sphere, "radius")};
   } else if (const XMLElement* capsule = geometry->FirstChildElement("capsule")) {
-    const double radius = xml.size(*capsule, "radius");
-    collision.shape = UrdfCapsule{radius, xml.size(*capsule, "length")};
+    const double radius = xml.length(*capsule, "radius");
+    collision.shape = UrdfCapsule{radius, xml.length(*capsule, "length")};
   } else {
     xml.report(
         *geometry,

@@ -11,7 +11,7 @@
 #include <set>
 #include <system_error>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -197,7 +197,7 @@ void RobotCellWriter::emit_scenes() {
     emit_text(out_, scene.stem().string());
     out_ << YAML::EndMap;
     const auto bytes = read_bytes(path.string());
-    if (std::holds_alternative<MeshFault>(bytes)) continue;
+    if (std::holds_alternative<FileFault>(bytes)) continue;
     const auto read = read_planning_scene(std::get<std::string>(bytes));
     if (const auto* planning = std::get_if<PlanningScene>(&read)) {
       for (const std::string& note : planning->notes)

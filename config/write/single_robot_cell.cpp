@@ -57,7 +57,9 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
 }
 
 CellResult read_single_robot(const SingleRobotOptions& options, const CellOptions& cell_options) {
-  return parse_cell(single_robot_cell(options), options.urdf, cell_options);
+  CellOptions of_urdf = cell_options;
+  of_urdf.is_of_urdf = true;
+  return parse_cell(single_robot_cell(options), options.urdf, of_urdf);
 }
 
 }  // namespace clearance

@@ -8,41 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "config/yaml/scalar.hpp"
-
 namespace clearance {
-namespace {
-
-constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
-
-// A text from the file may be a whole document by mistake; its beginning identifies it.
-std::string shortened(const std::string& text) {
-  return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
-}
-
-}  // namespace
-
-std::string describe(const YamlNode& node) {
-  switch (node.kind) {
-    case YamlNode::Kind::kNull:
-      return "nothing";
-    case YamlNode::Kind::kSequence:
-      return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
-    case YamlNode::Kind::kMap:
-      return "a map";
-    case YamlNode::Kind::kScalar:
-      break;
-  }
-  switch (scalar_type(node)) {
-    case ScalarType::kNumber:
-      return fmt::format("the number {}", shortened(node.text));
-    case ScalarType::kFlag:
-      return node.text;
-    case ScalarType::kText:
-      break;
-  }
-  return node.text.empty() ? "an empty text" : fmt::format("the text '{}'", shortened(node.text));
-}
 
 void Diagnostics::add(int line, int column, const std::string& text) {
   // What was found may hold line breaks; a message is one line.

@@ -9,10 +9,6 @@
 
 namespace clearance {
 
-// "nothing", "the number 12", "the text 'abc'", "a list of 3", "a map": what a message says was
-// found.
-[[nodiscard]] std::string describe(const YamlNode& node);
-
 // The list of mistakes that all readers of one file share. A reader adds to it and goes on, and
 // callers compare count() before and after to learn whether a section was read without a mistake.
 class Diagnostics {

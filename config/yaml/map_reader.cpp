@@ -8,7 +8,9 @@
 #include <map>
 #include <utility>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
+#include "config/yaml/scalar.hpp"
 
 namespace clearance {
 

@@ -95,7 +95,7 @@ std::optional<AngleUnit> read_angle_unit(const YamlNode& node, Diagnostics& diag
 }
 
 // Division rounds once: 300 mm is exactly the double nearest to 0.3.
-double metres(double value, LengthUnit unit) {
+double to_metres(double value, LengthUnit unit) {
   return unit == LengthUnit::kMetre ? value : value / 1000.0;
 }
 
@@ -103,7 +103,7 @@ std::optional<double> Quantities::length(const YamlNode& node, const std::string
                                          const Range& range) const {
   const auto value = read_number(node, within_cell(range, units_.length),
                                  fmt::format("{} in {}", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 // Degrees become radians here, with the rounding of one multiplication.
@@ -118,7 +118,7 @@ std::optional<double> Quantities::speed(const YamlNode& node, const std::string&
   const auto value =
       read_number(node, within_cell(kPositive, units_.length),
                   fmt::format("{} in {}/s", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 std::optional<double> Quantities::acceleration(const YamlNode& node,
@@ -126,7 +126,7 @@ std::optional<double> Quantities::acceleration(const YamlNode& node,
   const auto value =
       read_number(node, within_cell(kNotNegative, units_.length),
                   fmt::format("{} in {}/s2", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 // Fractions of a millisecond are allowed; the result is rounded to whole nanoseconds.
@@ -145,8 +145,8 @@ std::optional<Vec3> Quantities::lengths(const YamlNode& node, const std::string&
       numbers<3>(node, fmt::format("{} in {}", what, unit), fmt::format("a length in {}", unit),
                  within_cell(range, units_.length), diagnostics_);
   if (!values) return std::nullopt;
-  return Vec3(metres((*values)[0], units_.length), metres((*values)[1], units_.length),
-              metres((*values)[2], units_.length));
+  return Vec3(to_metres((*values)[0], units_.length), to_metres((*values)[1], units_.length),
+              to_metres((*values)[2], units_.length));
 }
 
 // Used for angular velocities about the axes, too: their unit is the angle's a second.
@@ -166,7 +166,7 @@ std::optional<Vec2> Quantities::lengths_2d(const YamlNode& node, const std::stri
       numbers<2>(node, fmt::format("{} in {}", what, unit), fmt::format("a length in {}", unit),
                  within_cell({}, units_.length), diagnostics_);
   if (!values) return std::nullopt;
-  return Vec2(metres((*values)[0], units_.length), metres((*values)[1], units_.length));
+  return Vec2(to_metres((*values)[0], units_.length), to_metres((*values)[1], units_.length));
 }
 
 // A normal of any length but zero; the core normalises it.

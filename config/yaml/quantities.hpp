@@ -34,7 +34,7 @@ struct Units {
                                                        Diagnostics& diagnostics);
 
 // A length in this unit, in metres.
-[[nodiscard]] double metres(double value, LengthUnit unit);
+[[nodiscard]] double to_metres(double value, LengthUnit unit);
 
 // Every reading function returns nothing after a diagnostic. `what` says what the quantity is: "the
 // radius".

@@ -19,6 +19,13 @@ namespace {
 // The longest name that the wire carries (idl/clearance.idl, ZoneState::name).
 constexpr std::size_t kMaxName = 64;
 
+constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
+
+// A text from the file may be a whole document by mistake; its beginning identifies it.
+std::string shortened(const std::string& text) {
+  return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
+}
+
 // A scalar as a number.
 struct Parsed {
   double value = 0.0;
@@ -100,6 +107,28 @@ ScalarType scalar_type(const YamlNode& scalar) {
     return ScalarType::kFlag;
   }
   return parse_number(scalar.text).number ? ScalarType::kNumber : ScalarType::kText;
+}
+
+std::string describe(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      return "nothing";
+    case YamlNode::Kind::kSequence:
+      return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kScalar:
+      break;
+  }
+  switch (scalar_type(node)) {
+    case ScalarType::kNumber:
+      return fmt::format("the number {}", shortened(node.text));
+    case ScalarType::kFlag:
+      return node.text;
+    case ScalarType::kText:
+      break;
+  }
+  return node.text.empty() ? "an empty text" : fmt::format("the text '{}'", shortened(node.text));
 }
 
 // Text that is no number, one that is not finite, and one out of range get messages of their own.

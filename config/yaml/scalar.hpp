@@ -18,6 +18,10 @@ enum class ScalarType { kNumber, kFlag, kText };
 // What an unquoted scalar is by the core schema of YAML 1.2; a quoted one is always text.
 [[nodiscard]] ScalarType scalar_type(const YamlNode& scalar);
 
+// "nothing", "the number 12", "the text 'abc'", "a list of 3", "a map": what a message says was
+// found.
+[[nodiscard]] std::string describe(const YamlNode& node);
+
 // Which numbers are accepted.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();

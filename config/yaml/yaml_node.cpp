@@ -17,7 +17,7 @@
 #include <string_view>
 #include <utility>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {

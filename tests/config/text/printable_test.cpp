@@ -1,4 +1,4 @@
-#include "monitor/app/printable.hpp"
+#include "config/text/printable.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 #include <gtest/gtest.h>
 

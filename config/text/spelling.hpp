@@ -14,7 +14,4 @@ namespace clearance {
 // "; did you mean 'radius'?" when one of `known` is near enough (a third of the letters), else "".
 [[nodiscard]] std::string did_you_mean(std::string_view found, std::span<const std::string> known);
 
-// "'a', 'b' or 'c'".
-[[nodiscard]] std::string one_of(std::span<const std::string> names);
-
 }  // namespace clearance

@@ -11,9 +11,12 @@ enum class LineBreaks { kEscaped, kKept };
 
 // The text with every byte that could do something else than show a character written as \xNN:
 // control characters (ASCII and C1), line separators and bidirectional controls of Unicode, and
-// bytes that are no UTF-8. All other UTF-8 stays as it is. What is named by a stranger (a source, a
-// file, a cell) can thus neither begin a line of its own nor command the terminal.
+// bytes that are no UTF-8. All other UTF-8 stays as it is. A name that a stranger chose (of a
+// source, a file, a cell) can thus neither begin a new line nor command the terminal.
 [[nodiscard]] std::string printable(std::string_view text,
                                     LineBreaks breaks = LineBreaks::kEscaped);
+
+// The printable text of at most its first 300 bytes, for messages that repeat what a file says.
+[[nodiscard]] std::string excerpt(std::string_view text);
 
 }  // namespace clearance

@@ -1,7 +1,7 @@
 // Follows the table of well-formed byte sequences (RFC 3629, section 4; Unicode, table 3-7): the
 // first byte gives the length and the range of the second byte, which excludes overlong forms and
 // surrogates.
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -47,17 +47,6 @@ std::size_t end_of_utf8(std::string_view text) {
     at += form.length;
   }
   return at;
-}
-
-std::string printable(std::string text) {
-  constexpr std::size_t kMost = 300;
-  if (text.size() > kMost) text.replace(kMost, std::string::npos, "...");
-  const bool is_utf8 = end_of_utf8(text) == text.size();
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F || (byte > 0x7F && !is_utf8)) c = '?';
-  }
-  return text;
 }
 
 }  // namespace clearance

@@ -1,6 +1,6 @@
 // Compares words by the edit distance with swaps of neighbours (optimal string alignment), which
 // counts a typing error as one edit.
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 #include <fmt/format.h>
 
@@ -53,16 +53,6 @@ std::string did_you_mean(std::string_view found, std::span<const std::string> kn
     }
   }
   return nearest == nullptr ? "" : fmt::format("; did you mean '{}'?", *nearest);
-}
-
-// Separated by commas, with "or" before the last.
-std::string one_of(std::span<const std::string> names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += fmt::format("'{}'", names[i]);
-  }
-  return text;
 }
 
 }  // namespace clearance
