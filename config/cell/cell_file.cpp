@@ -37,7 +37,7 @@ constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bi
 constexpr std::size_t kMaxDdsName = 255;  // bytes
 // The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
-// From one tick at 1 kHz to some days.
+// One tick at 1 kHz, and some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 // The sections of a cell, one function each.
@@ -60,7 +60,7 @@ class CellReader {
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
-  // Has to be last: it needs every pair with its parts.
+  // This comes last: it needs every pair with its parts.
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
@@ -68,10 +68,10 @@ class CellReader {
   MeshLibrary& meshes_;
   Diagnostics& diagnostics_;
   Revision& revision_;
-  const YamlNode* budget_ = nullptr;  // where the cell gives it
+  const YamlNode* budget_ = nullptr;  // its place in the cell
 };
 
-// Both units must be named: a default would be wrong for many cells, in silence.
+// Both units are required: a default would silently be wrong for many cells.
 std::optional<Units> CellReader::read_units(const YamlNode& node) {
   MapReader map(node, "the units", diagnostics_);
   const YamlNode* length_node = map.required("length");
@@ -85,7 +85,7 @@ std::optional<Units> CellReader::read_units(const YamlNode& node) {
   return Units{*length, *angle};
 }
 
-// Rate, budget and time limits; what a cell leaves out keeps the default of Scene.
+// Reads rate, budget and time limits; a key that the cell leaves out keeps the default of Scene.
 void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
   if (const YamlNode* rate = map.optional("rate_hz")) {
     scene.rate_hz =
@@ -112,7 +112,8 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   }
 }
 
-// DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
+// A DDS name has letters, digits, '_' and '/', and begins with no digit; two topics cannot share
+// one.
 void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   MapReader map(node, "the topics", diagnostics_);
   std::map<std::string, const char*> taken;
@@ -152,7 +153,7 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   map.refuse_unknown_keys();
 }
 
-// Where the daemon is on DDS. The command line overrides the domain and the partition.
+// Reads the place of the daemon on DDS. The command line overrides the domain and the partition.
 void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   MapReader map(node, "the dds settings", diagnostics_);
   if (const YamlNode* domain = map.optional("domain")) {
@@ -178,7 +179,7 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   map.refuse_unknown_keys();
 }
 
-// Objects, robots, then pairs, then zones: each list names what the one before defines, and is
+// Reads objects, robots, then pairs, then zones: each list names entries of the one before, and is
 // checked as far as that could be read.
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
@@ -224,8 +225,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.variables = std::move(robots.variables);
 }
 
-// The top level. Units come first, since every other section needs them; without them the rest is
-// not read.
+// Reads the top level. Units come first, since every other section needs them.
 void CellReader::read(const YamlNode& root, Cell& cell) {
   MapReader map(root, "a cell", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
@@ -233,7 +233,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   }
   std::optional<Units> units;
   if (const YamlNode* node = map.required("units")) units = read_units(*node);
-  // Without units the rest is still read, for what else is wrong with it.
+  // Without units, the rest is still read to find its mistakes.
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
@@ -244,7 +244,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell.scene);
 }
 
-// Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
+// The root frame cannot be guessed: while transforms are missing, any frame may be the root.
 void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell& cell) {
   const Scene& scene = cell.scene;
   const auto object =
@@ -261,7 +261,7 @@ void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell&
                                object == scene.objects.end() ? robot->base.frame : object->frame));
 }
 
-// A budget that cannot refresh every pair in time would break the promise of refresh_s in silence.
+// A budget that cannot refresh every pair in time would silently break the promise of refresh_s.
 void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
   const RefreshShare share = refresh_share(scene);
   if (share.queries() <= scene.budget) return;

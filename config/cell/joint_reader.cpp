@@ -11,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// Faster than any joint, in rad/s or m/s.
+// No joint is faster, in rad/s or m/s.
 constexpr Range kVelocities{.least = 1e-9, .most = 1e6};
 
 void read_joint(const YamlNode& node, const Quantities& quantities,

@@ -14,7 +14,7 @@
 namespace clearance {
 namespace {
 
-// The objects of one file; nothing after a diagnostic.
+// Reads the objects of one file; returns none after a diagnostic.
 std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem::path& directory,
                                Revision& revision, Diagnostics& diagnostics) {
   const auto name = read_text(file_node, "a file", diagnostics);

@@ -13,7 +13,7 @@
 namespace clearance {
 namespace {
 
-// The file that a key names, which has to be there.
+// Finds the file that a key names, which is required.
 std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles& files,
                                           Diagnostics& diagnostics, Revision& revision) {
   const auto name = read_text(node, "a file", diagnostics);
@@ -39,8 +39,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
 
 }  // namespace
 
-// Both files are read even if the first is wrong, so that one run reports what is wrong with
-// either.
+// Both files are read even if the first has faults, so that one run reports all.
 std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
                                                  Diagnostics& diagnostics, Revision& revision) {
   if (keys.urdf == nullptr) return std::nullopt;

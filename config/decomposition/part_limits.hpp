@@ -1,4 +1,4 @@
-// How far, and into how many parts, a mesh is split.
+// Limits of splitting a mesh.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 namespace clearance {
 
 struct PartLimits {
-  double tolerance = 5e-3;     // m
+  double tolerance = 5e-3;     // m, beyond the mesh
   std::size_t max_parts = 24;  // the search ends here, even where the tolerance is not met
 };
 

@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-// The end of a sentence: "a vertex is not finite".
+// `reason` ends a sentence: "a vertex is not finite".
 struct MeshFault {
   std::string reason;
 };

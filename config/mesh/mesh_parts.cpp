@@ -19,10 +19,10 @@ namespace {
 // Raised when the same mesh would be split in another way: parts that are kept are then made anew.
 constexpr int kMethod = 3;
 
-// A hull that is found sooner is found anew at every start, s.
+// A hull that took less time is not kept, but found anew at every start, s.
 constexpr double kWorthKeeping = 0.1;
 
-// The hash of all that decides on the parts: neither the mesh file's name nor the cell's is in it.
+// Hashes all that decides on the parts: neither the mesh file's name nor the cell's is in it.
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
   hash.add(bytes);
@@ -167,7 +167,7 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::put_off(const MeshUse& use, Fi
   return stand_in();
 }
 
-// Of programs that start together on a new mesh, one splits it, and the others wait for its parts.
+// When programs start together on a new mesh, one splits it, and the others wait for its parts.
 std::variant<MeshParts, MeshRefusal> MeshLibrary::make(const MeshUse& use, const std::string& key,
                                                        File& file) {
   const std::filesystem::path path = path_of(use);

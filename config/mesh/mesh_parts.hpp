@@ -1,4 +1,4 @@
-// The convex parts of the mesh files of a cell: read, split, kept.
+// Reads, splits and keeps the convex parts of the meshes of a cell.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace clearance {
 
 // A mesh file and how its coordinates become metres.
 struct MeshUse {
-  std::string file;  // relative to the reader's directory
+  std::string file;  // relative to the cell's folder
   Vec3 scale = Vec3::Ones();
   LengthUnit unit = LengthUnit::kMetre;
   // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file, or
@@ -30,21 +30,21 @@ struct MeshUse {
   PartLimits limits = {};
 };
 
-// What certainly contains the mesh, and how far beyond it that reaches, m (ConvexParts::error).
+// Bodies that certainly contain the mesh, and how far they reach beyond it, m (ConvexParts::error).
 struct MeshParts {
   std::vector<ConvexBody> shapes;
   double error = 0.0;
 };
 
-// Why there are none; of kTooLarge how far from its origin it reaches.
+// Why a mesh has no parts. `reason` of kTooLarge is its largest coordinate.
 struct MeshRefusal {
-  enum class Kind { kFile, kDamaged, kTooLarge, kNotSolid };  // kFile: there is none
+  enum class Kind { kFile, kDamaged, kTooLarge, kNotSolid };  // kFile: it cannot be opened
   Kind kind;
   std::string reason;
 };
 
-// How a person raises the limits of a mesh: in the cell, or in the cell that has to be written
-// first where a program was given a URDF instead of one.
+// Where a person raises the limits of a mesh: in the cell, or, where a program was given a URDF, in
+// a cell that has to be written first.
 enum class Advice : std::uint8_t { kCell, kUrdf };
 
 // Files are read once, and parts of the same use are made once, as long as this lives.
@@ -61,9 +61,9 @@ class MeshLibrary {
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
 
-  // Whether parts() has returned a body in the place of a mesh.
+  // Tells whether parts() has returned a stand-in for a mesh that has to be split.
   [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
-  // The cell is read again, into a revision that begins anew, and meshes are split.
+  // Prepares for reading the cell again, into a revision that begins anew: meshes are now split.
   void split_from_here();
 
  private:
@@ -79,7 +79,7 @@ class MeshLibrary {
   };
   [[nodiscard]] std::filesystem::path path_of(const MeshUse& use) const;
   File& load(const std::filesystem::path& path);
-  // The mesh in metres, not too large.
+  // Returns the mesh in metres, or refuses one that is too large.
   std::variant<TriangleMesh, MeshRefusal> mesh_of(const MeshUse& use, File& file);
   [[nodiscard]] std::optional<MeshParts> kept(const std::string& key) const;
   std::variant<MeshParts, MeshRefusal> put_off(const MeshUse& use, File& file);

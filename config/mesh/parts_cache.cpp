@@ -32,7 +32,8 @@ std::string text_of(const std::string& key, const ConvexParts& parts) {
   return text + kChecksum + checksum(text) + "\n";
 }
 
-// Word by word. What a checksum let pass is no surprise any more, but it must not crash.
+// Reads the text word by word. A text with a correct checksum is hardly wrong, but it must not
+// crash the reader.
 class PartsText {
  public:
   explicit PartsText(const std::string& text) : words_(text) {}
@@ -82,7 +83,7 @@ std::optional<ConvexParts> parts_of(const std::string& text, const std::string& 
   return parts.parts.empty() ? std::nullopt : std::optional(std::move(parts));
 }
 
-// Several programs may read a new cell at once: each writes a file of its own and moves it.
+// Several programs may read a new cell at once: each writes a file of its own and renames it.
 bool write_whole(const std::filesystem::path& file, const std::string& text) {
   std::error_code fault;
   std::filesystem::create_directories(file.parent_path(), fault);

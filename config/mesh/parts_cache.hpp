@@ -18,8 +18,8 @@ namespace clearance {
 
 class PartsCache {
  public:
-  // `beside`: the folder of the cell, or of the URDF of a robot without one; nothing: there is no
-  // such folder, as for the cell of a recording.
+  // `beside`: the folder of the cell, or of the URDF of a robot without one; nothing: there is
+  // none, as for the cell of a recording.
   explicit PartsCache(const std::optional<std::filesystem::path>& beside);
 
   // `key`: the hash of all that decides on the parts.
@@ -28,7 +28,7 @@ class PartsCache {
   // Returns the folder where they are now; empty: no folder could be written.
   std::filesystem::path keep(const std::string& key, const ConvexParts& parts) const;
 
-  // Where they belong, for messages.
+  // Returns the folder where parts belong, for messages.
   [[nodiscard]] std::filesystem::path folder() const {
     return folders_.empty() ? "XDG_CACHE_HOME" : folders_.front();
   }

@@ -1,4 +1,4 @@
-// What is asked of a Scene as a whole.
+// Counts over a whole Scene.
 #include "config/scene/scene.hpp"
 
 #include <fmt/format.h>

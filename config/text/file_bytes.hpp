@@ -1,4 +1,4 @@
-// The bytes of the files that a cell names.
+// Reads the files that a cell names.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace clearance {
 
-// The end of a sentence: "'x.stl' cannot be opened: ...".
+// `reason` ends a sentence: "'x.stl' cannot be opened: ...".
 struct FileFault {
   std::string reason;
 };
 
-// The bytes of a file, at most 256 MiB, or why there are none.
+// Returns the bytes of a file, at most 256 MiB, or why there are none.
 [[nodiscard]] std::variant<std::string, FileFault> read_bytes(const std::string& path);
 
 }  // namespace clearance

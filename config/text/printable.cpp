@@ -1,4 +1,5 @@
-// Character by character; a byte that begins no character of UTF-8 counts as one to escape.
+// The text is taken character by character; a byte that begins no character of UTF-8 is escaped
+// alone.
 #include "config/text/printable.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// Bytes of the character that begins a text of well-formed UTF-8.
+// Returns how many bytes the character has that begins a text of well-formed UTF-8.
 std::size_t length_of(char first) {
   const auto byte = static_cast<unsigned char>(first);
   if (byte < 0xC0) return 1;

@@ -1,4 +1,4 @@
-// What sentences for people list and count.
+// Lists and counts in sentences for people.
 #pragma once
 
 #include <cstddef>

@@ -6,10 +6,10 @@
 namespace clearance {
 namespace {
 
-// The shape of a character that begins with some first byte.
+// The shape of a character, given its first byte.
 struct Form {
   std::size_t length = 0;                   // 0: no character begins so
-  unsigned char least = 0x80, most = 0xBF;  // of the second byte
+  unsigned char least = 0x80, most = 0xBF;  // range of the second byte
 };
 
 // The rows of table 3-7, by first byte. C0, C1 and F5 to FF begin nothing.
@@ -38,7 +38,7 @@ bool begins_with(std::string_view text, const Form& form) {
 
 }  // namespace
 
-// Character by character; each is judged by its own bytes only.
+// Each character is judged by its own bytes only.
 std::size_t end_of_utf8(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {

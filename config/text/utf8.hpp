@@ -1,4 +1,4 @@
-// Whether a text is UTF-8.
+// Tells whether a text is UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace clearance {
 
-// The position of the first byte that is not part of well-formed UTF-8, or the text's length when
-// all of it is. Overlong forms, surrogates and code points beyond U+10FFFF are not well-formed (RFC
-// 3629).
+// Returns the position of the first byte that is not part of well-formed UTF-8, or the text's
+// length when there is none. Overlong forms, surrogates and code points beyond U+10FFFF are not
+// well-formed (RFC 3629).
 [[nodiscard]] std::size_t end_of_utf8(std::string_view text);
 
 }  // namespace clearance

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// A name that a cell can have: that of the robot, or of the file where the URDF cannot be read,
+// Returns a name for the cell: that of the robot, or of the file where the URDF cannot be read,
 // which the reader of the cell reports.
 std::string name_of(const std::filesystem::path& urdf) {
   const auto read = read_urdf(urdf);

@@ -1,4 +1,4 @@
-// Everything that is wrong with a cell file, each with its place.
+// The mistakes in a cell file, each with its place.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ class Diagnostics {
   [[nodiscard]] bool empty() const { return diagnostics_.empty(); }
   [[nodiscard]] std::size_t count() const { return diagnostics_.size(); }
 
-  // In the order of the file.
+  // Returns the mistakes in the order of the file.
   [[nodiscard]] std::vector<CellError> sorted() const;
 
  private:

@@ -35,5 +35,11 @@ TEST(Printable, KeepsLineBreaksWhereThatIsAskedFor) {
   EXPECT_EQ("a\tb\r\n\\x1B", printable("a\tb\r\n\x1b", LineBreaks::kKept));
 }
 
+TEST(Printable, AnExcerptIsTheBeginningOfALongText) {
+  EXPECT_EQ("a\\x00", excerpt(std::string_view("a\0", 2)));
+  EXPECT_EQ(std::string(300, 'x'), excerpt(std::string(300, 'x')));
+  EXPECT_EQ(std::string(300, 'x') + "...", excerpt(std::string(301, 'x')));
+}
+
 }  // namespace
 }  // namespace clearance

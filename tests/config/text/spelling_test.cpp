@@ -27,10 +27,5 @@ TEST(Spelling, OnlyANearNameIsSuggested) {
   EXPECT_EQ(did_you_mean("x", std::vector<std::string>{}), "");
 }
 
-TEST(Spelling, AlternativesReadAsASentence) {
-  EXPECT_EQ(one_of(std::vector<std::string>{"a"}), "'a'");
-  EXPECT_EQ(one_of(std::vector<std::string>{"a", "b", "c"}), "'a', 'b' or 'c'");
-}
-
 }  // namespace
 }  // namespace clearance
