@@ -76,9 +76,9 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
       object.pose.position = random.in_box(4.0);
     }
     for (PosedPart& part : parts) place(objects[part.object], part);
-    Evaluation evaluation{objects, parts, 1, table, Budget(10)};
-    const double lower = hulls.lower(0, evaluation);
-    EXPECT_EQ(evaluation.budget.left(), 9u);
+    Budget budget(10);
+    const double lower = hulls.lower(0, TickView{objects, parts, 1, table}, budget);
+    EXPECT_EQ(budget.left(), 9u);
     const double truth = two.exact_distance(objects[0].pose.position, objects[1].pose.position);
     EXPECT_LE(lower, truth + 1e-14) << "round " << round;  // adding positions rounds in the oracle
     apart += lower > 0.0;
