@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/scene/topics.hpp"
+#include "config/cell/topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

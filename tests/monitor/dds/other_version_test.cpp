@@ -102,14 +102,14 @@ Scene zone_cell() {
 }
 
 struct PublishingDaemon {
-  Scene scene = zone_cell();
+  Cell cell{zone_cell()};
   DdsOptions dds = own_dds();
   Participant participant{dds};
-  PoseReader poses{scene, participant};
-  ReportQueue queue{scene, {.reports = 16}};
+  PoseReader poses{cell, participant};
+  ReportQueue queue{cell.scene, {.reports = 16}};
   RecordingHealth recording;
-  ReportWriter reports{scene, participant, queue, poses, recording};
-  Monitor monitor{scene};
+  ReportWriter reports{cell, participant, queue, poses, recording};
+  Monitor monitor{cell.scene};
 
   ~PublishingDaemon() { queue.close(); }
   // Writes the state of every zone.
@@ -129,7 +129,7 @@ TEST(OtherVersion, AClientWithAnOlderOrNewerTypeIsRefusedAndTheLogSaysSo) {
     Logged logged;
     PublishingDaemon daemon;
     Stranger client(daemon.dds);
-    const dds_entity_t reader = client.reader(*type, daemon.scene.topics.zones);
+    const dds_entity_t reader = client.reader(*type, daemon.cell.topics.zones);
     daemon.tick();
     ASSERT_TRUE(eventually([&] { return refused_for_its_type(reader) > 0; }));
     ASSERT_TRUE(
@@ -148,7 +148,7 @@ TEST(OtherVersion, AWriterOfPosesWithANewerTypeIsNotHeardAndTheLogSaysSo) {
   Logged logged;
   PublishingDaemon daemon;
   Stranger robot(daemon.dds);
-  const dds_entity_t writer = robot.writer(kNewerBatch, daemon.scene.topics.poses);
+  const dds_entity_t writer = robot.writer(kNewerBatch, daemon.cell.topics.poses);
   ASSERT_TRUE(eventually([&] {
     dds_offered_incompatible_qos_status_t status{};
     dds_get_offered_incompatible_qos_status(writer, &status);

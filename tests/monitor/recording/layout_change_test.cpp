@@ -153,7 +153,7 @@ class OtherBuild : public OfflineReplayTest {
   void rewrite_zones(const std::string& schema, const dds_topic_descriptor_t& type,
                      const std::function<Other(const clearance_msg_ZoneState&)>& converted) {
     const std::vector<Kept> messages = messages_of(run);
-    RecordingWriter writer(run, scene.topics, {.left_out = {TopicKind::kZones}});
+    RecordingWriter writer(run, cell.topics, {.left_out = {TopicKind::kZones}});
     writer.describe(*decoded<clearance_msg_Catalogue>(messages.front()), "another build");
     const auto zones = writer.add_channel({"clearance::msg::ZoneState", "omgidl", schema}, "zones");
     for (const Kept& message : messages) {
@@ -234,7 +234,7 @@ TEST(FirstLayout, IsReadableForEver) {
   ASSERT_EQ("", outlined.error);
   EXPECT_TRUE(outlined.has_gradients);
   const auto cell = recorded_cell(file, outlined);
-  ASSERT_TRUE(cell && std::holds_alternative<Scene>(*cell));
+  ASSERT_TRUE(cell && std::holds_alternative<Cell>(*cell));
   std::map<TopicKind, int> counts;
   for (const Kept& message : messages_of(file)) {
     ++counts[message.kind];
@@ -249,7 +249,7 @@ TEST(FirstLayout, IsReadableForEver) {
   EXPECT_EQ(45, counts[TopicKind::kSeparation]);
   EXPECT_GT(counts[TopicKind::kJointStates], 20);
   const OfflineReplay replay =
-      replay_offline(std::get<Scene>(*cell), file, {.compare = Comparison::kBits});
+      replay_offline(std::get<Cell>(*cell), file, {.compare = Comparison::kBits});
   EXPECT_TRUE(replay.ok()) << replay.text();
   EXPECT_EQ(45u, replay.compared);
 }

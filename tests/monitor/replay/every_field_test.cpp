@@ -80,8 +80,8 @@ class EveryField : public testing::Test {
     RecordingOutline outlined = outline(kRecording);
     ASSERT_EQ("", outlined.error);
     auto cell = recorded_cell(kRecording, outlined);
-    ASSERT_TRUE(cell && std::holds_alternative<Scene>(*cell));
-    scene_ = std::get<Scene>(std::move(*cell));
+    ASSERT_TRUE(cell && std::holds_alternative<Cell>(*cell));
+    cell_ = std::get<Cell>(std::move(*cell));
     messages_ = messages_of(kRecording);
   }
 
@@ -112,10 +112,10 @@ class EveryField : public testing::Test {
   void expect_named(TopicKind kind, int number) {
     const std::size_t place = place_of(kind, number);
     const auto original = decoded<Message>(messages_[place]);
-    EXPECT_EQ(std::nullopt, message_difference(scene_, *original, *original));
+    EXPECT_EQ(std::nullopt, message_difference(cell_.scene, *original, *original));
     for_each_alteration<Message>(place, [&](const Kept& other, const std::string& name) {
       EXPECT_THAT(
-          message_difference(scene_, *original, *decoded<Message>(other)).value_or("nothing"),
+          message_difference(cell_.scene, *original, *decoded<Message>(other)).value_or("nothing"),
           HasSubstr(name));
     });
     for (std::size_t wanted = 0;; ++wanted) {
@@ -123,7 +123,7 @@ class EveryField : public testing::Test {
       const Kept other = altered<Message>(
           messages_[place], [&alter](Message& content) { for_each_field(alter, content); });
       if (alter.name.empty()) break;
-      EXPECT_EQ(std::nullopt, message_difference(scene_, *original, *decoded<Message>(other)))
+      EXPECT_EQ(std::nullopt, message_difference(cell_.scene, *original, *decoded<Message>(other)))
           << alter.name;
     }
   }
@@ -137,7 +137,7 @@ class EveryField : public testing::Test {
       messages[place] = other;
       const std::filesystem::path run = folder_ / "altered.mcap";
       write_messages(run, messages);
-      const OfflineReplay result = replay_offline(scene_, run, {.compare = Comparison::kBits});
+      const OfflineReplay result = replay_offline(cell_, run, {.compare = Comparison::kBits});
       if (identity.contains(name)) return;
       ASSERT_FALSE(result.ok()) << name;
       EXPECT_THAT(result.text(), HasSubstr(name));
@@ -145,7 +145,7 @@ class EveryField : public testing::Test {
   }
 
   ScratchFolder folder_;
-  Scene scene_;
+  Cell cell_;
   std::vector<Kept> messages_;
 };
 
@@ -159,7 +159,7 @@ TEST_F(EveryField, OfAMessageIsComparedButWhatNoTickDetermines) {
 TEST_F(EveryField, OfARecordingIsNamedByItsReplay) {
   write_messages(folder_ / "same.mcap", messages_);
   const OfflineReplay same =
-      replay_offline(scene_, folder_ / "same.mcap", {.compare = Comparison::kBits});
+      replay_offline(cell_, folder_ / "same.mcap", {.compare = Comparison::kBits});
   ASSERT_TRUE(same.ok()) << same.text();
   EXPECT_EQ(45u, same.compared);
   // What a tick is told: a replay of other times is another run.
@@ -176,7 +176,7 @@ TEST_F(EveryField, OfTheFirstTickIsComparedToo) {
 }
 
 TEST_F(EveryField, OfGradientsIsComparedWhereOnlyTheDaemonWasToldToPublishThem) {
-  scene_.gradients = false;
+  cell_.scene.gradients = false;
   expect_named_by_a_replay<clearance_msg_Gradients>(TopicKind::kGradients, 30, {"now_ns"});
 }
 
@@ -186,7 +186,7 @@ TEST_F(EveryField, OfAMessageThatBelongsToNoReportIsNoted) {
       messages_[place], [](clearance_msg_Gradients& message) { ++message.now_ns; });
   write_messages(folder_ / "other.mcap", messages_);
   const OfflineReplay replay =
-      replay_offline(scene_, folder_ / "other.mcap", {.compare = Comparison::kBits});
+      replay_offline(cell_, folder_ / "other.mcap", {.compare = Comparison::kBits});
   EXPECT_THAT(replay.text(),
               HasSubstr("1 message of gradients or separation belongs to no report"));
 }
