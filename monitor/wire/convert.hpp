@@ -24,9 +24,6 @@ namespace clearance {
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
              clearance_msg_Distances& out) noexcept;
 
-// One pair as it stands in Distances.
-void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept;
-
 // State of zone `zone` (an index into Scene::zones and Report::zones). Zone names longer than 64
 // bytes are cut; the id is what identifies a zone.
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
