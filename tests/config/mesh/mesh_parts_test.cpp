@@ -251,7 +251,7 @@ TEST_F(PartsOfMeshes, OfAUrdfAloneAreCoarseWithTheAdviceToWriteACell) {
       read_single_robot({.urdf = folder_ / "r.urdf"},
                         {.tell = [&told](const std::string& line) { told += line + "\n"; }});
   EXPECT_TRUE(std::holds_alternative<Cell>(result));
-  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene --from-urdf writes\n"));
+  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene import writes\n"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
