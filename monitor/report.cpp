@@ -18,6 +18,8 @@ const char* name(PairStatus status) noexcept {
       return "stale";
     case PairStatus::kUnknown:
       return "unknown";
+    case PairStatus::kAbsent:
+      return "absent";
   }
   return "";
 }
