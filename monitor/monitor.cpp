@@ -265,7 +265,7 @@ void Monitor::State::count_pairs() noexcept {
   report.unknown = present - known;
   // Every pair is counted once, and none twice: the differences above are not negative.
   CLEARANCE_INVARIANT(conclusion.evaluated <= fresh && fresh <= known && known <= present);
-  CLEARANCE_INVARIANT(report.absent() == report.pairs_total - present);
+  CLEARANCE_INVARIANT(absent_pairs(report) == report.pairs_total - present);
 }
 
 void Monitor::State::write_minimum() noexcept {

@@ -33,6 +33,7 @@ enum class PairStatus : std::uint8_t {
   kAbsent = 7,
 };
 inline constexpr std::size_t kPairStatuses = 8;
+// A word for each enumerator; "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.
@@ -77,6 +78,7 @@ enum class ZoneCause : std::uint8_t {
   kDiscontinuous = 4,  // what was between the last two poses of an object is not known
   kContradicted = 5,   // as kLate, since the poses of an object contradict each other or the cell
 };
+[[nodiscard]] const char* name(ZoneCause cause) noexcept;
 
 struct ZoneReport {
   // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
@@ -105,6 +107,7 @@ enum class SeparationValidity : std::uint8_t {
   // zone: all its pairs are so.
   kAbsent = 3,
 };
+[[nodiscard]] const char* name(SeparationValidity validity) noexcept;
 
 // A pair of a zone with `separation`, as ISO/TS 15066 has it (monitor/separation/README.md). m,
 // m/s, ns. Unknown or absent: clearance and remaining -infinity, speeds and distances NaN.
@@ -161,7 +164,7 @@ struct Report {
   bool minimum_certified = false;
   double lower_all = 0.0;        // the true distance of every pair that is not absent, at least
   double swept_lower_all = 0.0;  // the same at every instant since the last tick: see swept_lower
-  // Object pairs; each is one of the last four, or absent().
+  // Object pairs; each is in one of the last four counts, or absent.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick
   // The largest PairReport::refresh_age_cycles of all known pairs, published or not.
@@ -173,11 +176,13 @@ struct Report {
   std::vector<PairSeparation> separated_pairs;
   Gradients gradients;
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
-
-  // Pairs with an object that is known not to be there (PairStatus::kAbsent).
-  [[nodiscard]] std::uint32_t absent() const noexcept {
-    return pairs_total - evaluated - carried - stale - unknown;
-  }
 };
+
+// How many pairs have the status kAbsent, in a report or a message of it: those that the four
+// counts leave.
+template <class Counts>
+[[nodiscard]] std::uint32_t absent_pairs(const Counts& counts) noexcept {
+  return counts.pairs_total - counts.evaluated - counts.carried - counts.stale - counts.unknown;
+}
 
 }  // namespace clearance

@@ -59,7 +59,7 @@ void check_updated(const Culling& culling, const TickView& view) noexcept {
 void check_report(const Report& report) noexcept {
   if constexpr (!kInvariantsChecked) return;
   const std::uint64_t counted = std::uint64_t{report.evaluated} + report.carried + report.stale +
-                                report.unknown + report.absent();
+                                report.unknown + absent_pairs(report);
   CLEARANCE_INVARIANT(counted == report.pairs_total);
   CLEARANCE_INVARIANT(report.swept_lower_all <= report.lower_all);
   CLEARANCE_INVARIANT(!report.minimum_certified || report.minimum_known);
