@@ -29,6 +29,7 @@ enum class PairStatus : std::uint8_t {
   kUnknown = 6,
 };
 inline constexpr std::size_t kPairStatuses = 7;
+// A word for each enumerator; "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.
@@ -73,6 +74,7 @@ enum class ZoneCause : std::uint8_t {
   kDiscontinuous = 4,  // what was between the last two poses of an object is not known
   kContradicted = 5,   // as kLate, since the poses of an object contradict each other or the cell
 };
+[[nodiscard]] const char* name(ZoneCause cause) noexcept;
 
 struct ZoneReport {
   // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
@@ -98,6 +100,7 @@ enum class SeparationValidity : std::uint8_t {
   kAssumed = 1,   // a pose is late or a speed not known: stated largest speeds stand for them
   kMeasured = 2,  // poses that are on time, and a robot's speed that is known
 };
+[[nodiscard]] const char* name(SeparationValidity validity) noexcept;
 
 // A pair of a zone with `separation`, as ISO/TS 15066 has it (monitor/separation/README.md). m,
 // m/s, ns. Unknown: clearance and remaining -infinity, speeds and distances NaN.

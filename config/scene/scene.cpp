@@ -1,4 +1,4 @@
-// What is asked of a Scene as a whole.
+// Counts over a whole Scene.
 #include "config/scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -6,22 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
-namespace {
-
-// "1 object", "2 objects".
-std::string counted(std::size_t count, const std::string& singular) {
-  return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
-}
-
-}  // namespace
-
-// Partition names are matched as POSIX fnmatch patterns (DDS 1.4, section 2.2.3.13), hence no *, ?
-// and [.
-bool is_partition(const std::string& name) noexcept {
-  constexpr std::size_t kLongest = 255;
-  return name.find_first_of("*?[") == std::string::npos && name.size() <= kLongest;
-}
 
 SeparatedCount separated_count(const Scene& scene) noexcept {
   SeparatedCount count;

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/scene/topics.hpp"
+#include "config/cell/topics.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"
@@ -75,6 +75,9 @@ class Stream {
   [[nodiscard]] std::uint32_t daemons() const;
   // No daemon is there any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
+  // A sentence for a person: why a daemon that is there cannot be heard. It was built with another
+  // version of the message, or its QoS does not fit. Empty: no such daemon was met.
+  [[nodiscard]] std::string refusal() const;
 
  private:
   bool take();

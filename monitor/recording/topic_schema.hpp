@@ -17,6 +17,9 @@ inline constexpr std::string_view kIdlEncoding = "omgidl";
 // The topic whose type has this schema name, if any.
 [[nodiscard]] std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept;
 
+// The name of the topic's type without modules: "Distances".
+[[nodiscard]] std::string_view type_of(TopicKind kind) noexcept;
+
 // Name, encoding and self-contained IDL text of the topic's type.
 [[nodiscard]] const McapSchema& topic_schema(TopicKind kind);
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 
@@ -38,13 +38,13 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
 }
 
 // By their absolute paths; compressed where that makes them smaller.
-std::string RecordingWriter::attach(const Scene& scene) {
-  if (scene.files.empty() || options_.attach_bytes == 0) return {};
+std::string RecordingWriter::attach(const Cell& cell) {
+  if (cell.files.empty() || options_.attach_bytes == 0) return {};
   std::vector<Attached> all;
   std::uint64_t total = 0;
-  for (const std::filesystem::path& file : scene.files) {
+  for (const std::filesystem::path& file : cell.files) {
     const auto read = read_bytes(file.string());
-    if (const auto* fault = std::get_if<MeshFault>(&read)) return fault->reason;
+    if (const auto* fault = std::get_if<FileFault>(&read)) return fault->reason;
     const auto bytes = std::as_bytes(std::span(std::get<std::string>(read)));
     Attached& one = all.emplace_back(file.string(), "application/octet-stream");
     if (options_.compress) compress_zstd(bytes, one.bytes);
@@ -60,7 +60,7 @@ std::string RecordingWriter::attach(const Scene& scene) {
     }
   }
   attached_ = std::move(all);
-  cell_file_ = scene.file.string();
+  cell_file_ = cell.file.string();
   write_attachments();
   return {};
 }

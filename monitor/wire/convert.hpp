@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -24,9 +24,6 @@ namespace clearance {
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
              clearance_msg_Distances& out) noexcept;
 
-// One pair as it stands in Distances.
-void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept;
-
 // State of zone `zone` (an index into Scene::zones and Report::zones). Zone names longer than 64
 // bytes are cut; the id is what identifies a zone.
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
@@ -37,7 +34,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
 // Allocates. Names, pairs, zones, joints and the text of the cell.
-[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene);
+[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
 
 // The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
 // ids, non-finite numbers and the rest. Allocates only while `out` has less room than the batch has

@@ -7,6 +7,7 @@
 #include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/surface_error.hpp"
 #include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/write/single_robot_cell.hpp"
 #include "core/shapes.hpp"
 #include "monitor/app/program.hpp"
@@ -95,7 +96,7 @@ std::optional<PartsModel> split(const TriangleMesh& mesh, const PartLimits& limi
 
 std::variant<Original, Faults> original_of(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file);
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) return Faults{fault->reason};
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) return Faults{fault->reason};
   const auto read = read_mesh(std::get<std::string>(bytes), file.extension());
   if (const auto* fault = std::get_if<MeshFault>(&read)) {
     return Faults{"'" + file.string() + "' " + fault->reason};
@@ -123,7 +124,7 @@ std::variant<Scene, Faults> scene_of(const std::filesystem::path& file) {
   CellResult cell = file.extension() == ".urdf"
                         ? read_single_robot({.urdf = file}, told_on_stderr())
                         : read_cell(file, told_on_stderr());
-  if (auto* scene = std::get_if<Scene>(&cell)) return std::move(*scene);
+  if (auto* read = std::get_if<Cell>(&cell)) return std::move(read->scene);
   Faults texts;
   for (const CellError& error : std::get<std::vector<CellError>>(cell)) texts.push_back(error.text);
   return texts;

@@ -1,0 +1,40 @@
+// All that a cell file says: the scene of the tick, and the settings of the programs around it.
+//
+// Nothing of the tick includes this header: it knows neither DDS nor ROS 2, nor the files of the
+// cell.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/cell/ros_settings.hpp"
+#include "config/cell/simulation.hpp"
+#include "config/cell/topics.hpp"
+#include "config/scene/scene.hpp"
+
+namespace clearance {
+
+struct Cell {
+  Scene scene = {};
+
+  std::uint32_t domain = 0;      // DDS
+  std::string partition = {};    // DDS; empty: the default partition
+  std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
+  Topics topics = {};
+  RosSettings ros = {};
+  Simulation simulation = {};  // may be empty
+
+  std::string yaml = {};  // the text of the cell, for recordings
+  // The file of that text, and the files that it names, directly or not: meshes, URDF, SRDF,
+  // planning scenes. Absolute; each once, in the order in which they were read.
+  std::filesystem::path file = {};
+  std::vector<std::filesystem::path> files = {};
+};
+
+// Tells whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
+// default partition, and without wildcards, which would join cells that are to be kept apart.
+[[nodiscard]] bool is_partition(const std::string& name) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,47 @@
+// The settings of a cell for ROS 2 beyond joint states: the topics that are written, and the frame
+// that is its world.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "config/scene/ros_stamps.hpp"
+
+namespace clearance {
+
+// Topics by their names in ROS 2, "/diagnostics"; an empty one is not written.
+struct RosOutputs {
+  std::string markers, diagnostics, minimum_distance, speed_scaling;
+};
+
+// One row an output: its key in a cell, and its topic where the cell names none.
+struct RosOutput {
+  std::string_view key;
+  std::string RosOutputs::*topic;
+  std::string_view standard_topic;
+};
+inline constexpr std::array<RosOutput, 4> kRosOutputs = {{
+    {"markers", &RosOutputs::markers, "/clearance/markers"},
+    {"diagnostics", &RosOutputs::diagnostics, "/diagnostics"},
+    {"minimum_distance", &RosOutputs::minimum_distance, "/clearance/minimum_distance"},
+    {"speed_scaling", &RosOutputs::speed_scaling, "/clearance/speed_scaling"},
+}};
+
+struct RosSettings {
+  RosOutputs outputs;
+  double markers_hz = 30.0;
+  // The frame of tf that is the cell's world; required where an object or a base follows a frame.
+  // Empty: outputs call it "world".
+  std::string world_frame;
+  RosStamps stamps = RosStamps::kMessage;  // of tf
+
+  [[nodiscard]] std::string world() const { return world_frame.empty() ? "world" : world_frame; }
+};
+
+// Tells whether `name` is a topic of ROS 2: "/" and names of letters, digits and "_" that begin
+// with no digit, with "/" between them.
+[[nodiscard]] bool is_ros_topic(std::string_view name) noexcept;
+
+}  // namespace clearance

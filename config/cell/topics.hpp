@@ -1,0 +1,37 @@
+// The DDS names of the topics; the defaults are those of idl/README.md.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace clearance {
+
+struct Topics {
+  std::string poses = "clearance/poses";
+  std::string distances = "clearance/distances";
+  std::string catalogue = "clearance/catalogue";
+  std::string health = "clearance/health";
+  std::string zones = "clearance/zones";
+  std::string joint_states = "clearance/joint_states";
+  std::string separation = "clearance/separation";
+  std::string gradients = "clearance/gradients";
+};
+
+// A topic by its key in a cell and in command lines.
+struct TopicKey {
+  std::string_view key;
+  std::string Topics::*name;
+};
+inline constexpr std::array<TopicKey, 8> kTopicKeys = {{
+    {"catalogue", &Topics::catalogue},
+    {"poses", &Topics::poses},
+    {"joint_states", &Topics::joint_states},
+    {"distances", &Topics::distances},
+    {"zones", &Topics::zones},
+    {"health", &Topics::health},
+    {"separation", &Topics::separation},
+    {"gradients", &Topics::gradients},
+}};
+
+}  // namespace clearance

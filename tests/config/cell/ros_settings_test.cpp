@@ -1,0 +1,93 @@
+// What a cell says of ROS 2: topics that are written, frames that are followed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/config/cells.hpp"
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(RosSettingsOfACell, NameTopicsOrTakeTheStandardOnes) {
+  const Cell cell =
+      read_good(cell_text("ros2: {markers: true, diagnostics: false, minimum_distance: "
+                          "/left/minimum, markers_hz: 10}\n" +
+                          kBoxes));
+  EXPECT_EQ(cell.ros.outputs.markers, "/clearance/markers");
+  EXPECT_EQ(cell.ros.outputs.diagnostics, "");
+  EXPECT_EQ(cell.ros.outputs.minimum_distance, "/left/minimum");
+  EXPECT_EQ(cell.ros.outputs.speed_scaling, "");
+  EXPECT_EQ(cell.ros.markers_hz, 10.0);
+  EXPECT_EQ(cell.ros.world(), "world");
+}
+
+TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
+  for (const char* topic : {"markers", "/", "/a/", "/a//b", "/1a", "/a/1", "/a-b", "/a b"}) {
+    EXPECT_THAT(errors_of(cell_text(std::string("ros2: {markers: '") + topic + "'}\n" + kBoxes)),
+                HasSubstr("expected true, false or a topic of ROS 2 with its namespace"))
+        << topic;
+  }
+  EXPECT_THAT(errors_of(cell_text("ros2: {markers: /a, diagnostics: /a}\n" + kBoxes)),
+              HasSubstr("found the topic '/a' for both 'markers' and 'diagnostics'"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {marker: true}\n" + kBoxes)), HasSubstr("marker"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {stamps: never}\n" + kBoxes)),
+              HasSubstr("found 'never'; expected message (the stamp in it) or sent"));
+}
+
+TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
+  const std::string boxes =
+      "objects:\n  - {name: box, frame: /box_link, sphere: {radius: 1}}\n"
+      "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}\n"
+      "pairs: [{between: [box, floor]}]\n";
+  const Cell cell = read_good(cell_text("ros2: {world_frame: map}\n" + boxes));
+  EXPECT_EQ(cell.scene.objects[0].frame, "box_link");
+  EXPECT_EQ(cell.ros.world(), "map");
+  EXPECT_THAT(errors_of(cell_text(boxes)),
+              HasSubstr("found that 'box' follows the frame 'box_link', and no world_frame"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {world_frame: map}\nobjects:\n  - {name: floor, fixed: "
+                                  "true, frame: a, half_space: {normal: [0, 0, 1], offset: 0}}\n"
+                                  "pairs: []\n")),
+              HasSubstr("found 'frame' of a fixed object"));
+}
+
+// Its root hangs on a floating joint that the URDF does not have; all else is as it was.
+TEST(RosSettingsOfACell, FloatTheBaseOfARobotThatFollowsAFrame) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const auto cell = [](const std::string& base) {
+    return "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: map}\n"
+           "robots: [{name: arm, urdf: scara.urdf, prefix: r_, source: driver, base: " +
+           base + "}]\npairs: [{between: [arm, arm]}]\n";
+  };
+  const Scene plain = scene_of(cell("{}"), folder / "cell.yaml");
+  const Scene scene = scene_of(cell("{frame: mir, age_limit_ms: 500, pose: {xyz: [0, 0, 1]}}"),
+                               folder / "cell.yaml");
+  const Robot& robot = scene.robots.at(0);
+  EXPECT_EQ(robot.base.frame, "mir");
+  EXPECT_EQ(robot.base.frame_from_root.position, Vec3(0, 0, 1));
+  EXPECT_EQ(robot.base.base_from_root.position, Vec3(0, 0, 0));
+  ASSERT_EQ(robot.joints.size(), 4u);
+  EXPECT_EQ(robot.joints[0].type, JointType::kFloating);
+  EXPECT_EQ(robot.links[1].name, "r_foot");
+  ASSERT_EQ(scene.variables.size(), 10u);
+  EXPECT_EQ(scene.variables[0].name, "r_arm_base/trans_x");
+  EXPECT_EQ(scene.variables[0].age_limit_ns, 500'000'000);
+  EXPECT_EQ(scene.variables[0].source, "");
+  EXPECT_TRUE(robot.is_of_base(6));
+  EXPECT_FALSE(robot.is_of_base(7));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(scene.variables[7 + i].name, plain.variables[i].name);
+    EXPECT_EQ(scene.variables[7 + i].source, "driver");
+    EXPECT_EQ(robot.joints[1 + i].name, plain.robots[0].joints[i].name);
+    EXPECT_EQ(robot.joints[1 + i].parent, plain.robots[0].joints[i].parent + 1);
+  }
+  EXPECT_TRUE(plain.objects[0].fixed) << "the foot";
+  EXPECT_FALSE(scene.objects[0].fixed);
+  EXPECT_THAT(errors_of(cell("{frame: mir, on: r_foot}"), folder / "cell.yaml"),
+              HasSubstr("found 'on' of a base that follows a frame"));
+}
+
+}  // namespace
+}  // namespace clearance

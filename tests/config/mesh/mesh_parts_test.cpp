@@ -1,0 +1,266 @@
+#include "config/mesh/mesh_parts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "config/mesh/file_lock.hpp"
+#include "config/write/single_robot_cell.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+// A cell with an L of sheet bars, and what reading it told.
+class PartsOfMeshes : public testing::Test {
+ protected:
+  PartsOfMeshes() {
+    test::write_text(folder_ / "l.obj", test::obj_of(test::l_shape()));
+    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+  }
+  ~PartsOfMeshes() override { ::unsetenv("XDG_CACHE_HOME"); }
+
+  Scene read(const std::string& keys = "", const std::string& sections = "") {
+    return read_text(sections + "objects:\n  - {name: a, mesh: {file: l.obj" + keys +
+                     "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
+  }
+
+  Scene read_text(const std::string& sections, const std::string& file = "cell.yaml") {
+    const std::string text = cell_text(sections);
+    told_.clear();
+    errors_.clear();
+    CellOptions options;
+    options.tell = [this](const std::string& line) {
+      told_ += line + "\n";
+      if (told_to_) told_to_(line);
+    };
+    options.mesh_errors = &mesh_errors_;
+    CellResult result = parse_cell(text, folder_ / file, options);
+    if (auto* cell = std::get_if<Cell>(&result)) return std::move(cell->scene);
+    for (const CellError& error : std::get<std::vector<CellError>>(result)) errors_ += error.text;
+    return {};
+  }
+
+  // The only file in a folder.
+  static std::filesystem::path only_file(const std::filesystem::path& folder) {
+    EXPECT_EQ(1, std::distance(std::filesystem::directory_iterator(folder), {}));
+    return std::filesystem::directory_iterator(folder)->path();
+  }
+
+  static std::vector<Vec3> anchors(const Scene& scene) {
+    std::vector<Vec3> all;
+    for (const Part& part : scene.objects.at(0).parts) {
+      all.insert(all.end(), part.shape.anchors.begin(), part.shape.anchors.end());
+    }
+    return all;
+  }
+
+  test::ScratchFolder folder_;
+  std::string told_, errors_;
+  std::function<void(const std::string&)> told_to_;
+  std::map<std::string, double> mesh_errors_;
+};
+
+TEST_F(PartsOfMeshes, AreMadeOnceAndKeptBesideTheCell) {
+  const Scene first = read();
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  only_file(folder_ / "clearance.parts");
+  const Scene second = read();
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_EQ(anchors(first), anchors(second));
+  EXPECT_EQ(first.revision, second.revision);
+  EXPECT_EQ(second.objects.at(0).parts.at(1).name, "mesh.1");
+  EXPECT_GT(mesh_errors_.at("a"), 0.0);
+  EXPECT_LE(mesh_errors_.at("a"), 5e-3);
+  EXPECT_FALSE(mesh_errors_.contains("b"));
+}
+
+const std::string kOneMesh =
+    "objects:\n  - {name: a, mesh: {file: l.obj}}\n  - {name: b, sphere: {radius: 1}}\n"
+    "pairs: [{between: [a, b]}]\n";
+
+TEST_F(PartsOfMeshes, AreFoundByEveryCellOfTheFolderWhateverTheMeshIsCalled) {
+  const Scene first = read_text(kOneMesh, "first.yaml");
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  const Scene second = read_text(kOneMesh, "second.yaml");
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_EQ(anchors(first), anchors(second));
+  EXPECT_EQ(first.revision, second.revision);
+  std::filesystem::rename(folder_ / "l.obj", folder_ / "renamed.obj");
+  std::string renamed = kOneMesh;
+  renamed.replace(renamed.find("l.obj"), 5, "renamed.obj");
+  EXPECT_EQ(anchors(first), anchors(read_text(renamed)));
+  EXPECT_THAT(told_, IsEmpty());
+  only_file(folder_ / "clearance.parts");
+}
+
+TEST_F(PartsOfMeshes, AreMadeAfterTheMistakesOfTheCellAreTold) {
+  const std::string zone = "zones: [{name: z, between: [a, c], enter_below: 1}]\n";
+  read_text(kOneMesh + zone);
+  EXPECT_THAT(errors_, HasSubstr("found the unknown name 'c'"));
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "clearance.parts"));
+  read_text("rate_herz: 5\n" + kOneMesh);
+  EXPECT_THAT(errors_, HasSubstr("rate_herz"));
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(PartsOfMeshes, CountInTheBudgetOfTheCell) {
+  read_text("budget: 1\nrefresh_s: 0.002\n" + kOneMesh);
+  EXPECT_THAT(errors_, HasSubstr("expected at least 2 queries a tick"));
+}
+
+TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
+  const Scene first = read();
+  const auto file = only_file(folder_ / "clearance.parts");
+  const std::string good = test::read_text(file);
+  std::string other_number = good;
+  other_number.replace(other_number.find("0x1."), 4, "0x0.");
+  for (const std::string& bad :
+       {good.substr(0, good.size() / 2), other_number, std::string(), std::string("\0\xff", 2)}) {
+    test::write_text(file, bad);
+    EXPECT_EQ(anchors(first), anchors(read()));
+    EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+    EXPECT_EQ(good, test::read_text(file));
+  }
+}
+
+TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
+  const Scene first = read();
+  EXPECT_NEAR(read(", scale: 2").objects.at(0).parts.at(0).shape.bounding_radius,
+              2.0 * first.objects.at(0).parts.at(0).shape.bounding_radius, 2e-3);
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  read(", unit: mm");
+  EXPECT_THAT(told_, IsEmpty());  // its hull is within the tolerance
+  EXPECT_EQ(read(", tolerance: 0.2").objects.at(0).parts.size(), 1u);
+  EXPECT_EQ(read("", "defaults: {max_parts: 1}\n").objects.at(0).parts.size(), 1u);
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  test::write_text(folder_ / "l.obj", test::obj_of(test::degenerate_l()));
+  read();
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+}
+
+TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
+  test::write_text(folder_ / "clearance.parts", "a file where a folder should be");
+  read();
+  EXPECT_THAT(told_, HasSubstr("kept in '" + (folder_ / "cache").string()));
+  only_file(folder_ / "cache/clearance/parts");
+  read();
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+// clearanced and clearance-robot are started together on a new cell.
+TEST_F(PartsOfMeshes, AreMadeByOneProgramAtATime) {
+  const Scene first = read();
+  const auto made = only_file(folder_ / "clearance.parts");
+  const std::string text = test::read_text(made);
+  std::filesystem::remove(made);
+  std::promise<void> waits;
+  auto other = std::make_unique<FileLock>(folder_ / "l.obj", [] {});
+  std::thread program([&] {
+    told_to_ = [&](const std::string& line) {
+      if (line == "l.obj: another program splits it ...") waits.set_value();
+    };
+    EXPECT_EQ(anchors(first), anchors(read()));
+  });
+  waits.get_future().wait();
+  test::write_text(made, text);
+  other.reset();
+  program.join();
+  EXPECT_THAT(told_, Not(HasSubstr("parts, ")));
+}
+
+TEST_F(PartsOfMeshes, AreUsedEvenWhereNothingCanBeKept) {
+  test::write_text(folder_ / "clearance.parts", "a file where a folder should be");
+  test::write_text(folder_ / "cache", "another");
+  EXPECT_EQ(read().objects.at(0).parts.size(), 2u);
+  EXPECT_THAT(told_, HasSubstr("warning: '"));
+  EXPECT_THAT(told_, HasSubstr("cannot be written"));
+}
+
+TEST_F(PartsOfMeshes, AllHaveTheRadiusAroundTheMesh) {
+  const Scene scene = read(", rounding: 0.01");
+  for (const Part& part : scene.objects.at(0).parts) {
+    EXPECT_EQ(part.shape.radius, 0.01);
+  }
+}
+
+TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
+  test::write_text(folder_ / "r.urdf",
+                   "<robot name='r'><link name='base'><collision><geometry><mesh "
+                   "filename='l.obj'/></geometry></collision></link><link name='tip'><collision>"
+                   "<geometry><sphere radius='0.1'/></geometry></collision></link><joint name='j' "
+                   "type='prismatic'><origin xyz='1 0 0'/><axis xyz='1 0 0'/><limit lower='0' "
+                   "upper='1' velocity='1'/><parent link='base'/><child link='tip'/></joint>"
+                   "</robot>");
+  const auto parts = [this](const std::string& keys) {
+    const Scene scene = read_text(
+        "objects: [{name: b, sphere: {radius: 1}}]\nrobots: [{name: r, "
+        "urdf: r.urdf" +
+        keys + "}]\npairs: [{between: [r, b]}]\n");
+    return scene.objects.at(1).parts.size();
+  };
+  EXPECT_EQ(parts(""), 2u) << errors_;
+  EXPECT_EQ(parts(", tolerance: 0.2"), 1u) << errors_;
+  EXPECT_EQ(parts(", max_parts: 1"), 1u) << errors_;
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  EXPECT_THAT(told_, HasSubstr("raise max_parts (now 1) or tolerance in the cell\n"));
+}
+
+TEST_F(PartsOfMeshes, OfAUrdfAloneAreCoarseWithTheAdviceToWriteACell) {
+  std::string dust;  // more grains in a row than a mesh may have parts
+  for (int i = 0; i < 40; ++i) {
+    for (const char* corner : {"0 0 0", "0.1 0 0", "0 0.1 0", "0 0 0.1"}) {
+      std::istringstream numbers(corner);
+      double x = 0.0, y = 0.0, z = 0.0;
+      numbers >> x >> y >> z;
+      dust += "v " + std::to_string(x + i % 7) + " " + std::to_string(y + i / 7) + " " +
+              std::to_string(z + i % 3) + "\n";
+    }
+    const int at = 4 * i;
+    for (const std::array<int, 3> face : {std::array{1, 3, 2}, {1, 2, 4}, {1, 4, 3}, {2, 3, 4}}) {
+      dust += "f " + std::to_string(at + face[0]) + " " + std::to_string(at + face[1]) + " " +
+              std::to_string(at + face[2]) + "\n";
+    }
+  }
+  test::write_text(folder_ / "dust.obj", dust);
+  test::write_text(folder_ / "r.urdf",
+                   "<robot name='r'><link name='base'><collision><geometry><mesh "
+                   "filename='dust.obj'/></geometry></collision></link><link name='tip'><collision>"
+                   "<geometry><sphere radius='0.1'/></geometry></collision></link><joint name='j' "
+                   "type='prismatic'><origin xyz='1 0 0'/><axis xyz='1 0 0'/><limit lower='0' "
+                   "upper='1' velocity='1'/><parent link='base'/><child link='tip'/></joint>"
+                   "</robot>");
+  std::string told;
+  const CellResult result =
+      read_single_robot({.urdf = folder_ / "r.urdf"},
+                        {.tell = [&told](const std::string& line) { told += line + "\n"; }});
+  EXPECT_TRUE(std::holds_alternative<Cell>(result));
+  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene --from-urdf writes\n"));
+}
+
+TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
+  read(", tolerance: 0");
+  read(", max_parts: 0");
+  read(", max_parts: 65");
+  EXPECT_THAT(errors_, HasSubstr("how far the parts of a mesh may reach beyond it"));
+  EXPECT_THAT(errors_, HasSubstr("parts of a mesh at most"));
+}
+
+}  // namespace
+}  // namespace clearance
