@@ -116,16 +116,10 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
 // one.
 void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   MapReader map(node, "the topics", diagnostics_);
-  std::map<std::string, const char*> taken;
-  for (const auto& [key, topic] : {std::pair("poses", &topics.poses),
-                                   {"distances", &topics.distances},
-                                   {"catalogue", &topics.catalogue},
-                                   {"health", &topics.health},
-                                   {"zones", &topics.zones},
-                                   {"joint_states", &topics.joint_states},
-                                   {"separation", &topics.separation},
-                                   {"gradients", &topics.gradients}}) {
-    const YamlNode* name_node = map.optional(key);
+  std::map<std::string, std::string_view> taken;
+  for (const auto& [key, member] : kTopicKeys) {
+    std::string* const topic = &(topics.*member);
+    const YamlNode* name_node = map.optional(std::string(key));
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
     if (!name) continue;

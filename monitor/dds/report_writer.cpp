@@ -11,9 +11,11 @@
 #include <string>
 #include <utility>
 
+#include "monitor/build_info/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
+#include "monitor/zone_cause.hpp"
 
 namespace clearance {
 namespace {
@@ -24,40 +26,31 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
   if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
   char topic[128] = "?";
   dds_get_name(dds_get_topic(writer), topic, sizeof topic);
+  if (status.last_policy_id == DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID) {
+    spdlog::warn(
+        "a reader of {} was built with another version of its type: it gets nothing. Build it with "
+        "the IDL of this daemon ({})",
+        topic, kBuild);
+    return;
+  }
   spdlog::warn(
       "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: "
-      "only catalogue, "
-      "zones and health are latched; 24: another type; idl/README.md has the whole contract",
+      "only catalogue, zones and health are latched; idl/README.md has the whole contract",
       topic, status.last_policy_id);
 }
 
-// "entered at cycle 12 by distance: hand - box, 0.043 m clear, 0.041 m since the tick before", or
-// "entered at cycle 12 because poses of hand are late: ...".
+// "entered at cycle 12 by distance: hand - box, at least 0.043 m clear, 0.041 m since the tick
+// before", or "entered at cycle 12 because poses of hand are late: ...". The bounds of other causes
+// are no figures.
 std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
   if (!zone.active) return fmt::format("left at cycle {}", cycle);
-  const std::string pair = pair_name(scene, zone.pair);
-  const std::string& object = scene.objects[zone.cause_object].name;
-  const std::string clear = fmt::format("{:.3f} m clear, {:.3f} m since the tick before",
-                                        zone.clearance, zone.swept_clearance);
-  switch (zone.cause) {
-    case ZoneCause::kUnknown:
-      return fmt::format("entered at cycle {} because no pose of {} has come: {} unknown", cycle,
-                         object, pair);
-    case ZoneCause::kLate:
-      return fmt::format(
-          "entered at cycle {} because poses of {} are late, not by distance: {}, at least {}",
-          cycle, object, pair, clear);
-    case ZoneCause::kContradicted:
-      return fmt::format(
-          "entered at cycle {} because poses of {} contradict each other or the cell: {} unknown",
-          cycle, object, pair);
-    case ZoneCause::kDiscontinuous:
-      return fmt::format(
-          "entered at cycle {}: {}, unknown since the last tick: the pose of {} is discontinuous",
-          cycle, pair, object);
-    default:
-      return fmt::format("entered at cycle {} by distance: {}, {}", cycle, pair, clear);
-  }
+  const bool has_bounds = zone.cause == ZoneCause::kNear || zone.cause == ZoneCause::kLate;
+  return fmt::format(
+      "entered at cycle {} {}{}: {}{}", cycle, zone.cause == ZoneCause::kNear ? "" : "because ",
+      cause_text(zone.cause, scene.objects[zone.cause_object].name), pair_name(scene, zone.pair),
+      has_bounds ? fmt::format(", at least {:.3f} m clear, {:.3f} m since the tick before",
+                               zone.clearance, zone.swept_clearance)
+                 : " unknown");
 }
 
 // The name of the topic is the cell's, which the table points to.

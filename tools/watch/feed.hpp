@@ -65,6 +65,8 @@ class Feed {
   // Writers of distances that are alive: they have written within their leases. More than one is a
   // mistake.
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
+  // Why the reports of a daemon that is there do not come; empty: nothing is known against it.
+  [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
   // None is there any longer, not even one that stands still.
   [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }
 
