@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// A cell with an L of sheet bars, and what reading it told.
+// A cell with an L of sheet bars, and the lines that reading it told.
 class PartsOfMeshes : public testing::Test {
  protected:
   PartsOfMeshes() {
