@@ -1,4 +1,4 @@
-// DDS names of the topics; the defaults are those of idl/README.md.
+// The DDS names of the topics; the defaults are those of idl/README.md.
 #pragma once
 
 #include <array>

@@ -20,8 +20,8 @@
 #include <thread>
 #include <utility>
 
+#include "config/text/printable.hpp"
 #include "monitor/app/log_queue.hpp"
-#include "monitor/app/printable.hpp"
 
 namespace clearance {
 namespace {

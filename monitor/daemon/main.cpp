@@ -9,7 +9,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"

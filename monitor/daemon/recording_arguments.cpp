@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/app/options.hpp"
 
 namespace clearance {

@@ -7,19 +7,12 @@
 #include <map>
 #include <utility>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
 namespace {
 
-// "a, b, c and 4 more".
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kListed = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kListed); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  return names.size() > kListed ? fmt::format("{} and {} more", text, names.size() - kListed)
-                                : text;
-}
+constexpr std::size_t kNamesALine = 3;
 
 }  // namespace
 
@@ -72,12 +65,12 @@ void JointLog::update_robot(std::uint32_t robot,
   for (const auto& [sources, names] : rivals) {
     spdlog::warn(
         "joints of {} are sent by '{}' and by '{}': positions of the latter are not used ({})",
-        name, sources.first, sources.second, listed(names));
+        name, sources.first, sources.second, listed(names, kNamesALine));
   }
   if (unseen.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
   silence_said_[robot] = true;
   spdlog::warn("nothing that could be used has come of {} joints of {} ({}): {}", unseen.size(),
-               name, listed(unseen), senders());
+               name, listed(unseen, kNamesALine), senders());
 }
 
 void JointLog::log_change(const std::string& robot, State before, State now, const Names& names,
@@ -87,19 +80,19 @@ void JointLog::log_change(const std::string& robot, State before, State now, con
       return;
     case State::kFine:
       spdlog::info("{} joints of {} are {}: {}", names.size(), robot,
-                   before == State::kUnseen ? "heard" : "back", listed(names));
+                   before == State::kUnseen ? "heard" : "back", listed(names, kNamesALine));
       return;
     case State::kLate:
       spdlog::warn(
           "the last positions of {} joints of {} that could be used are {} ms old: what hangs on "
           "them is stale ({})",
-          names.size(), robot, age_ns / 1'000'000, listed(names));
+          names.size(), robot, age_ns / 1'000'000, listed(names, kNamesALine));
       return;
     case State::kContradicted:
       spdlog::warn(
           "positions of {} joints of {} contradict each other or the limits of the joints: what "
           "hangs on them is unknown ({})",
-          names.size(), robot, listed(names));
+          names.size(), robot, listed(names, kNamesALine));
       return;
   }
 }

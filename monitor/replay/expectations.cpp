@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/replay/metres.hpp"
 

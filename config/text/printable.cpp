@@ -1,16 +1,17 @@
-// Character by character; a byte that begins no character of UTF-8 counts as one to escape.
-#include "monitor/app/printable.hpp"
+// The text is taken character by character; a byte that begins no character of UTF-8 is escaped
+// alone.
+#include "config/text/printable.hpp"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {
 
-// Bytes of the character that begins a text of well-formed UTF-8.
+// Returns how many bytes the character has that begins a text of well-formed UTF-8.
 std::size_t length_of(char first) {
   const auto byte = static_cast<unsigned char>(first);
   if (byte < 0xC0) return 1;
@@ -62,6 +63,11 @@ std::string printable(std::string_view text, LineBreaks breaks) {
     text.remove_prefix(text.empty() ? 0 : 1);
   }
   return out;
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 300;
+  return text.size() <= kMost ? printable(text) : printable(text.substr(0, kMost)) + "...";
 }
 
 }  // namespace clearance
