@@ -26,7 +26,6 @@ PairStatus status_of(DistanceStatus status) noexcept {
       return PairStatus::kTouching;
     case DistanceStatus::kOverlapping:
       return PairStatus::kOverlapping;
-    case DistanceStatus::kFarAway:
     case DistanceStatus::kIterationLimit:
     case DistanceStatus::kDepthNotAsked:
     case DistanceStatus::kBadPose:
