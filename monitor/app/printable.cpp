@@ -1,4 +1,4 @@
-// Character by character; a byte that begins no character of UTF-8 counts as one to escape.
+// Goes character by character; a byte that begins no UTF-8 character is escaped alone.
 #include "monitor/app/printable.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// Bytes of the character that begins a text of well-formed UTF-8.
+// The length in bytes of the first character of a well-formed UTF-8 text.
 std::size_t length_of(char first) {
   const auto byte = static_cast<unsigned char>(first);
   if (byte < 0xC0) return 1;

@@ -1,4 +1,4 @@
-// Text from outside, made fit for a terminal and for a log of one line an event.
+// Makes text from outside fit for a terminal, and for a log with one line per event.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace clearance {
 
-// What printable() does with line feeds, carriage returns and tabs.
+// The treatment of line feeds, carriage returns and tabs by printable().
 enum class LineBreaks { kEscaped, kKept };
 
-// The text with every byte that could do something else than show a character written as \xNN:
-// control characters (ASCII and C1), line separators and bidirectional controls of Unicode, and
-// bytes that are no UTF-8. All other UTF-8 stays as it is. What is named by a stranger (a source, a
-// file, a cell) can thus neither begin a line of its own nor command the terminal.
+// Writes every byte that could do more than show a character as \xNN: control characters (ASCII and
+// C1), Unicode's line separators and bidirectional controls, and bytes that are no UTF-8. All other
+// UTF-8 stays. A name from outside (a source, a file, a cell) can thus neither begin a line nor
+// command the terminal.
 [[nodiscard]] std::string printable(std::string_view text,
                                     LineBreaks breaks = LineBreaks::kEscaped);
 
