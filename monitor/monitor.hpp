@@ -11,7 +11,7 @@
 #include "monitor/joint_batch.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
-#include "monitor/swept/swept_search.hpp"
+#include "monitor/swept/swept_bounds.hpp"
 #include "monitor/tick_time.hpp"
 
 namespace clearance {

@@ -39,6 +39,6 @@ using ExitCodeOf = std::function<ExitCode(const std::exception&)>;
 
 // Returns the scene. If the cell has errors, writes them to stderr, one per line, and returns
 // nothing.
-[[nodiscard]] std::optional<Scene> scene_or_errors(CellResult cell);
+[[nodiscard]] std::optional<Cell> cell_or_errors(CellResult result);
 
 }  // namespace clearance

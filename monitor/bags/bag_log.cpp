@@ -37,15 +37,15 @@ std::string transforms_source(std::string topic) {
 
 }  // namespace
 
-BagLog::BagLog(const std::filesystem::path& path, const Scene& scene,
-               const InputLogOptions& options)
-    : scene_(scene),
+BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options)
+    : scene_(cell.scene),
+      ros_(cell.ros),
       options_(options),
       path_(path),
       bag_(open_bag(path)),
-      frames_(scene, TrackedFrames::ByName::kYes),
-      heard_(scene.variables.size()),
-      given_(scene, options.joints) {
+      frames_(cell, TrackedFrames::ByName::kYes),
+      heard_(cell.scene.variables.size()),
+      given_(cell.scene, options.joints) {
   error_ = given_.error();
   ended_ = !error_.empty();
 }
@@ -185,7 +185,7 @@ void BagLog::take_transforms(const BagMessage& message, Topic& topic) {
     const auto place = frames_.find(tree_, followers[i].frame, &root);
     if (!place) continue;
     roots_met_.insert(root);
-    const bool by_stamp = place->stamp_ns && scene_.ros.stamps == RosStamps::kMessage;
+    const bool by_stamp = place->stamp_ns && ros_.stamps == RosStamps::kMessage;
     const std::int64_t stamp =
         by_stamp ? stamp_of(*place->stamp_ns, message.log_ns, topic) : message.log_ns;
     PoseBatch base;
@@ -255,7 +255,7 @@ std::vector<std::string> BagLog::notes() const {
   }
   note_unheard(scene_, heard_, options_.joints, notes);
   for (const std::string& root : roots_met_) {
-    if (frames_.is_root_link(root) || root == scene_.ros.world()) continue;
+    if (frames_.is_root_link(root) || root == ros_.world()) continue;
     notes.push_back(fmt::format("frame '{}' is taken to be the cell's world", root));
   }
   return notes;

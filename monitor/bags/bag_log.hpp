@@ -30,7 +30,7 @@ namespace clearance {
 // when a position held: then the time is used at which it was recorded.
 class BagLog final : public InputLog {
  public:
-  BagLog(const std::filesystem::path& path, const Scene& scene, const InputLogOptions& options);
+  BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options);
 
   [[nodiscard]] bool next(LoggedBatch& batch) override;
   [[nodiscard]] const std::string& error() const noexcept override;
@@ -65,6 +65,7 @@ class BagLog final : public InputLog {
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;
+  const RosSettings& ros_;
   InputLogOptions options_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/participant/participant.hpp"
 
@@ -53,13 +53,13 @@ struct DdsArguments {
   }
 
   // The options: the command line first, then the cell if there is one.
-  [[nodiscard]] DdsOptions resolve(const Scene& scene) const {
-    return {.domain = domain.value_or(scene.domain),
-            .partition = partition.value_or(scene.partition),
-            .interface = interface.value_or(scene.interface),
+  [[nodiscard]] DdsOptions resolve(const Cell& cell) const {
+    return {.domain = domain.value_or(cell.domain),
+            .partition = partition.value_or(cell.partition),
+            .interface = interface.value_or(cell.interface),
             .peers = peers};
   }
-  [[nodiscard]] DdsOptions resolve() const { return resolve(Scene{}); }
+  [[nodiscard]] DdsOptions resolve() const { return resolve(Cell{}); }
 };
 
 // The exit code of a DDS program that ended with this exception.

@@ -104,25 +104,27 @@ std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
 
 // All memory is reserved before the thread starts; only a source that sends for the first time
 // allocates later.
-PoseReader::PoseReader(const Scene& scene, Participant& participant)
-    : scene_(scene),
-      samples_a_batch_(samples_a_batch(scene)),
+PoseReader::PoseReader(const Cell& cell, Participant& participant)
+    : scene_(cell.scene),
+      topics_(cell.topics),
+      samples_a_batch_(samples_a_batch(cell.scene)),
       undecodable_before_(undecodable_samples()),
       reader_(make_reader(participant, TopicKind::kPoses)),
-      joint_reader_(scene.robots.empty() ? 0 : make_reader(participant, TopicKind::kJointStates)),
+      joint_reader_(cell.scene.robots.empty() ? 0
+                                              : make_reader(participant, TopicKind::kJointStates)),
       where_(participant.where()),
       present_(participant),
-      ros_joints_(scene, participant),
-      ros_transforms_(scene, participant, present_),
+      ros_joints_(cell.scene, participant),
+      ros_transforms_(cell, participant, present_),
       wait_(participant, readers()),
-      joint_names_(scene),
+      joint_names_(cell.scene),
       ring_(kBatches),
-      sources_(named_sources(scene)),
-      slow_log_(scene) {
+      sources_(named_sources(cell.scene)),
+      slow_log_(cell.scene) {
   for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch_);
-    slot.joints.resize(joints_a_batch(scene));
+    slot.joints.resize(joints_a_batch(cell.scene));
   });
   thread_ = std::thread([this] { run(); });
 }
@@ -148,7 +150,7 @@ dds_entity_t PoseReader::make_reader(Participant& participant, TopicKind kind) {
   const dds_topic_filter filter{
       .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
   const dds_entity_t reader =
-      participant.reader(kind, scene_.topics.*topic(kind).name, kDepth, listener, &filter);
+      participant.reader(kind, topics_.*topic(kind).name, kDepth, listener, &filter);
   dds_delete_listener(listener);
   return reader;
 }
@@ -216,7 +218,7 @@ std::string PoseReader::senders_of_joints() const {
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
       "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
       "(rmw_zenoh)",
-      scene_.topics.joint_states, where_, present_.listed(), ros_domain());
+      topics_.joint_states, where_, present_.listed(), ros_domain());
 }
 
 // Takes until nothing is left, into samples that are reused: no allocation for batches that fit,

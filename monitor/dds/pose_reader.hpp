@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/pose_sources.hpp"
 #include "monitor/dds/present_topics.hpp"
@@ -37,7 +37,7 @@ class PoseReader final : public PoseSource {
   static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
   // Starts the thread. Scene and participant must outlive this.
-  PoseReader(const Scene& scene, Participant& participant);
+  PoseReader(const Cell& cell, Participant& participant);
   ~PoseReader() override;
 
   const PoseBatch* next() noexcept override;
@@ -77,6 +77,7 @@ class PoseReader final : public PoseSource {
                      std::size_t count, std::uint64_t writer);
 
   const Scene& scene_;
+  const Topics& topics_;
   std::size_t samples_a_batch_;
   std::uint64_t undecodable_before_;
   NameLimit names_;

@@ -50,9 +50,13 @@ std::string circle_of(const TfTree& tree, const std::string& frame) {
 
 }  // namespace
 
-RosTransforms::RosTransforms(const Scene& scene, Participant& participant,
+RosTransforms::RosTransforms(const Cell& cell, Participant& participant,
                              const PresentTopics& present)
-    : scene_(scene), present_(present), where_(participant.where()), frames_(scene) {
+    : scene_(cell.scene),
+      ros_(cell.ros),
+      present_(present),
+      where_(participant.where()),
+      frames_(cell) {
   poses_.source = SourceName(kSource);
   bases_.source = SourceName(base_source(kSource));
   following_.resize(frames_.followers().size(),
@@ -126,7 +130,7 @@ void RosTransforms::take(const Transform& transform, std::int64_t sent_ns, std::
   if (!is_usable(child, link) || !admits(child, link, writer, is_static)) return;
   if (!is_static) {
     link.stamp_ns = stamps_[writer].time_of(
-        stamp_ns(transform.header), sent_ns, scene_.ros.stamps, [&]() -> RosStampCheck::Whose {
+        stamp_ns(transform.header), sent_ns, ros_.stamps, [&]() -> RosStampCheck::Whose {
           return {fmt::format("transforms of frame '{}'", child), "'stamps: sent' of 'ros2'"};
         });
   }
@@ -248,7 +252,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
       std::string root;
       static_cast<void>(frames_.find(tree_, follower.frame, &root));
       return fmt::format("whose transforms lead to '{}' and not to the world_frame '{}'", root,
-                         scene_.ros.world_frame);
+                         ros_.world_frame);
     }
   }
   return "";

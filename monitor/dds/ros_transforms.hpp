@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_stamps.hpp"
 #include "monitor/frames/tracked_frames.hpp"
@@ -36,7 +36,7 @@ class RosTransforms {
   static constexpr std::int64_t kMissingNs = 5'000'000'000;
 
   // Makes readers where something follows frames. All three must outlive this.
-  RosTransforms(const Scene& scene, Participant& participant, const PresentTopics& present);
+  RosTransforms(const Cell& cell, Participant& participant, const PresentTopics& present);
   ~RosTransforms();
   RosTransforms(const RosTransforms&) = delete;
   RosTransforms& operator=(const RosTransforms&) = delete;
@@ -80,6 +80,7 @@ class RosTransforms {
                                           State state) const;
 
   const Scene& scene_;
+  const RosSettings& ros_;
   const PresentTopics& present_;
   std::string where_;
   TrackedFrames frames_;

@@ -35,9 +35,9 @@ std::string pictures() {
 }
 
 // Until the daemon has poses of both boxes.
-void wait_for_poses(const DdsOptions& dds, const Scene& scene) {
+void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
   Participant client(dds);
-  test::Distances reports(client, scene);
+  test::Distances reports(client, cell);
   for (;;) {
     const auto report = reports.next();
     ASSERT_NE(report, nullptr);
@@ -54,7 +54,7 @@ class ViewOfARecording : public testing::Test {
     const auto dds = test::dds_arguments(own);
     ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", file}, dds));
     ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-    wait_for_poses(own, cell.scene());
+    wait_for_poses(own, cell.cell());
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
@@ -85,12 +85,12 @@ class ViewOfARecording : public testing::Test {
 TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   const DdsOptions dds = test::own_dds();
   const auto arguments = test::dds_arguments(dds);
-  const Scene scene = std::get<Scene>(read_cell(kTwoArms));
+  const Cell cell = std::get<Cell>(read_cell(kTwoArms));
   Participant client(dds);
   ChildProcess daemon(test::kDaemon, test::with({kTwoArms}, arguments));
   ChildProcess robot(test::kRobot, test::with({kTwoArms, "--rate", "250"}, arguments));
   View view(test::with({kTwoArms}, arguments));
-  test::Distances reports(client, scene);
+  test::Distances reports(client, cell);
   ChildProcess page("/usr/bin/env",
                     {"node", kScripts + "/page.mjs", view.page(), pictures(), "live"});
   std::map<std::uint64_t, double> distances;  // by cycle
@@ -116,7 +116,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   EXPECT_GE(compared, 1);  // a busy machine leaves reports out, of the page or of this loop
   EXPECT_EQ(shown["chosen"], 1);
   EXPECT_GT(shown["rows"], 100);
-  EXPECT_EQ(shown["zones"].size(), scene.zones.size());
+  EXPECT_EQ(shown["zones"].size(), cell.scene.zones.size());
   EXPECT_EQ(shown["theme"], "dark");
   EXPECT_THAT(shown["address"].get<std::string>(), testing::HasSubstr("pairs="));
 
@@ -296,7 +296,7 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   const auto dds = test::dds_arguments(own);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.scene());
+  wait_for_poses(own, cell.cell());
   View view(test::with({cell.path()}, dds));
   ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
                                        "30", "clearance/catalogue", "clearance/zones", "/tf",
@@ -335,7 +335,7 @@ TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
   const auto dds = test::dds_arguments(own);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.scene());
+  wait_for_poses(own, cell.cell());
   View view(test::with({cell.path()}, dds));
   std::uint64_t last = 0;
   for (int look = 0; look < 2; ++look) {

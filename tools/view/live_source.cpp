@@ -30,13 +30,14 @@ std::int32_t depth_of(TopicKind kind) {
 
 }  // namespace
 
-LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
-    : scene_(scene),
+LiveSource::LiveSource(const Cell& cell, const DdsOptions& dds)
+    : scene_(cell.scene),
+      topics_(cell.topics),
       participant_(dds),
       present_(participant_),
-      ros_joints_(scene, participant_),
+      ros_joints_(cell.scene, participant_),
       wait_(participant_, {}),
-      frame_(scene) {
+      frame_(cell.scene) {
   for (const Topic& topic : kTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
@@ -63,7 +64,7 @@ void LiveSource::advance(Server& server) {
 void LiveSource::join(TopicKind kind) {
   dds_entity_t& reader = readers_[index(kind)];
   if (reader != 0) return;
-  reader = participant_.reader(kind, scene_.topics.*topic(kind).name, depth_of(kind));
+  reader = participant_.reader(kind, topics_.*topic(kind).name, depth_of(kind));
 }
 
 // Whoever looks next must not be shown the last report of before.

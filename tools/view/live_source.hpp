@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_joint_states.hpp"
 #include "monitor/participant/cdr_sample.hpp"
@@ -17,8 +17,8 @@ namespace clearance::view {
 
 class LiveSource final : public Source {
  public:
-  // Throws DdsError. `scene` must outlive it.
-  LiveSource(const Scene& scene, const DdsOptions& dds);
+  // Throws DdsError. `cell` must outlive it.
+  LiveSource(const Cell& cell, const DdsOptions& dds);
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.
@@ -32,6 +32,7 @@ class LiveSource final : public Source {
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   const Scene& scene_;
+  const Topics& topics_;
   Participant participant_;
   std::array<dds_entity_t, kTopics.size()> readers_{};  // 0: there is none
   PresentTopics present_;

@@ -51,10 +51,11 @@ class RosJointStatesTest : public testing::Test {
         folder / "cell.yaml");
   }
 
-  Scene scene = two_arms();
+  Cell cell{two_arms()};
+  Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant daemon{dds}, robot{dds};
-  PoseReader inputs{scene, daemon};
+  PoseReader inputs{cell, daemon};
 };
 
 TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHave) {
@@ -135,7 +136,7 @@ TEST_F(RosJointStatesTest, AreStampedWhenTheySayOrWhenTheyWereSent) {
 
 TEST_F(RosJointStatesTest, OfOneInstantAreWhatOurOwnTopicSays) {
   test::RosJoints joints(robot);
-  const dds_entity_t own = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
+  const dds_entity_t own = robot.writer(TopicKind::kJointStates, cell.topics.joint_states);
   ASSERT_TRUE(joints.is_heard() &&
               test::eventually([&] { return test::matched_readers(own) > 0; }));
   const std::int64_t now = dds_time();

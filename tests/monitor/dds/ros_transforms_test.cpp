@@ -21,10 +21,10 @@ constexpr double kHalf = 0.70710678118654757;  // of sqrt(2)
 class RosTransformsTest : public testing::Test {
  protected:
   // A cart and a tool that follow frames, and a robot whose base does.
-  static Scene framed_cell(const std::string& ros) {
+  static Cell framed_cell(const std::string& ros) {
     const test::ScratchFolder folder;
     test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-    return scene_of(
+    return read_good(
         "name: test\nunits: {length: m, angle: rad}\n" + ros +
             "robots:\n  - {name: arm, urdf: scara.urdf, prefix: r_, base: {frame: mir/top, "
             "pose: {xyz: [0, 0, 0.5]}, age_limit_ms: 300}}\n"
@@ -36,7 +36,7 @@ class RosTransformsTest : public testing::Test {
   }
 
   explicit RosTransformsTest(const std::string& ros = "ros2: {world_frame: map}\n")
-      : scene(framed_cell(ros)) {}
+      : cell(framed_cell(ros)) {}
 
   // The next batch that has something of this kind.
   PoseBatch next(bool of_joints = false) {
@@ -61,10 +61,11 @@ class RosTransformsTest : public testing::Test {
       });
     });
   }
-  Scene scene;
+  Cell cell;
+  Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant daemon{dds}, robot{dds}, other_robot{dds};
-  PoseReader inputs{scene, daemon};
+  PoseReader inputs{cell, daemon};
 };
 
 // Objects: cart 0, tool 1.
@@ -219,7 +220,7 @@ TEST_F(RosTransformsToAWorld, EndThereAndOthersAreNotUsed) {
 TEST(RosTransformsOfLinks, BeginWhereTheCellHasTheRobot) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-  const Scene scene = scene_of(
+  const Cell cell = read_good(
       "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: world}\n"
       "robots: [{name: arm, urdf: scara.urdf, base: {pose: {xyz: [0, 0, 2]}}}]\n"
       "objects: [{name: tool, frame: tool0, sphere: {radius: 0.1}}]\n"
@@ -227,7 +228,7 @@ TEST(RosTransformsOfLinks, BeginWhereTheCellHasTheRobot) {
       folder / "cell.yaml");
   const DdsOptions dds = test::own_dds();
   Participant daemon(dds), robot(dds);
-  PoseReader inputs(scene, daemon);
+  PoseReader inputs(cell, daemon);
   test::RosFrames frames(robot);
   ASSERT_TRUE(frames.is_heard());
   frames.send({{"foot", "upper", {0, 0, 0.5}}, {"upper", "tool0", {1, 0, 0}}});
