@@ -1,8 +1,5 @@
 #include "tools/watch/terminal.hpp"
 
-#define NCURSES_NOMACROS
-#include <curses.h>
-#include <term.h>
 #include <unistd.h>
 
 #include <clocale>
@@ -10,6 +7,13 @@
 #include <stdexcept>
 
 #include "monitor/app/printable.hpp"
+
+// Last, without their macros of common names.
+#define NCURSES_NOMACROS
+#include <curses.h>
+#include <term.h>
+#undef columns
+#undef lines
 
 namespace clearance::watch {
 namespace {

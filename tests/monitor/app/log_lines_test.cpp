@@ -29,13 +29,14 @@ Argument sample(std::size_t place) {
     return static_cast<Argument>(2.5 + static_cast<double>(place));
 }
 
+template <class... Arguments, std::size_t... kPlaces>
+std::string with_samples(const LogLine<Arguments...>& line, std::index_sequence<kPlaces...>) {
+  return fmt::format("{}: {}\n", spdlog::level::to_string_view(line.level),
+                     rendered(line, sample<Arguments>(kPlaces)...));
+}
 template <class... Arguments>
 std::string with_samples(const LogLine<Arguments...>& line) {
-  std::size_t place = 0;
-  const std::tuple samples{sample<Arguments>(place++)...};
-  const std::string text =
-      std::apply([&](const auto&... argument) { return rendered(line, argument...); }, samples);
-  return fmt::format("{}: {}\n", spdlog::level::to_string_view(line.level), text);
+  return with_samples(line, std::index_sequence_for<Arguments...>());
 }
 
 TEST(LogLines, AreWordedAsInTheGoldenFile) {
