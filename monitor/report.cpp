@@ -18,6 +18,40 @@ const char* name(PairStatus status) noexcept {
       return "stale";
     case PairStatus::kUnknown:
       return "unknown";
+    case PairStatus::kAbsent:
+      return "absent";
+  }
+  return "";
+}
+
+const char* name(ZoneCause cause) noexcept {
+  switch (cause) {
+    case ZoneCause::kInactive:
+      return "inactive";
+    case ZoneCause::kNear:
+      return "near";
+    case ZoneCause::kLate:
+      return "late";
+    case ZoneCause::kUnknown:
+      return "unknown";
+    case ZoneCause::kDiscontinuous:
+      return "discontinuous";
+    case ZoneCause::kContradicted:
+      return "contradicted";
+  }
+  return "";
+}
+
+const char* name(SeparationValidity validity) noexcept {
+  switch (validity) {
+    case SeparationValidity::kUnknown:
+      return "unknown";
+    case SeparationValidity::kAssumed:
+      return "assumed";
+    case SeparationValidity::kMeasured:
+      return "measured";
+    case SeparationValidity::kAbsent:
+      return "absent";
   }
   return "";
 }

@@ -24,11 +24,16 @@ enum class PairStatus : std::uint8_t {
   // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
   kCarried = 4,
   kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
-  // An object has never been seen, is late without a stated maximum speed, or is contradicted: all
-  // NaN, lower = -infinity, upper = +infinity.
+  // An object has never been heard of, is late without a stated maximum speed, or is contradicted:
+  // all NaN, lower = -infinity, upper = +infinity.
   kUnknown = 6,
+  // An object is known not to be there (Monitor::set_absent): figures and bounds as of kUnknown.
+  // The pair rests on no input: it makes no zone active, and the minimum and lower_all leave it
+  // out.
+  kAbsent = 7,
 };
-inline constexpr std::size_t kPairStatuses = 7;
+inline constexpr std::size_t kPairStatuses = 8;
+// A word for each enumerator; "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.
@@ -55,7 +60,7 @@ struct PairReport {
   // max(0, distance) / closing speed; infinity when not approaching, NaN when the closing speed is
   // not known. In contact: 0, unless known to be parting.
   double time_to_contact = 0.0;
-  // now - stamp of the pose in use; 0 for a fixed object; -1: never seen.
+  // now - stamp of the pose in use; 0 for a fixed object; -1: no pose is in use.
   std::int64_t age_a_ns = 0, age_b_ns = 0;
   std::uint64_t evaluated_cycle = 0;  // the tick in which distance and witnesses were computed
   // Ticks since its bounds were last found afresh from the poses of a tick: by an evaluation, or by
@@ -73,6 +78,7 @@ enum class ZoneCause : std::uint8_t {
   kDiscontinuous = 4,  // what was between the last two poses of an object is not known
   kContradicted = 5,   // as kLate, since the poses of an object contradict each other or the cell
 };
+[[nodiscard]] const char* name(ZoneCause cause) noexcept;
 
 struct ZoneReport {
   // Some pair's swept_lower less both margins is, or has been within the hysteresis, too small: so
@@ -97,10 +103,14 @@ enum class SeparationValidity : std::uint8_t {
   kUnknown = 0,   // nothing: an object or its largest speed is not known. Scaling 0
   kAssumed = 1,   // a pose is late or a speed not known: stated largest speeds stand for them
   kMeasured = 2,  // poses that are on time, and a robot's speed that is known
+  // An object is known not to be there: the pair has no figures and limits nothing. Scaling 1. Of a
+  // zone: all its pairs are so.
+  kAbsent = 3,
 };
+[[nodiscard]] const char* name(SeparationValidity validity) noexcept;
 
 // A pair of a zone with `separation`, as ISO/TS 15066 has it (monitor/separation/README.md). m,
-// m/s, ns. Unknown: clearance and remaining -infinity, speeds and distances NaN.
+// m/s, ns. Unknown or absent: clearance and remaining -infinity, speeds and distances NaN.
 struct PairSeparation {
   std::uint32_t zone = 0, pair = 0;  // indices into Scene::zones and Scene::pairs
   SeparationValidity validity = SeparationValidity::kUnknown;
@@ -119,7 +129,7 @@ struct PairSeparation {
   std::int64_t age_human_ns = 0, age_robot_ns = 0;  // as PairReport::age_a_ns
 };
 
-// The least of a zone's pairs, each by itself.
+// The least of a zone's pairs that are not absent, each figure by itself.
 struct ZoneSeparation {
   std::uint32_t zone = 0;
   SeparationValidity validity = SeparationValidity::kUnknown;
@@ -144,17 +154,17 @@ struct Report {
   // Stamps of the moving objects' poses in use; 0: none.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;
-  // The pair with the smallest upper bound, of all that are not kUnknown and have ever been
-  // evaluated. While it is stale it is no minimum of anything: its distance is that of an old pose,
+  // The pair with the smallest upper bound, of all that are known and have ever been evaluated.
+  // While it is stale it is no minimum of anything: its distance is that of an old pose,
   // and another stale pair may have the least lower bound. `lower_all` bounds all pairs always.
   PairReport minimum;
   bool minimum_known = false;  // false: there is no such pair
   // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and
-  // no pair is unknown or stale.
+  // no pair is unknown or stale. Absent pairs do not count.
   bool minimum_certified = false;
-  double lower_all = 0.0;        // every pair's true distance is at least this
-  double swept_lower_all = 0.0;  // and this at every instant since the last tick: see swept_lower
-  // Object pairs; each is one of the last four.
+  double lower_all = 0.0;        // the true distance of every pair that is not absent, at least
+  double swept_lower_all = 0.0;  // the same at every instant since the last tick: see swept_lower
+  // Object pairs; each is in one of the last four counts, or absent.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
   std::uint32_t queries = 0;  // distance queries (part pairs) this tick
   // The largest PairReport::refresh_age_cycles of all known pairs, published or not.
@@ -167,5 +177,12 @@ struct Report {
   Gradients gradients;
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
 };
+
+// How many pairs have the status kAbsent, in a report or a message of it: those that the four
+// counts leave.
+template <class Counts>
+[[nodiscard]] std::uint32_t absent_pairs(const Counts& counts) noexcept {
+  return counts.pairs_total - counts.evaluated - counts.carried - counts.stale - counts.unknown;
+}
 
 }  // namespace clearance

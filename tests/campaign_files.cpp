@@ -18,7 +18,7 @@
 #include "config/write/robot_cell.hpp"
 #include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/config/box_meshes.hpp"
+#include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tools/distance/case.hpp"

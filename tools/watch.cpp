@@ -1,4 +1,6 @@
 // clearance-watch: shows the daemon's reports live in a terminal.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -10,6 +12,7 @@
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/wire/topics.hpp"
 #include "tools/watch/feed.hpp"
 #include "tools/watch/view.hpp"
 
@@ -44,11 +47,12 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag(
       "--plain", arguments.plain,
       "Print one line per second instead of a full screen; the default without a terminal");
-  app.add_option("--distances", arguments.topics.distances, "Topic name")->capture_default_str();
-  app.add_option("--catalogue", arguments.topics.catalogue, "Topic name")->capture_default_str();
-  app.add_option("--health", arguments.topics.health, "Topic name")->capture_default_str();
-  app.add_option("--zones", arguments.topics.zones, "Topic name")->capture_default_str();
-  app.add_option("--separation", arguments.topics.separation, "Topic name")->capture_default_str();
+  for (const TopicKind kind : {TopicKind::kDistances, TopicKind::kCatalogue, TopicKind::kHealth,
+                               TopicKind::kZones, TopicKind::kSeparation}) {
+    const Topic& each = topic(kind);
+    app.add_option(fmt::format("--{}", each.key), arguments.topics.*each.name, "Topic name")
+        ->capture_default_str();
+  }
   arguments.dds.add_to(app, false);
   app.footer(kFooter);
 }

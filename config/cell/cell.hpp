@@ -1,8 +1,7 @@
-// All that a cell file says: the scene of the tick, and what only the programs around the tick
-// need.
+// All that a cell file says: the scene of the tick, and the settings of the programs around it.
 //
-// Nothing of the tick includes this header: the monitor of a scene knows neither DDS nor ROS 2, nor
-// where the scene stood.
+// Nothing of the tick includes this header: it knows neither DDS nor ROS 2, nor the files of the
+// cell.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +26,15 @@ struct Cell {
   RosSettings ros = {};
   Simulation simulation = {};  // may be empty
 
-  std::string yaml = {};  // the text that it was read from, for recordings
-  // Where that text stood, and the files that it names, directly or not: meshes, URDF, SRDF,
+  std::string yaml = {};  // the text of the cell, for recordings
+  // The file of that text, and the files that it names, directly or not: meshes, URDF, SRDF,
   // planning scenes. Absolute; each once, in the order in which they were read.
   std::filesystem::path file = {};
   std::vector<std::filesystem::path> files = {};
 };
 
-// Whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
-// default partition, and without wildcards, which would join cells that were to be kept apart.
+// Tells whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
+// default partition, and without wildcards, which would join cells that are to be kept apart.
 [[nodiscard]] bool is_partition(const std::string& name) noexcept;
 
 }  // namespace clearance

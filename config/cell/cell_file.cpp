@@ -18,9 +18,9 @@
 #include "config/cell/shape_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
 #include "config/cell/zone_reader.hpp"
-#include "config/mesh/mesh_file.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/scene/revision.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"
@@ -37,15 +37,19 @@ constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bi
 constexpr std::size_t kMaxDdsName = 255;  // bytes
 // The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
-// From one tick at 1 kHz to some days.
+// One tick at 1 kHz, and some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 // The sections of a cell, one function each.
 class CellReader {
  public:
-  CellReader(const std::filesystem::path& file, const CellOptions& options,
+  CellReader(const std::filesystem::path& file, const CellOptions& options, MeshLibrary& meshes,
              Diagnostics& diagnostics, Revision& revision)
-      : file_(file), options_(options), diagnostics_(diagnostics), revision_(revision) {}
+      : file_(file),
+        options_(options),
+        meshes_(meshes),
+        diagnostics_(diagnostics),
+        revision_(revision) {}
 
   void read(const YamlNode& root, Cell& cell);
 
@@ -56,17 +60,18 @@ class CellReader {
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
-  // Has to be last: it needs every pair with its parts.
+  // This comes last: it needs every pair with its parts.
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
   const std::filesystem::path& file_;
   const CellOptions& options_;
+  MeshLibrary& meshes_;
   Diagnostics& diagnostics_;
   Revision& revision_;
-  const YamlNode* budget_ = nullptr;  // where the cell gives it
+  const YamlNode* budget_ = nullptr;  // its place in the cell
 };
 
-// Both units must be named: a default would be wrong for many cells, in silence.
+// Both units are required: a default would silently be wrong for many cells.
 std::optional<Units> CellReader::read_units(const YamlNode& node) {
   MapReader map(node, "the units", diagnostics_);
   const YamlNode* length_node = map.required("length");
@@ -80,7 +85,7 @@ std::optional<Units> CellReader::read_units(const YamlNode& node) {
   return Units{*length, *angle};
 }
 
-// Rate, budget and time limits; what a cell leaves out keeps the default of Scene.
+// Reads rate, budget and time limits; a key that the cell leaves out keeps the default of Scene.
 void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
   if (const YamlNode* rate = map.optional("rate_hz")) {
     scene.rate_hz =
@@ -107,19 +112,14 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   }
 }
 
-// DDS names: letters, digits, '_' and '/', not beginning with a digit; two topics cannot share one.
+// A DDS name has letters, digits, '_' and '/', and begins with no digit; two topics cannot share
+// one.
 void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   MapReader map(node, "the topics", diagnostics_);
-  std::map<std::string, const char*> taken;
-  for (const auto& [key, topic] : {std::pair("poses", &topics.poses),
-                                   {"distances", &topics.distances},
-                                   {"catalogue", &topics.catalogue},
-                                   {"health", &topics.health},
-                                   {"zones", &topics.zones},
-                                   {"joint_states", &topics.joint_states},
-                                   {"separation", &topics.separation},
-                                   {"gradients", &topics.gradients}}) {
-    const YamlNode* name_node = map.optional(key);
+  std::map<std::string, std::string_view> taken;
+  for (const auto& [key, member] : kTopicKeys) {
+    std::string* const topic = &(topics.*member);
+    const YamlNode* name_node = map.optional(std::string(key));
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
     if (!name) continue;
@@ -147,7 +147,7 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   map.refuse_unknown_keys();
 }
 
-// Where the daemon is on DDS. The command line overrides the domain and the partition.
+// Reads the place of the daemon on DDS. The command line overrides the domain and the partition.
 void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   MapReader map(node, "the dds settings", diagnostics_);
   if (const YamlNode* domain = map.optional("domain")) {
@@ -173,7 +173,7 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   map.refuse_unknown_keys();
 }
 
-// Objects, robots, then pairs, then zones: each list names what the one before defines, and is
+// Reads objects, robots, then pairs, then zones: each list names entries of the one before, and is
 // checked as far as that could be read.
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
@@ -189,8 +189,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
-  MeshLibrary meshes(file_, revision_, options_.tell);
-  ShapeReader shapes(quantities, meshes, defaults.mesh_limits);
+  ShapeReader shapes(quantities, meshes_, defaults.mesh_limits);
   if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
   if (scenes_node != nullptr)
     read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
@@ -220,8 +219,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.variables = std::move(robots.variables);
 }
 
-// The top level. Units come first, since every other section needs them; without them the rest is
-// not read.
+// Reads the top level. Units come first, since every other section needs them.
 void CellReader::read(const YamlNode& root, Cell& cell) {
   MapReader map(root, "a cell", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
@@ -229,7 +227,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   }
   std::optional<Units> units;
   if (const YamlNode* node = map.required("units")) units = read_units(*node);
-  // Without units the rest is still read, for what else is wrong with it.
+  // Without units, the rest is still read to find its mistakes.
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
@@ -237,10 +235,10 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
-  if (diagnostics_.empty()) refuse_small_budget(root, cell.scene);
+  if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell.scene);
 }
 
-// Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
+// The root frame cannot be guessed: while transforms are missing, any frame may be the root.
 void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell& cell) {
   const Scene& scene = cell.scene;
   const auto object =
@@ -257,7 +255,7 @@ void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell&
                                object == scene.objects.end() ? robot->base.frame : object->frame));
 }
 
-// A budget that cannot refresh every pair in time would break the promise of refresh_s in silence.
+// A budget that cannot refresh every pair in time would silently break the promise of refresh_s.
 void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
   const RefreshShare share = refresh_share(scene);
   if (share.queries() <= scene.budget) return;
@@ -270,7 +268,9 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 
 }  // namespace
 
-// The revision covers the text and, through the shape reader, the bytes of every mesh file.
+// The revision covers the text and, through the readers, the bytes of every file that it names.
+// Where a mesh has to be split, which takes seconds, the cell is read twice: its mistakes come
+// first.
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                       const CellOptions& options) {
   Diagnostics diagnostics(file.string());
@@ -279,10 +279,22 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
     diagnostics.add(fault->line, fault->column, fault->reason);
     return diagnostics.sorted();
   }
-  Cell cell;
   Revision revision(options.root);
-  revision.add(yaml);
-  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), cell);
+  MeshLibrary meshes(file, revision, options.tell,
+                     options.is_of_urdf ? Advice::kUrdf : Advice::kCell);
+  const auto read = [&] {
+    Cell cell;
+    revision = Revision(options.root);
+    revision.add(yaml);
+    CellReader(file, options, meshes, diagnostics, revision)
+        .read(std::get<YamlNode>(document), cell);
+    return cell;
+  };
+  Cell cell = read();
+  if (diagnostics.empty() && meshes.has_put_off()) {
+    meshes.split_from_here();
+    cell = read();
+  }
   if (!diagnostics.empty()) return diagnostics.sorted();
   cell.scene.revision = revision.value();
   cell.yaml = yaml;
@@ -293,7 +305,7 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
 
 CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {
   const auto bytes = read_bytes(file.string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     Diagnostics diagnostics(file.string());
     diagnostics.add(1, 1,
                     fmt::format("found no cell file: {}; expected a YAML file", fault->reason));

@@ -1,4 +1,4 @@
-// Reads a cell: a YAML file (config/README.md lists its keys) into a checked Cell.
+// Reads a YAML file (config/README.md lists its keys) into a checked Cell.
 #pragma once
 
 #include <filesystem>
@@ -13,28 +13,30 @@
 
 namespace clearance {
 
-// Every error that can be found in one pass, never just the first. Mesh paths are relative to the
-// file.
+// A cell, or every error that can be found in one pass. Mesh paths are relative to the file.
 using CellResult = std::variant<Cell, std::vector<CellError>>;
 
 struct CellOptions {
-  // Gets lines, without their ends, for the person who waits: which mesh is being split into convex
-  // parts, and warnings about them. Empty: the lines are dropped.
+  // Gets lines, without their ends, for a person who waits: the mesh that is being split, and
+  // warnings. Empty: the lines are dropped.
   std::function<void(const std::string&)> tell = {};
-  // Where wanted: of each object with meshes, by its name, how far from these the surface of its
-  // parts is at most, m.
+  // If not null: gets, for each object with meshes, by its name, the largest distance of the
+  // surface of its parts from the meshes, m.
   std::map<std::string, double>* mesh_errors = nullptr;
-  // The directory in which the files of another machine stand as they did there, the cell among
-  // them; empty: they are this machine's.
+  // The text was made from a URDF: advice tells how to get a cell.
+  bool is_of_urdf = false;
+  // The directory that holds the files of another machine, the cell among them, at their paths
+  // there; empty: they are this machine's.
   std::filesystem::path root = {};
 };
 
-// Reads the file. A file that cannot be opened is a CellError at line 1 as well. The parts of
-// meshes are kept beside the file (config/mesh/parts_cache.hpp).
+// Reads the file. A file that cannot be opened is a CellError at line 1. The parts of meshes are
+// kept beside it (config/mesh/parts_cache.hpp).
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file,
                                    const CellOptions& options = {});
 
-// The same from text; `file` is used in messages, to resolve mesh paths, and to keep parts beside.
+// The same from text. `file` stands in messages, and its folder is that of mesh paths and kept
+// parts.
 [[nodiscard]] CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                                     const CellOptions& options = {});
 

@@ -1,16 +1,16 @@
 // One map holds the names of groups and of objects, since a rule may use either. Each entry
-// remembers whether a rule used it, which is how groups that nothing uses are found.
+// remembers whether a rule used it, so that unused groups are found.
 #include "config/cell/group_index.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 namespace clearance {
 
-// Objects go in first: a group that has the name of an object is then the one that is reported.
+// Objects are added first: a group with an object's name is then the one that is reported.
 GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
     : list_(list), diagnostics_(diagnostics) {
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
@@ -70,7 +70,7 @@ std::optional<Between> GroupIndex::read_between(MapReader& map) {
   return between;
 }
 
-// Sorted and without repetitions: [arm, arm] meets every pair from both sides.
+// The result is sorted, without repetitions: [arm, arm] meets every pair from both sides.
 std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   std::vector<PairKey> keys;
   for (const std::uint32_t a : *between.objects[0]) {
@@ -84,7 +84,7 @@ std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   return keys;
 }
 
-// The group that was meant is probably one that rules name: those are suggested.
+// A misspelt group probably means one that rules name: those are suggested.
 void GroupIndex::refuse_unused_groups() const {
   std::vector<std::string> used;
   for (const auto& [name, entry] : entries_) {

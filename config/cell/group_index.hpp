@@ -1,4 +1,4 @@
-// Groups and objects by name, for `between: [A, B]`, which may name either.
+// Finds groups and objects by name, for `between: [A, B]`, which may name either.
 #pragma once
 
 #include <array>
@@ -13,10 +13,11 @@
 
 namespace clearance {
 
-// Two objects in one number, the smaller index first: order of keys is order of pairs in the scene.
+// Two objects in one number, the smaller index first: the order of keys is the order of pairs in
+// the scene.
 using PairKey = std::uint64_t;
 
-// In either order of its arguments.
+// The arguments may stand in either order.
 [[nodiscard]] inline PairKey pair_key(std::uint32_t a, std::uint32_t b) {
   return a < b ? PairKey{a} << 32 | b : PairKey{b} << 32 | a;
 }
@@ -40,11 +41,11 @@ class GroupIndex {
   // Reports a group that has an object's name. The list must outlive this.
   GroupIndex(const ObjectList& list, Diagnostics& diagnostics);
 
-  // The key `between` of a map. Nothing after a diagnostic.
+  // Reads the key `between` of a map. Returns nothing after a diagnostic.
   [[nodiscard]] std::optional<Between> read_between(MapReader& map);
 
-  // Every two objects of which one is on each side, ascending, each once. An object has no distance
-  // from itself, nor do two fixed objects need watching.
+  // Returns every two objects, one of each side, ascending, each once. An object has no distance
+  // from itself, and two fixed objects need no watching.
   [[nodiscard]] std::vector<PairKey> pairs(const Between& between) const;
 
   // Reports groups that no `between` names: a misspelt group would leave its objects
@@ -52,7 +53,7 @@ class GroupIndex {
   void refuse_unused_groups() const;
 
  private:
-  // A name: a group of objects, or a single object.
+  // A named group of objects, or a single object.
   struct Entry {
     std::vector<std::uint32_t> objects;
     bool is_group = false;

@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 
 #include "config/cell/object_reader.hpp"
+#include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/scalar.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {
 
-// Faster than any joint, in rad/s or m/s.
+// No joint is faster, in rad/s or m/s.
 constexpr Range kVelocities{.least = 1e-9, .most = 1e6};
 
 void read_joint(const YamlNode& node, const Quantities& quantities,

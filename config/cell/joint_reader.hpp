@@ -1,4 +1,4 @@
-// Reads what a cell says of single joints of a robot.
+// Reads the exceptions of a cell for single joints of a robot.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace clearance {
 
-// `joints: {NAME: {age_limit_ms, source, velocity}}`: by the names of the URDF, to which `prefix`
-// is added. What is stated replaces what `variables` have.
+// `joints: {NAME: {age_limit_ms, source, velocity}}`, by the names of the URDF, to which `prefix`
+// is added. Stated values replace those of `variables`.
 void read_joints(const YamlNode& node, const std::string& prefix, const Quantities& quantities,
                  std::vector<JointVariable>& variables);
 

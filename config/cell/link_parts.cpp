@@ -13,7 +13,7 @@ namespace clearance {
 namespace {
 
 constexpr std::array<const char*, 5> kKinds = {"mesh", "box", "cylinder", "sphere",
-                                               "capsule"};  // as the variant
+                                               "capsule"};  // in the order of the variant
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& dia
   }
 }
 
-// A mesh that is not there is reported as the URDF names it.
+// A missing mesh is reported by its name in the URDF.
 std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const UrdfMesh& mesh) {
   const auto path = files_.find(mesh.file);
   if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) {

@@ -12,14 +12,13 @@
 
 namespace clearance {
 
-// Every fault of a robot's description, where the cell names the file.
+// Reports every fault of a robot's description at the place where the cell names the file.
 void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics);
 
-// Of a mesh the parts that contain it: never smaller than the link.
+// A mesh becomes parts that contain it: the link never becomes smaller.
 class LinkParts {
  public:
-  // `files` are those of the URDF, which the cell names at `urdf_node`; mistakes are reported
-  // there.
+  // `files` are those of the URDF. The cell names it at `urdf_node`, where mistakes are reported.
   LinkParts(RobotFiles files, const YamlNode& urdf_node, ShapeReader& shapes,
             const PartLimits& limits, Diagnostics& diagnostics)
       : files_(std::move(files)),
@@ -28,8 +27,8 @@ class LinkParts {
         limits_(limits),
         diagnostics_(diagnostics) {}
 
-  // Parts are called after their kind and their place in the link, as those of other objects are;
-  // without those that were reported. Returns how far those of meshes reach beyond these, m.
+  // Adds parts, named after their kind and place in the link, except those that were reported.
+  // Returns how far the parts of meshes reach beyond them, m.
   double add(const UrdfLink& link, Object& object);
 
  private:

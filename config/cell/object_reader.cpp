@@ -1,5 +1,5 @@
-// Reads the objects one by one; `fixed` is read before the keys that it allows or forbids. Places
-// of names are kept for the sections that follow.
+// Reads the objects one by one; `fixed` is read before the keys that it allows or forbids. The
+// places of names are kept for later sections.
 #include "config/cell/object_reader.hpp"
 
 #include <fmt/format.h>
@@ -15,9 +15,9 @@ namespace clearance {
 namespace {
 
 constexpr std::size_t kMaxSourceName = 32;    // bytes; idl/clearance.idl
-constexpr std::size_t kMaxNamedSources = 15;  // of the 16 that are heard: one place for any other
+constexpr std::size_t kMaxNamedSources = 15;  // 16 are heard: one place stays for any other
 
-// What is accepted of poses that arrive. A value that cannot be read is reported and stays as it
+// Reads the limits on poses that arrive. A value that cannot be read is reported and stays as it
 // is.
 void read_input_limits(MapReader& map, const Quantities& quantities, ObjectDefaults& limits) {
   if (const YamlNode* speed = map.optional("max_speed")) {
@@ -40,8 +40,8 @@ void read_input_limits(MapReader& map, const Quantities& quantities, ObjectDefau
   }
 }
 
-// One object of the list. What cannot be read is reported and left at its default, so that one run
-// reports every mistake of the file.
+// Reads one object of the list. A value that cannot be read is reported and keeps its default, so
+// that one run reports every mistake.
 class ObjectReader {
  public:
   ObjectReader(const ObjectDefaults& defaults, const Quantities& quantities, ShapeReader& shapes)
@@ -57,7 +57,7 @@ class ObjectReader {
   void read_groups(const YamlNode& node, Object& object, bool& names_known);
   void read_parts(MapReader& map, const YamlNode& node, Object& object);
   void read_part(const YamlNode& node, std::size_t place, Object& object);
-  // `node` is where a part that is refused is reported.
+  // A part that is refused is reported at `node`.
   void add_part(const YamlNode& node, NamedShape shape, const std::string& name, const Pose& pose,
                 Object& object);
   void refuse_same_part_names(const YamlNode& node, std::size_t first, const Object& object);
@@ -98,8 +98,8 @@ void ObjectReader::read(const YamlNode& node, ObjectList& list) {
   list.objects.push_back(std::move(object));
 }
 
-// Reports a key that has no meaning here: it would be ignored in silence otherwise. Asking for it
-// makes it known, so that it is not reported again as unknown.
+// Reports a key that has no meaning here, and would silently be ignored. Asking for it makes it
+// known, so that it is not reported again as unknown.
 void ObjectReader::forbid(MapReader& map, const std::string& key, const std::string& reason) {
   if (const YamlNode* node = map.optional(key)) {
     diagnostics_.add(*node, fmt::format("found '{}' of {}", key, reason));
@@ -134,8 +134,8 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
     object.frame = read_frame(*frame, diagnostics_).value_or("");
 }
 
-// A group that cannot be read may be the one that a rule names, so names are no longer known then
-// and unknown names are not reported.
+// A group that cannot be read may be one that a rule names. Names then count as unknown, and
+// unknown ones are not reported.
 void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
   if (node.kind != YamlNode::Kind::kSequence) names_known = false;
   for (const YamlNode& item : read_list(node, "group names", diagnostics_)) {
@@ -152,7 +152,7 @@ void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names
   }
 }
 
-// Either `parts:`, or one shape in the object's own frame.
+// Reads `parts:`, or one shape in the object's own frame.
 void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& object) {
   const YamlNode* parts = map.optional("parts");
   if (parts == nullptr) {
@@ -174,7 +174,7 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
   }
 }
 
-// Of the parts from `first` on, whose name is at `node`.
+// Compares the parts from `first` on, whose name is at `node`, with all before.
 void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t first,
                                           const Object& object) {
   for (std::size_t i = first; i < object.parts.size(); ++i) {
@@ -187,7 +187,7 @@ void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t firs
   }
 }
 
-// A part without a name is called after its shape and its place in the object: box0.
+// A part without a name is named after its shape and its place in the object: box0.
 void ObjectReader::read_part(const YamlNode& node, std::size_t place, Object& object) {
   MapReader map(node, "a part", diagnostics_);
   const YamlNode* name_node = map.optional("name");
@@ -223,7 +223,7 @@ void ObjectReader::add_part(const YamlNode& node, NamedShape shape, const std::s
   }
 }
 
-// Where an object's name stands, or the object when it has none.
+// Returns the place of an object's name, or of the object when it has none.
 const YamlNode& name_place(const YamlNode& object) {
   for (const YamlEntry& entry : object.entries) {
     if (entry.key.text == "name") return entry.value;
@@ -241,7 +241,7 @@ std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagno
   return std::nullopt;
 }
 
-// Accepts the same ranges as the objects themselves.
+// The ranges are those of the objects themselves.
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
   MapReader map(node, "the defaults", quantities.diagnostics());
@@ -263,8 +263,8 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
   }
-  // Reported at the first object that is too many. None is read: their shapes and pairs would take
-  // minutes and gigabytes for a cell that is refused.
+  // A list that is too long is reported at the first object beyond the limit. No object is read:
+  // their shapes and pairs would take minutes and gigabytes for a cell that is refused.
   if (items.size() > kMaxObjects) {
     list.names_known = false;
     diagnostics.add(
@@ -281,7 +281,7 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   return list;
 }
 
-// Reported at the second one, with the line of the first.
+// A repeated name is reported at its second place, with the line of the first.
 void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics) {
   std::map<std::string, const YamlNode*> first;
   for (std::size_t i = 0; i < list.objects.size(); ++i) {

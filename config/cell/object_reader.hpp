@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// The values of objects that do not state their own: the `defaults:` section.
+// The `defaults:` section: values of objects that do not state their own.
 struct ObjectDefaults {
   double margin = 0.0;           // m
   double max_speed = kInfinity;  // m/s
@@ -24,17 +24,17 @@ struct ObjectDefaults {
   PartLimits mesh_limits;
 };
 
-// The name of a source, at most as long as a batch can carry; nothing after a diagnostic.
+// Reads the name of a source, at most as long as a batch can carry; returns nothing after a
+// diagnostic.
 [[nodiscard]] std::optional<std::string> read_source(const YamlNode& node,
                                                      Diagnostics& diagnostics);
 
-// Objects with what they were read from, so that later sections can report mistakes at their
-// places.
+// Objects with their places in the file, at which later sections report mistakes.
 struct ObjectList {
   std::vector<Object> objects;
-  std::vector<const YamlNode*> places;        // of each object: where its name stands
+  std::vector<const YamlNode*> places;        // of each object's name
   std::map<std::string, double> mesh_errors;  // of those with meshes (cell_file.hpp)
-  bool names_known = true;  // false: some name or group could not be read; others may seem unknown
+  bool names_known = true;  // false: a name or group could not be read, so others may seem unknown
 };
 
 // Reads `defaults:`. A value that cannot be read is reported and keeps its default.
@@ -47,11 +47,10 @@ inline constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
 [[nodiscard]] ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                                       const Quantities& quantities, ShapeReader& shapes);
 
-// Of all objects, those that are links of robots included: no two may have one name.
+// No two objects may have one name, links of robots included.
 void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics);
 
-// Nor may they name more sources than are heard, together with the joints of `robots`, which may be
-// null.
+// Objects and the joints of `robots`, which may be null, may not name more sources than are heard.
 void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVariable>& joints,
                              const YamlNode* robots, Diagnostics& diagnostics);
 

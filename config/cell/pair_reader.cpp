@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
 
-// Rules first, then exceptions from them; finish() turns what is left into the pairs of the scene.
+// Reads rules first, then exceptions from them; finish() makes the rest the pairs of the scene.
 class PairReader {
  public:
   PairReader(const ObjectList& objects, GroupIndex& group_index, Diagnostics& diagnostics)
@@ -29,7 +29,7 @@ class PairReader {
   struct Candidate {
     PairKey key;
     bool publish;
-    int allowed_line;  // of the exception that removed it; 0: none did
+    int allowed_line;  // of the exception that removed it; 0: none
   };
 
   void read_rule(const YamlNode& node);
@@ -47,8 +47,8 @@ class PairReader {
   bool complete_ = true;
 };
 
-// All pairs of one rule. A rule that cannot be read leaves the list incomplete, and what depends on
-// a complete list is not checked then: its reports would be consequences of the first mistake.
+// Adds all pairs of one rule. A rule that cannot be read leaves the list incomplete: checks that
+// need a complete one are then left out, since their reports would follow from the first mistake.
 void PairReader::read_rule(const YamlNode& node) {
   MapReader map(node, "a rule for pairs", diagnostics_);
   const auto between = group_index_.read_between(map);
@@ -70,7 +70,7 @@ void PairReader::read_rule(const YamlNode& node) {
   for (const PairKey key : keys) candidates_.push_back({key, publish, 0});
 }
 
-// The same pair from two rules is one pair, published when either rule says so.
+// A pair of two rules is one pair, published when either rule says so.
 void PairReader::read_rules(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kSequence && node.items.empty()) {
     diagnostics_.add(node, "found an empty list; expected at least one rule: {between: [A, B]}");
@@ -86,7 +86,7 @@ void PairReader::read_rules(const YamlNode& node) {
   if (complete_ && objects_.names_known) refuse_unwatched_objects();
 }
 
-// An object that no rule covers would be a robot link without any monitored pair.
+// An object that no rule covers could be a robot link without any monitored pair.
 void PairReader::refuse_unwatched_objects() const {
   std::vector<bool> watched(objects_.objects.size(), false);
   for (const Candidate& candidate : candidates_) {
@@ -108,7 +108,7 @@ PairReader::Candidate* PairReader::find(PairKey key) {
   return found != candidates_.end() && found->key == key ? &*found : nullptr;
 }
 
-// Of these many are not watched anyway: they are said of a whole robot.
+// Many of these pairs are not watched anyway, since a description lists them for a whole robot.
 void PairReader::allow(const PairExceptions& exceptions) {
   for (const auto& [key, line] : exceptions) {
     Candidate* candidate = find(key);
@@ -116,7 +116,7 @@ void PairReader::allow(const PairExceptions& exceptions) {
   }
 }
 
-// The reason why an exception removes nothing, as the end of a sentence.
+// Returns why an exception removes nothing, as the end of a sentence.
 std::string PairReader::why_nothing(const Between& between, const std::vector<PairKey>& keys) {
   if (keys.empty()) {
     const bool itself =
@@ -131,8 +131,8 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
   return "no rule under 'pairs' covers it";
 }
 
-// Marks the pairs of one exception. Only the first exception that covers a pair is remembered; a
-// second one that removes nothing new is refused with the line of the first.
+// Marks the pairs of one exception. Only the first exception of a pair is kept; a second one that
+// removes nothing new is refused with the line of the first.
 void PairReader::read_exception(const YamlNode& node) {
   MapReader map(node, "an allowed collision", diagnostics_);
   const auto between = group_index_.read_between(map);
@@ -162,7 +162,7 @@ void PairReader::read_exception(const YamlNode& node) {
   }
 }
 
-// In the order of the file, so that of two equal exceptions the second one is refused.
+// Exceptions are read in the order of the file: of two equal ones, the second is refused.
 void PairReader::read_exceptions(const YamlNode& node) {
   for (const YamlNode& item :
        read_list(node, "exceptions {between: [A, B], reason: ...}", diagnostics_)) {

@@ -1,4 +1,4 @@
-// Reads which objects are watched against which: `pairs:`, less `allowed_collisions:`.
+// Reads the watched pairs: `pairs:`, less `allowed_collisions:`.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,11 @@ struct PairList {
   bool complete = true;           // false: a rule could not be read, and its pairs are missing
 };
 
-// Pairs that may touch since a robot's description says so, and the line of the robot.
+// Pairs that may touch by a robot's description, and the line of the robot.
 using PairExceptions = std::vector<std::pair<PairKey, int>>;
 
-// `allowed` may be nullptr. Reports rules and exceptions that change nothing, about objects
-// that nothing watches, and about more published pairs than a report can carry.
+// `allowed` may be nullptr. Reports rules and exceptions that change nothing, objects without a
+// watched pair, and more published pairs than a report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
                                   const ObjectList& objects, const PairExceptions& exceptions,
                                   GroupIndex& group_index, Diagnostics& diagnostics);

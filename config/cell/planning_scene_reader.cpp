@@ -6,22 +6,22 @@
 #include <utility>
 #include <variant>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
+#include "config/text/printable.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/yaml/map_reader.hpp"
-#include "config/yaml/utf8.hpp"
 
 namespace clearance {
 namespace {
 
-// The objects of one file; nothing after a diagnostic.
+// Reads the objects of one file; returns none after a diagnostic.
 std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem::path& directory,
                                Revision& revision, Diagnostics& diagnostics) {
   const auto name = read_text(file_node, "a file", diagnostics);
   if (!name) return {};
   const std::filesystem::path path = path_in(revision.root(), directory, *name);
   const auto bytes = read_bytes(path.string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(file_node, fmt::format("found a file that cannot be used: {}; expected a path "
                                            "relative to the cell file",
                                            fault->reason));
@@ -31,7 +31,7 @@ std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem:
   auto read = read_planning_scene(std::get<std::string>(bytes));
   if (const auto* fault = std::get_if<PlanningSceneFault>(&read)) {
     diagnostics.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{}: {}",
-                                           *name, fault->line, printable(fault->reason)));
+                                           *name, fault->line, excerpt(fault->reason)));
     return {};
   }
   std::vector<Object> objects = std::get<PlanningScene>(std::move(read)).objects;

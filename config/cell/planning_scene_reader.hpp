@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Adds them behind the objects of the list. Files are relative to `directory`; their bytes go into
-// the revision.
+// Adds the obstacles behind the objects of the list. Files are relative to `directory`; their bytes
+// go into the revision.
 void read_planning_scenes(const YamlNode& node, const std::filesystem::path& directory,
                           const ObjectDefaults& defaults, const Quantities& quantities,
                           Revision& revision, ObjectList& list);

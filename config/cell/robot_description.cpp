@@ -6,14 +6,14 @@
 #include <variant>
 
 #include "config/cell/link_parts.hpp"
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/yaml/scalar.hpp"
 
 namespace clearance {
 namespace {
 
-// The file that a key names, which has to be there.
+// Finds the file that a key names, which is required.
 std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles& files,
                                           Diagnostics& diagnostics, Revision& revision) {
   const auto name = read_text(node, "a file", diagnostics);
@@ -27,7 +27,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) {
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
                                       "relative to the cell file",
                                       fault->reason));
@@ -39,8 +39,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
 
 }  // namespace
 
-// Both files are read even if the first is wrong, so that one run reports what is wrong with
-// either.
+// Both files are read even if the first has faults, so that one run reports all.
 std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
                                                  Diagnostics& diagnostics, Revision& revision) {
   if (keys.urdf == nullptr) return std::nullopt;

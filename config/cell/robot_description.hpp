@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// Where a cell names them, and what it says of them.
+// The names of the files in a cell, and their places.
 struct DescriptionKeys {
   const YamlNode* urdf = nullptr;  // null: missing, which has been reported
   const YamlNode* srdf = nullptr;  // null: there is none
@@ -29,7 +29,7 @@ struct RobotDescription {
   RobotModel model;
 };
 
-// Nothing after a diagnostic. The files' bytes go into the revision.
+// Returns nothing after a diagnostic. The files' bytes go into the revision.
 [[nodiscard]] std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
                                                                Diagnostics& diagnostics,
                                                                Revision& revision);

@@ -1,5 +1,5 @@
-// Each robot is read by itself: its description, then its tree of joints, then what it stands on,
-// and then its links, which need all of these.
+// Each robot is read by itself: its description, its tree of joints, its base, and then its links,
+// which need all of these.
 #include "config/cell/robot_reader.hpp"
 
 #include <fmt/format.h>
@@ -14,14 +14,14 @@
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
+#include "config/text/spelling.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {
 
-// What a robot's own keys say.
+// The values of a robot's own keys.
 struct RobotKeys {
   const YamlNode* name_node = nullptr;
   const YamlNode* urdf_node = nullptr;
@@ -32,7 +32,7 @@ struct RobotKeys {
   RosStamps stamps = RosStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
-  std::int64_t base_age_limit_ns = 0;  // of a base that follows a frame
+  std::int64_t base_age_limit_ns = 0;  // of the frame that the base follows
 };
 
 class RobotReader {
@@ -48,7 +48,7 @@ class RobotReader {
         revision_(revision),
         objects_(objects) {}
 
-  // False when its links are not known.
+  // Returns false when its links are not known.
   bool read(const YamlNode& node, RobotList& list);
 
  private:
@@ -70,9 +70,9 @@ class RobotReader {
   ShapeReader& shapes_;
   Revision& revision_;
   ObjectList& objects_;
-  std::map<std::string, int> names_;         // of robots, and their lines
+  std::map<std::string, int> names_;         // of robots, with their lines
   std::set<std::string> links_, variables_;  // of all robots
-  // Of every link of every robot that nothing moves: its place in the world.
+  // The place in the world of every link of every robot that nothing moves.
   std::map<std::string, Pose> at_rest_;
 };
 
@@ -90,7 +90,7 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   }
 }
 
-// Where on ROS 2 its joint states are, and what their stamps are worth.
+// Reads the topic of its joint states on ROS 2, and which of their times counts.
 void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* node = map.optional("joint_states")) {
     const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
@@ -145,7 +145,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   return keys;
 }
 
-// Poses and joint states of two links or joints of one name could not be told apart.
+// Two links or joints of one name could not be told apart in poses and joint states.
 bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& model) {
   const auto take = [&](std::set<std::string>& taken, const std::string& name, const char* what) {
     if (taken.insert(name).second) return true;
@@ -164,7 +164,7 @@ bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& 
   return true;
 }
 
-// A link of a robot before this one, or an object; what is at rest is a place in the world.
+// Reads the base: a link of an earlier robot, or an object. A base at rest is a place in the world.
 void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBase& base) {
   const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
   if (!name) return;
@@ -227,7 +227,7 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKe
   map.refuse_unknown_keys();
 }
 
-// Joints come in an order in which the link before is known to move or not.
+// Joints are in an order in which the motion of the link before is known.
 void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
                             Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
@@ -272,7 +272,7 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
   }
 }
 
-// What may touch is said of links, without the prefix.
+// Descriptions name pairs that may touch by links, without the prefix.
 void RobotReader::allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
                         PairExceptions& may_touch) {
   LinkNames shaped, fixed;
@@ -293,7 +293,8 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
   }
 }
 
-// Of the robot that was read last. What nothing moves is where the cell says.
+// Treats the robot that was read last. A link that nothing moves is exactly where the cell places
+// it.
 void RobotReader::account_for_rounding(const RobotList& list) {
   const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
   const std::vector<RobotLink>& links = list.robots.back().links;

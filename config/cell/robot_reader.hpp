@@ -17,12 +17,12 @@ namespace clearance {
 struct RobotList {
   std::vector<Robot> robots;
   std::vector<JointVariable> variables;
-  PairExceptions may_touch;  // as the SRDFs say, or, without one, neighbours
+  PairExceptions may_touch;  // by the SRDFs, or, without one, neighbours
 };
 
 // Reads `robots:` of the cell `file`. Every link with collision shapes is appended to `objects`, in
-// the group of its robot's name; what nothing moves is fixed. The bytes of URDF and SRDF go into
-// `revision`.
+// the group of its robot's name; a link that nothing moves is fixed. The bytes of URDF and SRDF go
+// into `revision`.
 [[nodiscard]] RobotList read_robots(const YamlNode& node, const std::filesystem::path& file,
                                     const ObjectDefaults& defaults, const Quantities& quantities,
                                     ShapeReader& shapes, Revision& revision, ObjectList& objects);

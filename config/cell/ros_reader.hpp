@@ -12,11 +12,11 @@ namespace clearance {
 
 void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnostics);
 
-// "message" or "sent"; anything else is reported and is the former.
+// Reads "message" or "sent"; anything else is reported and counts as the former.
 [[nodiscard]] RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics);
 
-// The name of a frame of tf, without the slash in front that some write; nothing after a
-// diagnostic.
+// Reads the name of a frame of tf, without the slash in front that some write; returns nothing
+// after a diagnostic.
 [[nodiscard]] std::optional<std::string> read_frame(const YamlNode& node, Diagnostics& diagnostics);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// What a cell has to do with ROS 2 beyond joint states: the topics that are written for it, and how
-// its frames belong to the cell.
+// The settings of a cell for ROS 2 beyond joint states: the topics that are written, and the frame
+// that is its world.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace clearance {
 
-// Topics as ROS 2 calls them, "/diagnostics"; an empty one is not written.
+// Topics by their names in ROS 2, "/diagnostics"; an empty one is not written.
 struct RosOutputs {
   std::string markers, diagnostics, minimum_distance, speed_scaling;
 };
 
-// One row an output: its key in a cell, and the topic that it has where none is named.
+// One row an output: its key in a cell, and its topic where the cell names none.
 struct RosOutput {
   std::string_view key;
   std::string RosOutputs::*topic;
@@ -32,16 +32,16 @@ inline constexpr std::array<RosOutput, 4> kRosOutputs = {{
 struct RosSettings {
   RosOutputs outputs;
   double markers_hz = 30.0;
-  // The frame of tf that is the cell's world; not empty where something follows a frame. Empty:
-  // "world" in what is written.
+  // The frame of tf that is the cell's world; required where an object or a base follows a frame.
+  // Empty: outputs call it "world".
   std::string world_frame;
   RosStamps stamps = RosStamps::kMessage;  // of tf
 
   [[nodiscard]] std::string world() const { return world_frame.empty() ? "world" : world_frame; }
 };
 
-// Whether `name` is a topic of ROS 2: "/" and names of letters, digits and "_" that begin with no
-// digit, with "/" between them.
+// Tells whether `name` is a topic of ROS 2: "/" and names of letters, digits and "_" that begin
+// with no digit, with "/" between them.
 [[nodiscard]] bool is_ros_topic(std::string_view name) noexcept;
 
 }  // namespace clearance

@@ -1,24 +1,24 @@
-// What has a value in a standard has it as default; what only the cell's owner can know is
-// required.
+// A term with a value in a standard has it as default; a term that only the cell's owner can know
+// is required.
 #include "config/cell/separation_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {
 
-// One map with the quantities that it reads.
+// Reads the quantities of one map.
 class SeparationReader {
  public:
   SeparationReader(const YamlNode& node, const Quantities& quantities)
       : map_(node, "the separation of a zone", quantities.diagnostics()), quantities_(quantities) {}
 
   Separation read();
-  // 0 or 1: which side of `between` are people; nothing after a diagnostic.
+  // Returns the side of `between` that is people, 0 or 1; nothing after a diagnostic.
   std::optional<std::size_t> read_human_side(const Between& between);
   void refuse_unknown_keys() { map_.refuse_unknown_keys(); }
 
@@ -52,7 +52,7 @@ std::optional<std::size_t> SeparationReader::read_human_side(const Between& betw
   return std::nullopt;
 }
 
-// Of a person who stands a measured speed says nothing about the next second.
+// A person who stands may walk in the next second: the measured speed needs an acceleration.
 void SeparationReader::read_human(Separation& separation) {
   if (const YamlNode* speed = map_.optional("human_speed")) {
     separation.human_speed =

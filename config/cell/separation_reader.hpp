@@ -9,8 +9,7 @@
 
 namespace clearance {
 
-// Reports objects that are people's and the robot's at once. `zone` has its pairs, which are some
-// of `pairs`.
+// Reports objects that are on both sides. `zone` has its pairs, as indices into `pairs`.
 [[nodiscard]] Separation read_separation(const YamlNode& node, const Between& between,
                                          const Zone& zone, const std::vector<ObjectPair>& pairs,
                                          const ObjectList& objects, const Quantities& quantities);

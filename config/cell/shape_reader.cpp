@@ -1,5 +1,5 @@
 // One function for each key reads its numbers and lets the core build the body. The core decides
-// what is a solid convex body; its reason for refusing one goes into the message.
+// which bodies are solid and convex; its reason for refusing one goes into the message.
 #include "config/cell/shape_reader.hpp"
 
 #include <fmt/format.h>
@@ -11,12 +11,12 @@
 #include <variant>
 #include <vector>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {
 
-// Keys of shapes, in the order in which messages list them.
+// The keys of shapes, in the order in which messages list them.
 const std::array<std::string, 11> kShapeKinds = {
     "box",  "sphere",    "capsule",  "prism", "polyhedron",    "half_space",
     "mesh", "ellipsoid", "cylinder", "cone",  "truncated_cone"};
@@ -24,10 +24,10 @@ const std::array<std::string, 11> kShapeKinds = {
 // Zero would flatten the mesh; the largest is far beyond every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
-// Of a mesh: more take long to find, and every one is a row of queries.
+// More parts of a mesh take long to find, and each is a row of queries.
 constexpr std::int64_t kMostParts = 64;
 
-// The conditions on a shape as a whole, beyond those that are checked number by number.
+// Returns the conditions on a shape as a whole, beyond those on single numbers.
 std::string solid_needs(const std::string& kind) {
   if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
   if (kind == "prism") {
@@ -61,8 +61,8 @@ std::string name_of_part(const std::string& name, std::size_t i, std::size_t cou
 
 std::span<const std::string> ShapeReader::kinds() { return kShapeKinds; }
 
-// Exactly one shape key must be there; two would leave one of them out in silence. The shape itself
-// is made by the core, whose reason for refusing it goes into the message.
+// Exactly one shape key is required; of two, one would silently be left out. The core makes the
+// shape, and its reason for refusing one goes into the message.
 std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
   NamedShape found{"", nullptr, {}, 0.0};
   for (const std::string& kind : kShapeKinds) {
@@ -109,7 +109,7 @@ std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_kind(const 
   return one;
 }
 
-// A chain of comparisons instead of a table: a few kinds, read once for each part.
+// A chain of comparisons serves as well as a table: there are few kinds, each read once a part.
 std::optional<ShapeResult> ShapeReader::read_simple_kind(const std::string& kind,
                                                          const YamlNode& node) {
   if (kind == "box") return read_box(node);
@@ -123,21 +123,21 @@ std::optional<ShapeResult> ShapeReader::read_simple_kind(const std::string& kind
   return read_truncated_cone(node);
 }
 
-// `rounding: r`, which most solids may have: the body is all points within r of what is described.
+// Reads `rounding: r`, which most solids may have: the body is all points within r of the shape.
 std::optional<double> ShapeReader::read_rounding(MapReader& map) const {
   const YamlNode* node = map.optional("rounding");
   if (node == nullptr) return 0.0;
   return quantities_.length(*node, "the radius around the body", kPositive);
 }
 
-// What was made, with that radius around it.
+// Adds that radius around the body.
 std::optional<ShapeResult> ShapeReader::rounded(std::optional<double> rounding, ShapeResult made) {
   auto* body = std::get_if<ConvexBody>(&made);
   if (!rounding) return std::nullopt;
   return body == nullptr ? std::move(made) : rounded_by(*rounding, std::move(*body));
 }
 
-// The file has whole edge lengths, the core takes half ones.
+// The file has whole edge lengths, the core half ones.
 std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   MapReader map(node, "a box", quantities_.diagnostics());
   const YamlNode* size_node = map.required("size");
@@ -148,7 +148,7 @@ std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   return size ? rounded(rounding, box(0.5 * *size)) : std::nullopt;
 }
 
-// Around the origin, along the axes.
+// The ellipsoid is centred at the origin, along the axes.
 std::optional<ShapeResult> ShapeReader::read_ellipsoid(const YamlNode& node) const {
   MapReader map(node, "an ellipsoid", quantities_.diagnostics());
   const YamlNode* axes_node = map.required("semi_axes");
@@ -159,8 +159,8 @@ std::optional<ShapeResult> ShapeReader::read_ellipsoid(const YamlNode& node) con
   return axes ? std::optional(ellipsoid(*axes, *rounding)) : std::nullopt;
 }
 
-// Along z, its middle at the origin: the file has the whole length, as URDF does, the core takes
-// half of it.
+// The body is centred and lies along z. The file has the whole length, as URDF does, the core half
+// of it.
 std::optional<ShapeResult> ShapeReader::read_cylinder_or_cone(const std::string& kind,
                                                               const YamlNode& node) const {
   MapReader map(node, "a " + kind, quantities_.diagnostics());
@@ -226,7 +226,8 @@ std::optional<ShapeResult> ShapeReader::read_capsule(const YamlNode& node) const
   return segment(*from, *to, *radius);
 }
 
-// The hull of the base polygon at both heights, which need not be convex as written.
+// A prism is the hull of the base polygon at both heights; the polygon need not be convex as
+// written.
 std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
   MapReader map(node, "a prism", quantities_.diagnostics());
   const YamlNode* base_node = map.required("base");
@@ -244,7 +245,7 @@ std::optional<ShapeResult> ShapeReader::read_prism(const YamlNode& node) const {
   return rounded(rounding, prism(base, z->x(), z->y()));
 }
 
-// A half-space n . x <= d, its plane given by d or by a point.
+// Reads a half-space n . x <= d, whose plane is given by d or by a point.
 std::optional<HalfSpace> ShapeReader::read_row(const YamlNode& node) const {
   Diagnostics& diagnostics = quantities_.diagnostics();
   MapReader map(node, "a half-space", diagnostics);
@@ -278,8 +279,8 @@ std::optional<ShapeResult> ShapeReader::read_half_space(const YamlNode& node) co
   return row ? std::optional(polyhedron_from_halfspaces(std::array{*row})) : std::nullopt;
 }
 
-// By its vertices or by its half-spaces; nothing is made of a list with a mistake in it, since a
-// body with one vertex less would be wrong rather than missing.
+// Reads vertices or half-spaces. A list with a mistake makes no body, since a body with one vertex
+// less would be wrong rather than missing.
 std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) const {
   Diagnostics& diagnostics = quantities_.diagnostics();
   MapReader map(node, "a polyhedron", diagnostics);
@@ -293,7 +294,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
                                 rows_node == nullptr ? "neither" : "both"));
     return std::nullopt;
   }
-  // Diagnostics of this body only: others of the file do not make it wrong.
+  // Only diagnostics of this body make it wrong.
   const std::size_t before = diagnostics.count();
   if (vertices_node != nullptr) {
     std::vector<Vec3> vertices;
@@ -312,7 +313,7 @@ std::optional<ShapeResult> ShapeReader::read_polyhedron(const YamlNode& node) co
   return rounded(rounding, polyhedron_from_halfspaces(rows));
 }
 
-// One factor, or one for each axis; negative ones mirror.
+// Reads one factor, or one for each axis; negative ones mirror.
 Vec3 ShapeReader::read_scale(const YamlNode* node) const {
   if (node == nullptr) return Vec3::Ones();
   if (node->kind != YamlNode::Kind::kSequence) {

@@ -14,36 +14,36 @@
 
 namespace clearance {
 
-// A shape and where it stands in the file, for messages about it.
+// A shape and its place in the file, for messages.
 struct NamedShape {
   std::string kind;  // the key: "box"
   const YamlNode* node;
-  std::vector<ConvexBody> shapes;  // one; of a mesh the parts that contain it
+  std::vector<ConvexBody> shapes;  // one, or the parts that contain a mesh
   double mesh_error = 0.0;         // how far these reach beyond the mesh, m
 };
 
-// `tolerance` and `max_parts` of a map, over what is there.
+// Reads `tolerance` and `max_parts` of a map; stated values replace those of `limits`.
 void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& limits);
 
-// What one of `count` parts is called that a shape of that name became: "palm.3".
+// Returns the name of part i of `count` parts of one shape: "palm.3".
 [[nodiscard]] std::string name_of_part(const std::string& name, std::size_t i, std::size_t count);
 
-// Lengths are converted to metres here; what the core gets is SI.
+// Lengths are converted to metres here; the core has SI units.
 class ShapeReader {
  public:
-  // `limits`: of meshes that do not state their own.
+  // `limits` hold for meshes that do not state their own.
   ShapeReader(const Quantities& quantities, MeshLibrary& meshes, const PartLimits& limits)
       : quantities_(quantities), meshes_(meshes), limits_(limits) {}
 
-  // "box", "sphere", ...: the keys of which a part has exactly one.
+  // Returns the keys of shapes, of which a part has exactly one: "box", "sphere", ...
   [[nodiscard]] static std::span<const std::string> kinds();
 
-  // Reads the one shape among the keys of `map`; reports when there is none, or more, or a bad
-  // one. `at` is the map's own node.
+  // Reads the one shape among the keys of `map`; reports none, several, or a bad one. `at` is the
+  // map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 
-  // The parts of a mesh; nothing after a diagnostic. `file_node` is where the file is named, `node`
-  // where its size is.
+  // Returns the parts of a mesh; nothing after a diagnostic. The file is named at `file_node`, and
+  // its size stated at `node`.
   [[nodiscard]] std::optional<std::variant<MeshParts, ShapeError>> mesh_parts(
       const MeshUse& use, const YamlNode& file_node, const YamlNode& node);
 

@@ -1,6 +1,5 @@
 // Positions and velocities along a chain follow from the forward kinematics of its joints, link by
-// link from the base. Everything is evaluated in closed form at the time asked for, without a
-// state.
+// link from the base. All is in closed form in the time, without a state.
 #include "config/cell/simulation.hpp"
 
 #include <cmath>
@@ -23,13 +22,13 @@ Motion swing_at(const Swing& swing, double t_s) {
           swing.amplitude * rate * std::cos(angle)};
 }
 
-// A frame on its way along a chain.
+// A moving frame of a chain.
 struct MovingFrame {
   Pose pose;
   Twist twist;
 };
 
-// The frame of the link that `joint` carries; `parent` is the frame of the link before.
+// Returns the frame of the link that `joint` carries; `parent` is the frame of the link before.
 MovingFrame link_frame(const MovingFrame& parent, const SimulatedJoint& joint, double t_s) {
   const Pose joint_pose = compose(parent.pose, joint.parent_from_joint);
   const Vec3 axis = joint_pose.orientation * joint.axis;

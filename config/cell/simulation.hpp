@@ -1,8 +1,8 @@
 // The simulated motion of a cell's objects: the `simulation:` section of a cell file.
 //
-// Serial chains whose joints swing sinusoidally, and free movers. The tick never uses it;
-// the simulated robot, the tests and the benchmarks do. Positions are functions of time alone: any
-// instant can be asked for.
+// It has serial chains whose joints swing sinusoidally, and free movers. The simulated robot, the
+// tests and the benchmarks use it; the tick never does. Positions are functions of time alone: any
+// instant may be asked for.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ struct Swing {
 // Revolute joints rotate about their axis, prismatic ones translate along it.
 enum class JointKind : std::uint8_t { kRevolute, kPrismatic };
 
-// One joint and the link it carries. The link's frame is the joint's, turned or shifted by the
-// joint's value.
+// One joint and the link that it carries. The link's frame is the joint's, rotated or shifted by
+// the joint's value.
 struct SimulatedJoint {
   // The objects that the link carries, each with the link's frame; may be empty.
   std::vector<std::uint32_t> objects;
@@ -67,8 +67,8 @@ struct PoseAt {
 };
 
 // Replaces `poses` by the pose of every object that the simulation moves, `t_s` seconds after its
-// start: chains in the order of the file, then movers. Deterministic; allocates only when `poses`
-// has to grow.
+// start: chains in the order of the file, then movers. It is deterministic, and allocates only when
+// `poses` has to grow.
 void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& poses);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// Reads chains and movers like any other section. It remembers the line in which each object was
-// given a motion, since an object can have one only.
+// Reads chains and movers like any other section. It keeps the line that moves each object, since
+// only one may.
 #include "config/cell/simulation_reader.hpp"
 
 #include <fmt/format.h>
@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
+#include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
-#include "config/yaml/spelling.hpp"
 
 namespace clearance {
 namespace {
 
-// As in URDF, which has more kinds; a simulation needs these.
+// URDF has more types; a simulation needs these.
 const std::array<std::string, 2> kJointKinds = {"revolute", "prismatic"};
-// As fast as the fastest rate of a cell: more could not be seen.
+// A cell's fastest rate shows nothing faster.
 constexpr Range kFrequencies{.least = 0.0, .most = 10'000.0};  // Hz
 
-// Chains and movers. Each moving object may be moved once.
+// Reads chains and movers. Each moving object may be moved once.
 class SimulationReader {
  public:
   SimulationReader(const ObjectList& list, const Quantities& quantities)
@@ -42,7 +42,7 @@ class SimulationReader {
   const ObjectList& list_;
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
-  // By object id: the line that moves it.
+  // The line that moves each object, by its id.
   std::map<std::uint32_t, int> moved_in_line_;
 };
 
@@ -51,12 +51,12 @@ Pose SimulationReader::read_pose(const YamlNode* node) const {
   return node == nullptr ? Pose{} : quantities_.pose(*node).value_or(Pose{});
 }
 
-// 0 Hz stands still; the default.
+// 0 Hz, the default, stands still.
 double SimulationReader::read_frequency(const YamlNode& node) const {
   return read_number(node, kFrequencies, "a frequency in Hz", diagnostics_).value_or(0.0);
 }
 
-// A moving object that nothing else of the simulation moves.
+// Reads a moving object that nothing else of the simulation moves.
 std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node) {
   const auto name = read_name(node, "an object's name", diagnostics_);
   if (!name) return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node)
   return index;
 }
 
-// Revolute unless the cell says prismatic.
+// The joint is revolute unless the cell says prismatic.
 JointKind SimulationReader::read_kind(MapReader& map) const {
   const YamlNode* node = map.optional("type");
   if (node == nullptr) return JointKind::kRevolute;
@@ -117,7 +117,7 @@ Swing SimulationReader::read_swing(MapReader& map, JointKind kind) const {
   return swing;
 }
 
-// A joint, and the objects that its link carries.
+// Reads a joint, and the objects that its link carries.
 SimulatedJoint SimulationReader::read_joint(const YamlNode& node) {
   SimulatedJoint joint;
   MapReader map(node, "a joint", diagnostics_);
@@ -138,7 +138,7 @@ SimulatedJoint SimulationReader::read_joint(const YamlNode& node) {
   return joint;
 }
 
-// Joints from the base outwards.
+// Reads the joints from the base outwards.
 SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
   SimulatedChain chain;
   MapReader map(node, "a chain", diagnostics_);
@@ -155,7 +155,7 @@ SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
   return chain;
 }
 
-// One object that swings about a centre and may spin.
+// Reads one object that swings about a centre and may spin.
 SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
   SimulatedMover mover;
   MapReader map(node, "a mover", diagnostics_);

@@ -1,7 +1,9 @@
-// DDS names of the topics; the defaults are those of idl/README.md.
+// The DDS names of the topics; the defaults are those of idl/README.md.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 
 namespace clearance {
 
@@ -15,5 +17,21 @@ struct Topics {
   std::string separation = "clearance/separation";
   std::string gradients = "clearance/gradients";
 };
+
+// A topic by its key in a cell and in command lines.
+struct TopicKey {
+  std::string_view key;
+  std::string Topics::*name;
+};
+inline constexpr std::array<TopicKey, 8> kTopicKeys = {{
+    {"catalogue", &Topics::catalogue},
+    {"poses", &Topics::poses},
+    {"joint_states", &Topics::joint_states},
+    {"distances", &Topics::distances},
+    {"zones", &Topics::zones},
+    {"health", &Topics::health},
+    {"separation", &Topics::separation},
+    {"gradients", &Topics::gradients},
+}};
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// Turns the two groups of a zone into indices of watched pairs. A pair of the zone that is neither
-// watched nor allowed to touch is a mistake, since the zone would never see it.
+// Makes indices of watched pairs of the two groups of a zone. A pair that is neither watched nor
+// allowed to touch is a mistake, since the zone would never see it.
 #include "config/cell/zone_reader.hpp"
 
 #include <fmt/format.h>
@@ -17,10 +17,10 @@ namespace {
 
 // The bound of the sequence in the catalogue.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
-// The same of pairs: of those in zones with `separation`, and of those that are published.
+// The same bound for pairs: those in zones with `separation`, and those that are published.
 constexpr std::size_t kMaxPairs = 4096;
 
-// The place of a pair in the scene's list, which is sorted by key.
+// Returns the place of a pair in the scene's list, which is sorted by key.
 std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, PairKey key) {
   const auto found = std::lower_bound(
       pairs.begin(), pairs.end(), key,
@@ -29,8 +29,8 @@ std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, Pair
   return static_cast<std::uint32_t>(found - pairs.begin());
 }
 
-// The watched pairs between the two sides of a zone. A pair that is neither watched nor allowed
-// makes the zone wrong: it would never be entered because of it.
+// Fills in the watched pairs between the two sides of a zone. A pair that is neither watched nor
+// allowed is refused: it could never enter the zone.
 void fill_zone(const YamlNode& node, const Between& between, const ObjectList& objects,
                const PairList& list, const GroupIndex& group_index, Diagnostics& diagnostics,
                Zone& zone) {
@@ -42,7 +42,7 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
       unwatched.push_back(key);
     }
   }
-  if (!list.complete) return;  // what is missing here has been reported
+  if (!list.complete) return;  // missing pairs have been reported
   if (!unwatched.empty()) {
     const PairKey key = unwatched.front();
     diagnostics.add(
@@ -58,7 +58,7 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
   }
 }
 
-// Zones one after another; remembers their names, which must differ.
+// Reads zones one after another; their names must differ.
 class ZoneReader {
  public:
   ZoneReader(const ObjectList& objects, const PairList& pairs, GroupIndex& group_index,
@@ -127,11 +127,11 @@ class ZoneReader {
   const PairList& pairs_;
   GroupIndex& group_index_;
   const Quantities& quantities_;
-  // Where each name was used first.
+  // The first place of each name.
   std::map<std::string, const YamlNode*> names_;
 };
 
-// What is published of a pair is found in every tick from a distance of that tick.
+// Published terms of a pair need a distance of the same tick, so the pair is published.
 void publish_separated_pairs(const YamlNode& node, const std::vector<Zone>& zones,
                              std::vector<ObjectPair>& pairs, Diagnostics& diagnostics) {
   std::size_t separated = 0;

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Reports a zone that covers a pair which is neither watched nor allowed to touch: it would
-// promise what nobody looks at. Pairs of zones with `separation` become published ones.
+// Reports a zone that covers a pair which is neither watched nor allowed to touch: the zone would
+// promise too much. Pairs of zones with `separation` become published ones.
 [[nodiscard]] std::vector<Zone> read_zones(const YamlNode& node, const ObjectList& objects,
                                            GroupIndex& group_index, const Quantities& quantities,
                                            PairList& pairs);

@@ -10,11 +10,11 @@
 namespace clearance {
 namespace {
 
-// A hull of up to so many facets stays as it is: its mesh's own vertices, no error where the mesh
-// is convex.
+// A hull of up to so many facets stays as it is: it has the mesh's own vertices, and no error where
+// the mesh is convex.
 constexpr std::size_t kFacetsOfOne = 400;
-// The search aims below the tolerance, since what it measures is a guess; and again, lower, where
-// that was not enough.
+// The search aims below the tolerance, since it estimates the error; where that was not enough, it
+// aims lower again.
 constexpr double kAim = 0.85, kLowerAim = 0.9;
 constexpr int kAims = 3;
 
@@ -38,7 +38,7 @@ Bodies judged(std::vector<ConvexBody> parts, const TriangleTree& tree) {
   return {std::move(parts), error, false};
 }
 
-// One part where that is near enough, without facets that it can do without.
+// Returns one part, with as few facets as the tolerance allows.
 Bodies one_part(ConvexBody hull, const TriangleTree& tree, double tolerance) {
   Bodies whole = judged({std::move(hull)}, tree);
   whole.is_hull = true;

@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t kSlabs = 14;
 constexpr std::size_t kMostFaceCuts = 48;
 constexpr double kWithin = 0.8, kBeside = 0.6;  // of the tolerance
-constexpr std::size_t kMostOpen = 1500;  // points of the open space that cuts are compared by
+constexpr std::size_t kMostOpen = 1500;         // points of the open space that compare cuts
 
-// Of the open space in hulls: all of it, and what is in those that need another cut.
+// Sums over the open space in hulls: all of it, and that of hulls that need another cut.
 struct OpenSum {
   double all = 0.0, unfinished = 0.0;
 };
@@ -82,7 +82,8 @@ void add_slabs(const Piece& piece, const Vec3& normal, std::vector<Candidate>& c
   }
 }
 
-// Along each face, and on either side of it, so that a wall comes off with what is near to it.
+// Adds planes along each face and on either side of it, so that a wall is cut off together with its
+// surroundings.
 void add_faces(const Piece& piece, const std::vector<HalfSpace>& faces, double tolerance,
                std::vector<Candidate>& candidates) {
   const double overlap = kOverlap * tolerance;
@@ -130,8 +131,8 @@ std::optional<HalfSpace> best_cut(const Piece& piece, const std::vector<HalfSpac
       add_open(side, open, tolerance, spacing, candidates[i].open);
     }
   });
-  // Both count: through a box of sheets no cut makes the hulls smaller, but one that takes a
-  // finished side off is a gain, too.
+  // Both sums count: no cut through a box of sheets makes the hulls smaller, but one that takes a
+  // finished side off is a gain as well.
   const auto best = std::ranges::min_element(candidates, {}, [](const Candidate& candidate) {
     return candidate.open.all + candidate.open.unfinished;
   });

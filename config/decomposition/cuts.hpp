@@ -1,4 +1,4 @@
-// Where a piece of a mesh is best cut in two.
+// Finds the best cut of a piece of a mesh.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace clearance {
 
-// Of planes along a mesh's faces, and of others across the piece's and the mesh's axes, the one
-// that leaves the least open space in the hulls of the two sides, far from the mesh counting more;
-// `spacing` is that of the piece's open points.
-// Nothing: no plane has points on either side.
+// Returns the plane that leaves the least open space in the hulls of the two sides; space far from
+// the mesh counts more. Candidates run along the mesh's faces, and across the axes of the piece and
+// of the mesh. `spacing` is that of the piece's open points. Returns nothing when no plane has
+// points on either side.
 [[nodiscard]] std::optional<HalfSpace> best_cut(const Piece& piece,
                                                 const std::vector<HalfSpace>& faces,
                                                 double tolerance, double spacing);

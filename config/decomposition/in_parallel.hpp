@@ -1,4 +1,4 @@
-// Independent pieces of work on all processors.
+// Runs independent pieces of work on all processors.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The planes of a mesh's larger flat faces: a good cut often runs along one.
+// Finds the planes of a mesh's larger flat faces: a good cut often runs along one.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-// By area, the largest first. Triangles within about half of `tolerance`, m, and a degree are of
-// one face.
+// Returns the planes by area, the largest first. Triangles within about half of `tolerance`, m, and
+// a degree belong to one face.
 [[nodiscard]] std::vector<HalfSpace> large_faces(const TriangleMesh& mesh, double tolerance);
 
 }  // namespace clearance

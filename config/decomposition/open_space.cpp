@@ -1,5 +1,5 @@
-// The nearest sample of a cell is that of a neighbour, or the cell's own: two sweeps hand them on
-// (P.-E. Danielsson, "Euclidean distance mapping", 1980). Then balls flood in from the border.
+// The nearest sample of a cell is its own or that of a neighbour: two sweeps hand samples on (P.-E.
+// Danielsson, "Euclidean distance mapping", 1980). Then balls flood in from the border.
 #include "config/decomposition/open_space.hpp"
 
 #include <algorithm>
@@ -85,8 +85,8 @@ void OpenSpace::spread() {
   }
 }
 
-// Where the centre of the ball can be, and then around that what the ball covers, in steps of a
-// cell that do not cross the mesh.
+// Floods the cells where the ball's centre can be, then those that the ball covers around them, in
+// steps of a cell that do not cross the mesh.
 void OpenSpace::flood(double ball) {
   std::vector<Index> reached = {Index::Zero()}, rim;
   open_[0] = true;
@@ -102,7 +102,7 @@ void OpenSpace::flood(double ball) {
   }
 }
 
-// To neighbours that are so far from the mesh; true when some are not.
+// Spreads to neighbours at that distance from the mesh; returns true when there are some nearer.
 bool OpenSpace::spread_open(const Index& at, double least, std::vector<Index>& reached) {
   bool is_rim = false;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
-// The space around a mesh, on a grid: how far its points are from the mesh, and which of them a
-// ball from outside can reach. Approximate: it guides the search for parts, and certifies nothing.
+// The space around a mesh, on a grid: the distance of its points from the mesh, and which of them a
+// ball from outside can reach. It is approximate: it guides the search for parts, and certifies
+// nothing.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,13 @@ struct OpenPoint {
 
 class OpenSpace {
  public:
-  // Open is what a ball of radius `ball` can reach from outside without touching the mesh.
+  // A point is open if a ball of radius `ball` can reach it from outside without touching the mesh.
   OpenSpace(const TriangleMesh& mesh, double ball);
 
   [[nodiscard]] double spacing() const { return spacing_; }
-  // Of the grid, those of at least this distance from the mesh.
+  // Returns the open points of the grid at least this far from the mesh.
   [[nodiscard]] std::vector<OpenPoint> points(double least) const;
-  // Whether a point, which may be outside of the grid, is in what no ball reaches.
+  // Tells whether no ball reaches the point, which may be outside of the grid.
   [[nodiscard]] bool encloses(const Vec3& point) const;
 
  private:
@@ -55,8 +56,8 @@ class OpenSpace {
   double spacing_ = 0.0;
   Index count_;
   std::vector<Vec3> samples_;          // points of the mesh
-  std::vector<std::int32_t> nearest_;  // of each cell's centre: index of a sample
-  std::vector<float> distance_;        // from that
+  std::vector<std::int32_t> nearest_;  // index of the sample nearest to each cell's centre
+  std::vector<float> distance_;        // from that sample, m
   std::vector<bool> open_;
 };
 

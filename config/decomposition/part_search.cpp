@@ -15,14 +15,15 @@ namespace clearance {
 namespace {
 
 // Shares of the tolerance.
-constexpr double kBall = 0.75;        // what is narrower than such a ball is taken as closed
-constexpr double kLeastOpen = 0.3;    // what is nearer to the mesh is no error
-constexpr double kSimplified = 0.06;  // how far corners may stick out that fewer facets leave
+constexpr double kBall = 0.75;        // openings narrower than such a ball count as closed
+constexpr double kLeastOpen = 0.3;    // points nearer to the mesh are no error
+constexpr double kSimplified = 0.06;  // how far corners of fewer facets may stick out
 
 constexpr std::size_t kFacets = 96;  // of a part, at most
 constexpr std::size_t kPiecesAPart = 3;
 
-// Of a body's size: more than clipping and rounding can move a point, and nothing to a distance.
+// A share of a body's size: more than clipping and rounding can move a point, and negligible as a
+// distance.
 constexpr double kMargin = 0x1p-30;
 
 std::vector<Vec3> vertices_of(const ConvexBody& body) {
@@ -31,7 +32,7 @@ std::vector<Vec3> vertices_of(const ConvexBody& body) {
   return vertices;
 }
 
-// Cubes of that half width around points that lie in one plane.
+// Returns the corners of cubes of that half width around points that lie in one plane.
 std::vector<Vec3> thickened(const std::vector<Vec3>& points, double by) {
   std::vector<Vec3> corners;
   for (const Vec3& point : points) {
@@ -57,7 +58,7 @@ ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
   const PlacedShape placed{&hull, {}};
   const auto fewer = enclosing_polyhedron(
       {&placed, 1}, {.facets = kFacets, .tolerance = kSimplified * tolerance / size});
-  // Its corners are rounded once more than the planes: what counts is their hull.
+  // Its corners are rounded once more than its planes: their hull is the body.
   auto body = fewer ? body_of(vertices_of(*fewer)) : std::nullopt;
   if (body) return *std::move(body);
   hull.radius = 0.0;
@@ -74,7 +75,7 @@ PartSearch::PartSearch(const TriangleMesh& mesh, const PartLimits& limits)
   open_ = pieces_[0].open;
 }
 
-// The points of the mesh, one a cell of the open space's grid, and its box.
+// Returns the points of the mesh, one a cell of the open space's grid, and its box.
 Piece PartSearch::whole() const {
   Piece piece;
   piece.cells.emplace_back();
@@ -104,8 +105,8 @@ Piece PartSearch::whole() const {
   return piece;
 }
 
-// Where the mesh runs through a plane of the piece: between points of the mesh, and often corners
-// of the piece's hull.
+// Adds points where the mesh runs through a plane of the piece: they lie between points of the
+// mesh, and often are corners of the piece's hull.
 void PartSearch::add_rim(const HalfSpace& plane, Piece& piece) const {
   const double near = 1e-6 * space_.spacing();
   const auto above = [&](const Vec3& point) { return plane.normal.dot(point) - plane.offset; };
@@ -142,7 +143,7 @@ std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const
   return sides;
 }
 
-// The worst one first.
+// The worst piece is split first.
 void PartSearch::split(double aim) {
   while (pieces_.size() < kPiecesAPart * limits_.max_parts) {
     const auto worst = std::ranges::max_element(
@@ -155,7 +156,7 @@ void PartSearch::split(double aim) {
   }
 }
 
-// Of the hull of both; where it is more than `enough`, some error above that.
+// Returns the error of the hull of both; where that exceeds `enough`, some error above it.
 double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) const {
   Outline outline = a.outline;
   outline.add(b.outline);
@@ -178,10 +179,11 @@ double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) co
   return error;
 }
 
-// The two whose hull is least wrong, again and again.
+// Joins the two pieces whose common hull has the least error, repeatedly.
 void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
   constexpr double kUnknown = -1.0;
-  // Of every two, the later one's row; a row and a column go when two are joined.
+  // Row i holds the errors of piece i with each earlier one; a row and a column go when two are
+  // joined.
   std::vector<std::vector<double>> errors(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) errors[i].assign(i, kUnknown);
   while (pieces.size() > 1) {
@@ -220,8 +222,8 @@ void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
   }
 }
 
-// Every triangle of the mesh, clipped by the piece's cells, and the corners of these that no
-// triangle has: what of the mesh is in the cells is in their hull.
+// Returns the corners of every triangle, clipped by the piece's cells, and those corners of the
+// cells that no triangle has. The part of the mesh in the cells lies in their hull.
 std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   const double overlap = kOverlap * limits_.tolerance;
   std::vector<Vec3> points;

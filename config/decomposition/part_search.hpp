@@ -1,13 +1,12 @@
-// The search for parts: cut until every piece is near enough to convex, then join what fits
-// together.
+// Searches for parts: cuts until every piece is nearly convex, then joins pieces that fit together.
 #pragma once
 
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/open_space.hpp"
+#include "config/decomposition/part_limits.hpp"
 #include "config/decomposition/piece.hpp"
 #include "core/convex_body.hpp"
 
@@ -17,8 +16,8 @@ class PartSearch {
  public:
   PartSearch(const TriangleMesh& mesh, const PartLimits& limits);
 
-  // Parts whose estimated error is at most `aim`, or the most parts that the limits allow.
-  // Together they hold every triangle. A lower aim than before goes on from the pieces of before.
+  // Returns parts whose estimated error is at most `aim`, or the most parts that the limits allow.
+  // Together they hold every triangle. A lower aim continues with the pieces of the call before.
   std::vector<ConvexBody> parts(double aim);
 
  private:
@@ -34,12 +33,12 @@ class PartSearch {
   PartLimits limits_;
   OpenSpace space_;
   Eigen::AlignedBox3d box_;
-  std::vector<HalfSpace> faces_;  // along which cuts are tried
+  std::vector<HalfSpace> faces_;  // candidates for cuts
   std::vector<OpenPoint> open_;   // in the hull of the whole
-  std::vector<Piece> pieces_;     // none of them joined
+  std::vector<Piece> pieces_;     // before joining
 };
 
-// A body that holds `hull` and reaches a small share of the tolerance beyond it.
+// Returns a body that holds `hull` and reaches a small share of the tolerance beyond it.
 [[nodiscard]] ConvexBody with_fewer_facets(ConvexBody hull, double tolerance);
 
 }  // namespace clearance

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// The axes both ways, then a spiral over the sphere.
+// Returns the axes in both directions, then a spiral over the sphere.
 std::array<Vec3, kDirections> spread_directions() {
   std::array<Vec3, kDirections> directions;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,7 +63,7 @@ std::vector<Vec3> Outline::points() const {
   return points;
 }
 
-// Where three planes meet, and no other is in between.
+// A corner is where three planes meet and no other plane cuts it off.
 std::vector<Vec3> Cell::corners_within(const OpenSpace& space, double margin) const {
   std::vector<Vec3> corners;
   const double slack = 1e-6 * space.spacing();
@@ -101,7 +101,7 @@ void Piece::finish(std::span<const OpenPoint> open_before, double spacing) {
   }
 }
 
-// Plane by plane, as I. Sutherland and G. Hodgman did (1974).
+// Clips plane by plane (I. Sutherland and G. Hodgman, 1974).
 std::vector<Vec3> clipped(const Triangle& triangle, const Cell& cell, double margin) {
   std::vector<Vec3> polygon(triangle.begin(), triangle.end()), kept;
   for (const HalfSpace& plane : cell.planes) {

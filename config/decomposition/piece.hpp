@@ -1,4 +1,4 @@
-// A piece of a mesh on the way to a convex part: what lies between some planes.
+// A piece of a mesh that is to become a convex part: the mesh between some planes.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@ namespace clearance {
 
 inline constexpr std::size_t kDirections = 160;
 
-// Of neighbouring cells, a share of the tolerance: they leave no gap, not even a point, that would
-// be surface of the union. A face along which a cut runs is thus in the cells on both sides.
+// The overlap of neighbouring cells, as a share of the tolerance: no gap between them, not even a
+// point, is surface of the union. A face along which a cut runs is thus in the cells on both sides.
 inline constexpr double kOverlap = 0.01;
 
-// In each of some directions the farthest of a set of points: a sketch of the set's hull, which
-// sets that are joined share out.
+// The farthest point of a set in each of some directions: a sketch of the set's hull. The outline
+// of a union follows from the outlines of its sets.
 class Outline {
  public:
   Outline();
@@ -31,28 +31,30 @@ class Outline {
   std::array<Vec3, kDirections> farthest_;
 };
 
-// Convex: the piece of the mesh and of what it encloses between these planes.
+// A convex cell: the piece of the mesh, and of the space that it encloses, between these planes.
 struct Cell {
   std::vector<HalfSpace> planes;  // n.x <= d; those of the mesh's box first
 
-  // Those of its corners, when widened by `margin`, that lie in the mesh: no triangle has them.
+  // Returns those corners of the cell, widened by `margin`, that lie in space that the mesh
+  // encloses: no triangle has them.
   [[nodiscard]] std::vector<Vec3> corners_within(const OpenSpace& space, double margin) const;
 };
 
 struct Piece {
-  std::vector<Cell> cells;      // several: pieces that were joined
+  std::vector<Cell> cells;      // several after joining
   std::vector<Vec3> points;     // of the mesh and of enclosed corners
   Outline outline;              // of the points
   std::vector<HalfSpace> hull;  // of the outline
-  // What of the open space is in the hull, or so near to it that a thin hull holds some.
+  // The open points in the hull, or so near to it that a thin hull holds some.
   std::vector<OpenPoint> open;
-  double error = 0.0;  // about how far the hull's farthest point is from the mesh, m
+  double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
 
-  // Of points and of what is open in what it was a part of, in a grid of that spacing.
+  // Completes the piece from its points and from the open points of the piece that it was cut from,
+  // in a grid of that spacing.
   void finish(std::span<const OpenPoint> open_before, double spacing);
 };
 
-// What of the triangle lies in the cell widened by `margin`: a convex polygon.
+// Returns the part of the triangle in the cell widened by `margin`: a convex polygon.
 [[nodiscard]] std::vector<Vec3> clipped(const Triangle& triangle, const Cell& cell, double margin);
 
 }  // namespace clearance

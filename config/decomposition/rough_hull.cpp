@@ -8,12 +8,13 @@
 namespace clearance {
 namespace {
 
-// Points are moved by up to so much of the extent, so that no four lie in one plane, as those of
-// drawn things do (Qhull's option QJ). Of a link a few hundredths of a millimetre.
+// Points are moved by up to this share of the extent, so that no four lie in one plane, as they do
+// in drawn parts (Qhull's option QJ). For a link that is a few hundredths of a millimetre.
 constexpr double kJoggle = 1e-4;
-constexpr double kFlat = 1e-12;  // of the extent: nearer to a plane than this is in it
+constexpr double kFlat = 1e-12;  // of the extent: points nearer to a plane lie in it
 
-// From -1 to 1, by the number alone (splitmix64; G. Steele and others, 2014).
+// Returns a number from -1 to 1 that depends on `number` alone (splitmix64; G. Steele and others,
+// 2014).
 double scattered(std::uint64_t number) {
   std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -50,7 +51,7 @@ class RoughHull {
   }
 
  private:
-  // The index of the point that is farthest by `distance`.
+  // Returns the index of the point that is farthest by `distance`.
   template <class Distance>
   std::size_t farthest(const Distance& distance) const {
     std::size_t best = 0;
@@ -60,7 +61,7 @@ class RoughHull {
     return best;
   }
 
-  // A tetrahedron of points that are far apart.
+  // Begins with a tetrahedron of points that are far from each other.
   bool begin() {
     if (points_.size() < 4) return false;
     const std::size_t a = farthest([](const Vec3& p) { return -p.x(); });
@@ -92,7 +93,7 @@ class RoughHull {
     faces_.push_back({corners, {normal / length, normal.dot(a) / length}});
   }
 
-  // Takes away the faces that see the point, and joins their outline to it.
+  // Removes the faces that see the point, and joins their outline to it.
   void add(std::size_t i) {
     const Vec3& point = points_[i];
     const auto hidden = std::partition(faces_.begin(), faces_.end(), [&](const Face& face) {

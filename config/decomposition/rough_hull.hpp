@@ -1,7 +1,7 @@
-// The planes of the convex hull of a few hundred points, quickly and roughly.
+// Finds the planes of the convex hull of a few hundred points, quickly and roughly.
 //
-// In plain doubles, of points that are moved by a ten thousandth of their extent. For comparing
-// cuts and mergers only; what a cell gets is made by core/shapes.hpp and exact.
+// It computes in plain doubles, with points moved by a ten thousandth of their extent. It only
+// compares cuts and mergers: the parts of a cell are made by core/shapes.hpp, exactly.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Unit normals. Empty: of fewer than four points, or where all are one.
+// Returns planes with unit normals; none for fewer than four points, or where all are one.
 [[nodiscard]] std::vector<HalfSpace> rough_hull(std::span<const Vec3> points);
 
 [[nodiscard]] inline bool holds(std::span<const HalfSpace> planes, const Vec3& point,

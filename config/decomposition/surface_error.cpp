@@ -9,14 +9,14 @@
 namespace clearance {
 namespace {
 
-// Beyond this the bound is what it is then: a few seconds.
+// After so many pieces, a few seconds, the search ends with its present bound.
 constexpr std::size_t kMostPieces = 1'000'000;
-// Relative: beyond the rounding of plane tests and distances.
+// Relative: more than the rounding of plane tests and distances.
 constexpr double kRounding = 1e-12;
 
 // A piece of a facet of a part.
 struct Piece {
-  double bound;  // no point of it that is on the union's surface is farther from the mesh, m
+  double bound;  // of the distance from the mesh of its points on the union's surface, m
   std::size_t part;
   Triangle corners;
 };
@@ -101,7 +101,7 @@ class Judge {
     return most;
   }
 
-  // Whether all of it lies strictly within one other part.
+  // Tells whether all of it lies strictly within one other part.
   [[nodiscard]] bool is_covered(std::size_t part, const Triangle& corners) const {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (i == part) continue;

@@ -1,4 +1,4 @@
-// How far do convex parts reach beyond the mesh that they contain? A certified bound.
+// Certifies how far convex parts reach beyond the mesh that they contain.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace clearance {
 
-// No point of the surface of the parts' union is farther from the mesh's triangles than this, m.
-// What lies within another part is no such surface. So for whatever is not shut in by the mesh, the
-// distance from the parts is at most by so much smaller than the distance from the mesh, and a
-// cavity may be filled only where no opening is wider than twice as much.
+// Returns a bound, m: no point of the surface of the parts' union is farther from the mesh's
+// triangles. Faces inside another part are not surface. For a body that the mesh does not enclose,
+// the distance from the parts is therefore at most this much less than the distance from the mesh.
+// A cavity may be filled only where no opening is wider than twice the bound.
 //
-// At most 2 % and 1e-6 of the size more than the true value, unless that takes too long. Facets are
-// halved where the bound is largest: the distance from one triangle is convex, so that on a piece
-// of a facet it is largest at a corner.
+// The bound exceeds the true value by at most 2 % and 1e-6 of the size, unless that takes too long.
+// Facets are halved where the bound is largest. The distance from one triangle is convex, so on a
+// piece of a facet it is largest at a corner.
 [[nodiscard]] double surface_error(std::span<const ConvexBody> parts, const TriangleTree& tree);
 
 }  // namespace clearance

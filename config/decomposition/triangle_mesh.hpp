@@ -1,5 +1,5 @@
-// A mesh as a set of triangles: nothing is asked of it. It may be open, cross itself, have parts
-// within parts, and triangles without area.
+// A mesh as a set of triangles, without conditions: it may be open, cross itself, have shells
+// within shells, and triangles without area.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct TriangleMesh {
 };
 
 // Covers `triangle` with smaller ones, whose edges are at most `longest`, and calls `take` with
-// each. Halves the longest edge again and again, so that slivers give few.
+// each. It halves the longest edge repeatedly, so that slivers give few.
 template <class Take>
 void subdivide(const Triangle& triangle, double longest, const Take& take) {
   std::vector<Triangle> left = {triangle};

@@ -8,17 +8,17 @@
 
 namespace clearance {
 
-// An upper bound of the distance to a triangle, up to rounding: to a point of it, the nearest one
-// unless the triangle is all but flat.
+// Returns an upper bound of the distance to a triangle, up to rounding: the distance to its nearest
+// point, unless the triangle is all but flat.
 [[nodiscard]] double distance_to(const Triangle& triangle, const Vec3& point);
 
 class TriangleTree {
  public:
-  // At least one triangle.
+  // The mesh has at least one triangle.
   explicit TriangleTree(const TriangleMesh& mesh);
 
   struct Nearest {
-    std::size_t triangle;  // as number() knows it
+    std::size_t triangle;  // as of number()
     double distance;
   };
   [[nodiscard]] Nearest nearest(const Vec3& point) const;
@@ -28,7 +28,7 @@ class TriangleTree {
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    std::uint32_t first = 0, count = 0;  // of a leaf: its triangles; else: count 0, first child
+    std::uint32_t first = 0, count = 0;  // a leaf: its triangles; else count 0 and the first child
   };
   void build(std::size_t node, std::uint32_t first, std::uint32_t last);
 

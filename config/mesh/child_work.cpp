@@ -1,5 +1,5 @@
-// The child writes the number of its bytes and the bytes into a pipe. Whatever ends it before the
-// last one, a signal or a limit, is the fault that the parent reports.
+// The child writes the number of its bytes and the bytes into a pipe. A signal or a limit that ends
+// it earlier is the fault that the parent reports.
 #include "config/mesh/child_work.hpp"
 
 #include <fcntl.h>
@@ -37,7 +37,7 @@ using Clock = std::chrono::steady_clock;
 // Exit statuses of the child.
 constexpr int kDone = 0, kOutOfMemory = 3, kThrew = 4;
 
-// Bytes of address space that this process has; 0: not known.
+// Returns the bytes of address space that this process has; 0: not known.
 [[maybe_unused]] std::size_t address_space() {
   std::size_t pages = 0;
   if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
@@ -47,7 +47,7 @@ constexpr int kDone = 0, kOutOfMemory = 3, kThrew = 4;
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// A second between the signal that can be told from others and the end.
+// The hard limit is a second later: the signal of the soft one can be told from others.
 void limit(__rlimit_resource resource, rlim_t most) {
   const rlimit limits{most, resource == RLIMIT_CPU ? most + 1 : most};
   setrlimit(resource, &limits);
@@ -58,7 +58,7 @@ void confine_child(const ChildLimits& limits) {
   for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGPIPE}) {
     std::signal(crash, SIG_DFL);
   }
-  // What glibc and libraries say when they give up is no message of this program.
+  // Messages of glibc and of libraries that give up are no messages of this program.
   if (const int nowhere = open("/dev/null", O_RDWR); nowhere >= 0) {
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
@@ -81,7 +81,8 @@ bool write_all(int to, const char* bytes, std::size_t count) {
   return true;
 }
 
-// The child's whole life. No destructor of the parent's objects may run here.
+// Runs the child from its first to its last instruction. No destructor of the parent's objects may
+// run here.
 [[noreturn]] void run_child(const std::function<std::string()>& work, const ChildLimits& limits,
                             int to) {
   int status = kThrew;
@@ -100,7 +101,7 @@ bool write_all(int to, const char* bytes, std::size_t count) {
   _exit(status);
 }
 
-// What a message holds: its length, then as many bytes.
+// A message: its length, then as many bytes.
 class Message {
  public:
   explicit Message(std::size_t most) : most_(most) {}
@@ -110,7 +111,7 @@ class Message {
     return text_.size() >= sizeof(std::uint64_t) &&
            text_.size() - sizeof(std::uint64_t) >= std::min<std::uint64_t>(announced(), most_);
   }
-  // Of a complete one; empty where the child announced more than it may have.
+  // Returns the bytes of a complete message; empty where the child announced more than is allowed.
   [[nodiscard]] std::string bytes() const {
     if (announced() > most_) return {};
     return text_.substr(sizeof(std::uint64_t), announced());
@@ -127,7 +128,8 @@ class Message {
   std::string text_;
 };
 
-// Reads until the message is complete, the child is gone, or its time is over. False: it is over.
+// Reads until the message is complete, the child has ended, or its time is over. Returns false when
+// it is over.
 bool receive(int from, Clock::time_point deadline, Message& message) {
   std::array<char, 65536> piece;
   while (!message.complete()) {
@@ -144,7 +146,7 @@ bool receive(int from, Clock::time_point deadline, Message& message) {
   return true;
 }
 
-// How a child that gave nothing ended, as the end of a sentence about it.
+// Returns how a child that sent nothing ended, as the end of a sentence.
 std::string how_it_ended(int status, const ChildLimits& limits) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);

@@ -7,24 +7,24 @@
 
 namespace clearance {
 
-// What the child may take before the kernel or the parent ends it.
+// The limits at which the kernel or the parent ends the child.
 struct ChildLimits {
-  std::size_t memory = std::size_t{2} << 30;  // bytes, beyond what the parent has
+  std::size_t memory = std::size_t{2} << 30;  // bytes beyond the parent's
   unsigned cpu_s = 20;                        // processor time
   unsigned wall_s = 60;                       // the last resort, for a child that only waits
 };
 
-// The bytes that the work gave, or, where it gave none, how the child ended: "crashed
-// (Segmentation fault)". One of the two is empty unless the work gave nothing.
+// The bytes that the work returned, or how the child ended without any: "crashed (Segmentation
+// fault)". At most one of the two is not empty.
 struct ChildWork {
   std::string bytes;
   std::string fault;
 };
 
-// Forks, runs `work` in the child and hands over what it returns. The child says nothing: its
-// standard output and error lead nowhere. `work` must not start threads or take locks that other
-// threads of this process may hold. Never throws. Under AddressSanitizer and ThreadSanitizer, which
-// map terabytes themselves, there is no limit on memory.
+// Forks, runs `work` in the child and hands over its bytes. The child's standard output and error
+// lead nowhere. `work` must not start threads or take locks that other threads of this process may
+// hold. Never throws. Under AddressSanitizer and ThreadSanitizer, which map terabytes themselves,
+// there is no limit on memory.
 [[nodiscard]] ChildWork in_child(const std::function<std::string()>& work,
                                  const ChildLimits& limits = {});
 

@@ -1,5 +1,5 @@
-// An accessor names its array by "#id"; arrays are read by their count, which assimp checks against
-// the numbers that are there.
+// An accessor names its array by "#id". Assimp checks the count of an array against its numbers, so
+// only the accessors are checked here.
 #include "config/mesh/collada_check.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-// Every element of a document, in order.
+// All elements of a document, in order.
 struct Elements : tinyxml2::XMLVisitor {
   bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute*) override {
     all.push_back(&element);
@@ -26,14 +26,16 @@ struct Elements : tinyxml2::XMLVisitor {
   std::vector<const XMLElement*> all;
 };
 
-// A count that is left out is `otherwise`; what is no count in 32 bits reads as the largest.
+// Returns `otherwise` for a count that is left out, and the largest one for a text that is no count
+// in 32 bits.
 std::uint64_t count_of(const XMLElement& element, const char* name, std::uint64_t otherwise) {
   if (element.Attribute(name) == nullptr) return otherwise;
   unsigned value = 0;
   return element.QueryUnsignedAttribute(name, &value) == tinyxml2::XML_SUCCESS ? value : UINT32_MAX;
 }
 
-// How many numbers the accessor reaches over; 32 bits times 32 bits do not overflow 64.
+// Returns how many numbers of the array the accessor covers; 32 bits times 32 bits do not overflow
+// 64.
 std::uint64_t reach_of(const XMLElement& accessor) {
   const std::uint64_t count = count_of(accessor, "count", 0);
   if (count == 0) return 0;
@@ -46,7 +48,7 @@ std::uint64_t reach_of(const XMLElement& accessor) {
          std::max<std::uint64_t>(params, 1);
 }
 
-// Assimp never gets past what is no number there. True of all other elements.
+// Assimp never gets past a text that is no number there. Returns true for all other elements.
 bool is_list_of_indices(const XMLElement& element) {
   const std::string_view name = element.Name();
   const char* const text = element.GetText();

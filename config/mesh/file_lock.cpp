@@ -17,7 +17,7 @@ FileLock::FileLock(const std::filesystem::path& file, const std::function<void()
   }
 }
 
-// Closing gives it back.
+// Closing releases the lock.
 FileLock::~FileLock() {
   if (file_ >= 0) ::close(file_);
 }

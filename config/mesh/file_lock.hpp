@@ -1,4 +1,4 @@
-// One program at a time with a file: an advisory lock (flock) that ends with its holder.
+// An advisory lock on a file (flock), for one program at a time. It ends with its holder.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@ namespace clearance {
 
 class FileLock {
  public:
-  // Waits while another program holds it, after calling `wait`. Where the file system has no locks
-  // there is none.
+  // Waits while another program holds the lock, after calling `wait`. File systems without locks
+  // give none.
   FileLock(const std::filesystem::path& file, const std::function<void()>& wait);
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
-  // Another program had it.
+  // Tells whether another program held it.
   [[nodiscard]] bool waited() const noexcept { return waited_; }
 
  private:

@@ -1,5 +1,5 @@
-// A mesh file is bytes of unknown origin, read by a library that some of them crash: it runs in a
-// child process, and what comes back is checked once more. Vertices and triangles are sorted and
+// A mesh file is bytes of unknown origin, and some bytes crash the library that reads them. It runs
+// in a child process, and its answer is checked once more. Vertices and triangles are sorted and
 // made unique, so that the result does not depend on the order of faces in the file.
 #include "config/mesh/mesh_file.hpp"
 
@@ -9,41 +9,34 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "config/mesh/child_work.hpp"
 #include "config/mesh/mesh_import.hpp"
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 namespace {
 
-// What robots come with, and what the mutations of tests/config/mesh_mutation_test.cpp were tried
-// on.
+// The formats that robots come with, and on which tests/config/mesh/mesh_mutation_test.cpp was
+// tried.
 constexpr std::array<std::string_view, 4> kFormats = {"stl", "obj", "ply", "dae"};
 
-// Far beyond any mesh that describes a robot; an endless file ends here.
-constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
-
-// Assimp reads some damaged files for ever; good ones take it 0.003 to 0.03 s a MiB.
+// Assimp never finishes some damaged files; good ones take it 0.003 to 0.03 s a MiB.
 unsigned seconds_for(std::size_t bytes) { return 2 + static_cast<unsigned>(bytes >> 20); }
 
-// The first byte of what the child says.
+// The first byte of the child's answer.
 constexpr char kMesh = 'm', kFault = 'f';
 
-// Any order serves that depends on the coordinates only.
+// Any order serves, as long as it depends on the coordinates only.
 bool lexicographic(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-// Vertices are numbered in their order, and each triangle starts at its first.
+// Numbers vertices in their order; each triangle starts at its lowest number.
 TriangleMesh indexed(const std::vector<Triangle>& triangles) {
   TriangleMesh mesh;
   for (const Triangle& t : triangles) mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
@@ -72,7 +65,7 @@ void append(const std::vector<Item>& items, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(items.data()), count * sizeof(Item));
 }
 
-// False when the bytes end before.
+// Returns false when the bytes end too early.
 template <class Item>
 bool take(std::string_view& bytes, std::vector<Item>& items) {
   std::uint64_t count = 0;
@@ -86,7 +79,7 @@ bool take(std::string_view& bytes, std::vector<Item>& items) {
   return true;
 }
 
-// In the child.
+// Runs in the child.
 std::string import_into_bytes(const std::string& bytes, const std::string& format) {
   const auto result = import_mesh(bytes, format);
   if (const auto* fault = std::get_if<MeshFault>(&result)) return kFault + fault->reason;
@@ -103,9 +96,9 @@ std::string import_into_bytes(const std::string& bytes, const std::string& forma
   return said;
 }
 
-// In the parent. A child that was led astray may say anything.
+// Runs in the parent. A child that bytes led astray may answer anything.
 std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
-  if (said.starts_with(kFault)) return MeshFault{printable(said.substr(1))};
+  if (said.starts_with(kFault)) return MeshFault{excerpt(std::string_view(said).substr(1))};
   const MeshFault no_answer{"the library that reads it gave no answer"};
   if (!said.starts_with(kMesh)) return no_answer;
   TriangleMesh mesh;
@@ -117,7 +110,7 @@ std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
   return mesh;
 }
 
-// "STL" of "x.STL" or ".STL", in lower case and without the dot.
+// Returns "stl" for "STL" or ".STL".
 std::string format_of(const std::string& extension) {
   std::string format = extension.substr(extension.starts_with('.') ? 1 : 0);
   std::ranges::transform(format, format.begin(),
@@ -126,28 +119,6 @@ std::string format_of(const std::string& extension) {
 }
 
 }  // namespace
-
-// The whole file, so that its bytes can go into the revision and be parsed without reading it
-// again.
-std::variant<std::string, MeshFault> read_bytes(const std::string& path) {
-  std::error_code fault;
-  if (std::filesystem::is_directory(path, fault))
-    return MeshFault{fmt::format("'{}' is a directory", path)};
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    return MeshFault{fmt::format("'{}' cannot be opened: {}", path, std::strerror(errno))};
-  std::string bytes;
-  std::array<char, 1 << 16> piece;
-  while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0) {
-    bytes.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
-    if (bytes.size() > kMaxFileBytes) {
-      return MeshFault{fmt::format("'{}' has more than {} MiB", path, kMaxFileBytes >> 20)};
-    }
-  }
-  if (stream.bad())
-    return MeshFault{fmt::format("'{}' cannot be read: {}", path, std::strerror(errno))};
-  return bytes;
-}
 
 std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
                                                 const std::string& extension) {

@@ -1,5 +1,6 @@
-// Assimp parses the bytes in memory (but PLY), and the scene graph's transforms place each mesh.
-// What it gives is checked before it is used: it takes indices and accessors as the file has them.
+// Assimp parses the bytes in memory (except PLY), and the transforms of the scene graph place each
+// mesh. Indices and accessors are checked before they are used: assimp takes them from the file as
+// they are.
 #include "config/mesh/mesh_import.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@
 namespace clearance {
 namespace {
 
-// Left through import_mesh() only.
+// Thrown and caught inside this file.
 struct BadMesh {
   std::string reason;
 };
@@ -27,7 +28,7 @@ struct BadMesh {
 // Assimp's floats, widened without rounding.
 Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// Where the vertex is that corner `k` of a face names.
+// Returns the position of corner `k` of a face.
 Vec3 corner(const aiMesh& mesh, unsigned f, unsigned k, const aiMatrix4x4& placed) {
   const unsigned index = mesh.mFaces[f].mIndices[k];
   if (index >= mesh.mNumVertices || mesh.mVertices == nullptr) {
@@ -57,7 +58,7 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
     collect(scene, *node.mChildren[i], placed, triangles);
 }
 
-// Assimp's message, without the name that it invents for what it reads from memory.
+// Returns assimp's message without the name that it invents for bytes in memory.
 std::string plain(std::string message) {
   const std::size_t start = message.find("$$$___magic___$$$");
   if (start == std::string::npos) return message;
@@ -68,7 +69,7 @@ std::string plain(std::string message) {
   return message.replace(first, end - first, "it");
 }
 
-// Assimp tries its other readers, too, where a file is not what its name says.
+// Assimp would try its other readers where a file is not of the format of its name.
 void keep_one_format(Assimp::Importer& importer, const std::string& format) {
   Assimp::BaseImporter* const wanted = importer.GetImporter(format.c_str());
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
@@ -94,7 +95,7 @@ void refuse_cut_off_stl(const std::string& bytes) {
   }
 }
 
-// Of STL, OBJ and COLLADA.
+// Reads STL, OBJ and COLLADA.
 std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::string& format) {
   if (format == "stl") refuse_cut_off_stl(bytes);
   if (format == "dae") {
@@ -112,8 +113,8 @@ std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::st
 
 }  // namespace
 
-// No post-processing step of assimp is used: what it would join and triangulate is joined and
-// triangulated here. Assimp throws for some malformed files, so everything is caught.
+// No post-processing step of assimp is used: joining and triangulating is done here. Assimp throws
+// for some malformed files, so everything is caught.
 std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
                                                            const std::string& format) {
   try {
@@ -127,7 +128,7 @@ std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& by
   } catch (const BadMesh& fault) {
     return MeshFault{fault.reason};
   } catch (const std::bad_alloc&) {
-    throw;  // the child process says how much it may have
+    throw;  // the child process tells how much memory it may have
   } catch (const std::exception& fault) {
     return MeshFault{fault.what()};
   }

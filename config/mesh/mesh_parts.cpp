@@ -10,39 +10,48 @@
 #include <utility>
 
 #include "config/mesh/file_lock.hpp"
+#include "config/text/file_bytes.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {
 
-// To be raised when the same mesh would be split otherwise: what is kept from before is then made
-// anew.
-constexpr int kMethod = 2;
+// Raised when the same mesh would be split in another way: parts that are kept are then made anew.
+constexpr int kMethod = 3;
 
-// A hull that is found sooner is found anew at every start, s.
+// A hull that took less time is not kept, but found anew at every start, s.
 constexpr double kWorthKeeping = 0.1;
 
-// Of all that decides on the parts.
+// Hashes all that decides on the parts: neither the mesh file's name nor the cell's is in it.
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
   hash.add(bytes);
-  hash.add(fmt::format("{} {:a} {:a} {:a} {} {:a} {:a} {}", kMethod, use.scale.x(), use.scale.y(),
-                       use.scale.z(), static_cast<int>(use.unit), use.reach, use.limits.tolerance,
-                       use.limits.max_parts));
+  hash.add(fmt::format("{} {} {:a} {:a} {:a} {} {:a} {:a} {}", kMethod,
+                       std::filesystem::path(use.file).extension().string(), use.scale.x(),
+                       use.scale.y(), use.scale.z(), static_cast<int>(use.unit), use.reach,
+                       use.limits.tolerance, use.limits.max_parts));
   return fmt::format("{:016x}", hash.value());
 }
 
-void to_metres(const MeshUse& use, TriangleMesh& mesh) {
+void scale(const MeshUse& use, TriangleMesh& mesh) {
   for (Vec3& v : mesh.vertices) {
-    v = {metres(v.x() * use.scale.x(), use.unit), metres(v.y() * use.scale.y(), use.unit),
-         metres(v.z() * use.scale.z(), use.unit)};
+    v = {to_metres(v.x() * use.scale.x(), use.unit), to_metres(v.y() * use.scale.y(), use.unit),
+         to_metres(v.z() * use.scale.z(), use.unit)};
   }
+}
+
+// A body of 1 cm in the place of a mesh that is not split yet.
+MeshParts stand_in() {
+  MeshParts parts;
+  parts.shapes.push_back(std::get<ConvexBody>(point(Vec3::Zero(), 0.01)));
+  return parts;
 }
 
 std::string_view bytes_of(const std::vector<Vec3>& vertices) {
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(Vec3)};
 }
 
-// Nothing where a part is no body: what was kept is not what was made.
+// Returns nothing where a part is no body: what was kept is not what was made.
 std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
   MeshParts bodies{{}, parts.error};
   for (const auto& vertices : parts.parts) {
@@ -56,6 +65,22 @@ std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
 
 }  // namespace
 
+// The cell of a recording has no folder of its own: its parts are in the user's cache.
+MeshLibrary::MeshLibrary(const std::filesystem::path& cell, Revision& revision,
+                         std::function<void(const std::string&)> tell, Advice advice)
+    : directory_(cell.parent_path()),
+      revision_(revision),
+      cache_(revision.root().empty() ? std::optional(directory_) : std::nullopt),
+      tell_(std::move(tell)),
+      advice_(advice) {}
+
+void MeshLibrary::split_from_here() {
+  splits_ = true;
+  has_put_off_ = false;
+  for (auto& [path, file] : files_) file.counted = false;
+  for (auto& [key, made] : made_) made.counted = false;
+}
+
 std::filesystem::path MeshLibrary::path_of(const MeshUse& use) const {
   return path_in(revision_.root(), directory_, use.file);
 }
@@ -65,19 +90,20 @@ std::filesystem::path MeshLibrary::path_of(const MeshUse& use) const {
 MeshLibrary::File& MeshLibrary::load(const std::filesystem::path& path) {
   const auto [entry, is_new] = files_.try_emplace(path.string());
   File& file = entry->second;
-  if (!is_new) return file;
-  auto bytes = read_bytes(path.string());
-  if (auto* fault = std::get_if<MeshFault>(&bytes)) {
-    file.refusal = {MeshRefusal::Kind::kFile, std::move(fault->reason)};
-    return file;
+  if (is_new) {
+    auto bytes = read_bytes(path.string());
+    if (auto* fault = std::get_if<FileFault>(&bytes)) {
+      file.refusal = {MeshRefusal::Kind::kFile, std::move(fault->reason)};
+    } else {
+      file.bytes = std::get<std::string>(std::move(bytes));
+    }
   }
-  file.bytes = std::get<std::string>(std::move(bytes));
-  revision_.add_file(path, file.bytes);
+  if (!file.refusal && !std::exchange(file.counted, true)) revision_.add_file(path, file.bytes);
   return file;
 }
 
-std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
-                                                          const std::string& key, File& file) {
+// The size is checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
+std::variant<TriangleMesh, MeshRefusal> MeshLibrary::mesh_of(const MeshUse& use, File& file) {
   const std::filesystem::path path = path_of(use);
   if (!file.mesh) {
     auto read = read_mesh(file.bytes, path.extension().string());
@@ -89,18 +115,25 @@ std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
     file.mesh = std::get<TriangleMesh>(std::move(read));
   }
   TriangleMesh mesh = *file.mesh;
-  to_metres(use, mesh);
-  // Checked after scaling: a wrong unit shows as a mesh of a thousand times the size.
+  scale(use, mesh);
   for (const Vec3& vertex : mesh.vertices) {
     const double farthest = vertex.cwiseAbs().maxCoeff();
     if (farthest > use.reach) {
       return MeshRefusal{MeshRefusal::Kind::kTooLarge, fmt::format("{:.4g} m", farthest)};
     }
   }
+  return mesh;
+}
+
+std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
+                                                          const std::string& key, File& file) {
+  const std::string name = path_of(use).filename().string();
+  auto mesh = mesh_of(use, file);
+  if (auto* refusal = std::get_if<MeshRefusal>(&mesh)) return std::move(*refusal);
   const auto start = std::chrono::steady_clock::now();
-  auto made = convex_parts(mesh, use.limits, [&] {
-    say(fmt::format("{}: not convex; being split into parts within {:g} mm of it ...",
-                    path.filename().string(), 1e3 * use.limits.tolerance));
+  auto made = convex_parts(std::get<TriangleMesh>(mesh), use.limits, [&] {
+    say(fmt::format("{}: not convex; being split into parts within {:g} mm of it ...", name,
+                    1e3 * use.limits.tolerance));
   });
   if (auto* error = std::get_if<ShapeError>(&made)) {
     return MeshRefusal{MeshRefusal::Kind::kNotSolid, std::move(error->reason)};
@@ -108,57 +141,83 @@ std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
   auto& parts = std::get<ConvexParts>(made);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   if (parts.is_hull) {
-    if (took.count() > kWorthKeeping) cache_.keep(path.filename().string(), key, parts);
+    if (took.count() > kWorthKeeping) cache_.keep(key, parts);
     return std::move(parts);
   }
-  const std::filesystem::path kept = cache_.keep(path.filename().string(), key, parts);
-  say(fmt::format(
-      "{}: {} part{}, {:.1f} mm, in {:.1f} s; {}", path.filename().string(), parts.parts.size(),
-      parts.parts.size() == 1 ? "" : "s", 1e3 * parts.error, took.count(),
-      kept.empty() ? fmt::format("warning: '{}' cannot be written, so they will be made "
-                                 "again at the next start",
-                                 cache_.folder().string())
-                   : fmt::format("kept in '{}'", kept.string())));
+  const std::filesystem::path kept = cache_.keep(key, parts);
+  say(fmt::format("{}: {}, {:.1f} mm, in {:.1f} s; {}", name, counted(parts.parts.size(), "part"),
+                  1e3 * parts.error, took.count(),
+                  kept.empty() ? fmt::format("warning: '{}' cannot be written, so they will be "
+                                             "made again at the next start",
+                                             cache_.folder().string())
+                               : fmt::format("kept in '{}'", kept.string())));
   return std::move(parts);
 }
 
-std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
+std::optional<MeshParts> MeshLibrary::kept(const std::string& key) const {
+  const auto parts = cache_.find(key);
+  return parts ? bodies_of(*parts) : std::nullopt;
+}
+
+// A mesh that cannot be read, or is too large, is refused at once.
+std::variant<MeshParts, MeshRefusal> MeshLibrary::put_off(const MeshUse& use, File& file) {
+  auto mesh = mesh_of(use, file);
+  if (auto* refusal = std::get_if<MeshRefusal>(&mesh)) return std::move(*refusal);
+  has_put_off_ = true;
+  return stand_in();
+}
+
+// When programs start together on a new mesh, one splits it, and the others wait for its parts.
+std::variant<MeshParts, MeshRefusal> MeshLibrary::make(const MeshUse& use, const std::string& key,
+                                                       File& file) {
   const std::filesystem::path path = path_of(use);
-  File& file = load(path);
+  const FileLock lock(path, [&] {
+    say(fmt::format("{}: another program splits it ...", path.filename().string()));
+  });
+  if (lock.waited()) {
+    if (auto bodies = kept(key)) return *std::move(bodies);
+  }
+  auto made = split(use, key, file);
+  if (auto* refusal = std::get_if<MeshRefusal>(&made)) return std::move(*refusal);
+  if (auto bodies = bodies_of(std::get<ConvexParts>(made))) return *std::move(bodies);
+  return MeshRefusal{MeshRefusal::Kind::kNotSolid, "a part of it is flat"};
+}
+
+void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) const {
+  if (parts.error <= use.limits.tolerance) return;
+  const std::string limits =
+      parts.shapes.size() < use.limits.max_parts
+          ? std::string("tolerance")
+          : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts);
+  say(fmt::format(
+      "warning: {}: its {} reach {:.1f} mm beyond it, more than the tolerance of {:g} "
+      "mm: raise {} in {}",
+      path_of(use).filename().string(), counted(parts.shapes.size(), "part"), 1e3 * parts.error,
+      1e3 * use.limits.tolerance, limits,
+      advice_ == Advice::kCell ? "the cell" : "a cell, which clearance-scene --from-urdf writes"));
+}
+
+std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
+  File& file = load(path_of(use));
   if (file.refusal) return *file.refusal;
   const std::string key = key_of(use, file.bytes);
-  if (const auto made = made_.find(key); made != made_.end()) return made->second;
-  const std::string name = path.filename().string();
-  const auto kept_bodies = [&]() -> std::optional<MeshParts> {
-    const auto kept = cache_.find(name, key);
-    return kept ? bodies_of(*kept) : std::nullopt;
-  };
-  std::optional<MeshParts> bodies = kept_bodies();
-  std::optional<FileLock> lock;
-  if (!bodies) {
-    lock.emplace(path, [&] { say(fmt::format("{}: another program splits it ...", name)); });
-    if (lock->waited()) bodies = kept_bodies();
+  auto made = made_.find(key);
+  if (made == made_.end()) {
+    std::optional<MeshParts> bodies = kept(key);
+    if (!bodies && !splits_) return put_off(use, file);
+    if (!bodies) {
+      auto result = make(use, key, file);
+      if (std::holds_alternative<MeshRefusal>(result)) return result;
+      bodies = std::get<MeshParts>(std::move(result));
+    }
+    warn_of_error(use, *bodies);
+    made = made_.emplace(key, Made{.parts = *std::move(bodies)}).first;
   }
-  if (!bodies) {
-    auto split_now = split(use, key, file);
-    if (auto* refusal = std::get_if<MeshRefusal>(&split_now)) return std::move(*refusal);
-    bodies = bodies_of(std::get<ConvexParts>(split_now));
+  const MeshParts& parts = made->second.parts;
+  if (!std::exchange(made->second.counted, true) && parts.shapes.size() > 1) {
+    for (const ConvexBody& shape : parts.shapes) revision_.add(bytes_of(shape.anchors));
   }
-  if (!bodies) return MeshRefusal{MeshRefusal::Kind::kNotSolid, "a part of it is flat"};
-  if (bodies->error > use.limits.tolerance) {
-    say(fmt::format(
-        "warning: {}: its {} part{} reach {:.1f} mm beyond it, more than the tolerance "
-        "of {:g} mm: raise {} in the cell (clearance-scene --from-urdf writes one)",
-        path.filename().string(), bodies->shapes.size(), bodies->shapes.size() == 1 ? "" : "s",
-        1e3 * bodies->error, 1e3 * use.limits.tolerance,
-        bodies->shapes.size() < use.limits.max_parts
-            ? std::string("tolerance")
-            : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts)));
-  }
-  if (bodies->shapes.size() > 1) {
-    for (const ConvexBody& shape : bodies->shapes) revision_.add(bytes_of(shape.anchors));
-  }
-  return made_.emplace(key, *std::move(bodies)).first->second;
+  return parts;
 }
 
 }  // namespace clearance

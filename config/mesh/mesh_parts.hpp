@@ -1,6 +1,7 @@
-// The convex parts of the mesh files of a cell: read, split, kept.
+// Reads, splits and keeps the convex parts of the meshes of a cell.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -20,53 +21,72 @@ namespace clearance {
 
 // A mesh file and how its coordinates become metres.
 struct MeshUse {
-  std::string file;  // relative to the reader's directory
+  std::string file;  // relative to the cell's folder
   Vec3 scale = Vec3::Ones();
   LengthUnit unit = LengthUnit::kMetre;
-  // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file,
-  // or another unit, would make a body so large that it contains the whole cell.
+  // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file, or
+  // another unit, would make a body so large that it contains the whole cell.
   double reach = 100.0;
   PartLimits limits = {};
 };
 
-// What certainly contains the mesh, and how far beyond it that reaches, m (ConvexParts::error).
+// Bodies that certainly contain the mesh, and how far they reach beyond it, m (ConvexParts::error).
 struct MeshParts {
   std::vector<ConvexBody> shapes;
   double error = 0.0;
 };
 
-// Why there are none; of kTooLarge how far from its origin it reaches.
+// Why a mesh has no parts. `reason` of kTooLarge is its largest coordinate.
 struct MeshRefusal {
-  enum class Kind { kFile, kDamaged, kTooLarge, kNotSolid };  // kFile: there is none
+  enum class Kind { kFile, kDamaged, kTooLarge, kNotSolid };  // kFile: it cannot be opened
   Kind kind;
   std::string reason;
 };
 
+// Where a person raises the limits of a mesh: in the cell, or, where a program was given a URDF, in
+// a cell that has to be written first.
+enum class Advice : std::uint8_t { kCell, kUrdf };
+
 // Files are read once, and parts of the same use are made once, as long as this lives.
+//
+// A cell is read twice where a mesh has to be split: first to find its mistakes, with a small body
+// in the place of each mesh whose parts are not kept yet, then with the parts.
 class MeshLibrary {
  public:
-  // Mesh paths are relative to the folder of `cell`; the bytes of every mesh, and what it was split
+  // Mesh paths are relative to the folder of `cell`. The bytes of every mesh, and what it was split
   // into, go into `revision` once. `tell` gets a line, without its end, when a mesh is being split,
-  // and where its parts are farther from it than the tolerance; may be empty.
+  // and when its parts are farther from it than the tolerance; it may be empty.
   MeshLibrary(const std::filesystem::path& cell, Revision& revision,
-              std::function<void(const std::string&)> tell)
-      : directory_(cell.parent_path()),
-        revision_(revision),
-        cache_(revision.root().empty() ? cell : std::filesystem::path()),
-        tell_(std::move(tell)) {}
+              std::function<void(const std::string&)> tell, Advice advice = Advice::kCell);
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
+
+  // Tells whether parts() has returned a stand-in for a mesh that has to be split.
+  [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
+  // Prepares for reading the cell again, into a revision that begins anew: meshes are now split.
+  void split_from_here();
 
  private:
   struct File {
     std::string bytes;
-    std::optional<TriangleMesh> mesh;  // once it was needed
+    std::optional<TriangleMesh> mesh;  // once it was needed; in the file's unit
     std::optional<MeshRefusal> refusal;
+    bool counted = false;  // in the revision
+  };
+  struct Made {
+    MeshParts parts;
+    bool counted = false;  // in the revision
   };
   [[nodiscard]] std::filesystem::path path_of(const MeshUse& use) const;
   File& load(const std::filesystem::path& path);
+  // Returns the mesh in metres, or refuses one that is too large.
+  std::variant<TriangleMesh, MeshRefusal> mesh_of(const MeshUse& use, File& file);
+  [[nodiscard]] std::optional<MeshParts> kept(const std::string& key) const;
+  std::variant<MeshParts, MeshRefusal> put_off(const MeshUse& use, File& file);
+  std::variant<MeshParts, MeshRefusal> make(const MeshUse& use, const std::string& key, File& file);
   std::variant<ConvexParts, MeshRefusal> split(const MeshUse& use, const std::string& key,
                                                File& file);
+  void warn_of_error(const MeshUse& use, const MeshParts& parts) const;
   void say(const std::string& line) const {
     if (tell_) tell_(line);
   }
@@ -75,8 +95,10 @@ class MeshLibrary {
   Revision& revision_;
   PartsCache cache_;
   std::function<void(const std::string&)> tell_;
+  Advice advice_;
+  bool splits_ = false, has_put_off_ = false;
   std::map<std::string, File> files_;
-  std::map<std::string, MeshParts> made_;  // by key
+  std::map<std::string, Made> made_;  // by key
 };
 
 }  // namespace clearance

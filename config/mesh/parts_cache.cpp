@@ -32,7 +32,8 @@ std::string text_of(const std::string& key, const ConvexParts& parts) {
   return text + kChecksum + checksum(text) + "\n";
 }
 
-// Word by word. What a checksum let pass is no surprise any more, but it must not crash.
+// Reads the text word by word. A text with a correct checksum is hardly wrong, but it must not
+// crash the reader.
 class PartsText {
  public:
   explicit PartsText(const std::string& text) : words_(text) {}
@@ -82,11 +83,7 @@ std::optional<ConvexParts> parts_of(const std::string& text, const std::string& 
   return parts.parts.empty() ? std::nullopt : std::optional(std::move(parts));
 }
 
-std::string file_name(const std::string& name, const std::string& key) {
-  return fmt::format("{}-{}.parts", name, key);
-}
-
-// Several programs may read a new cell at once: each writes a file of its own and moves it.
+// Several programs may read a new cell at once: each writes a file of its own and renames it.
 bool write_whole(const std::filesystem::path& file, const std::string& text) {
   std::error_code fault;
   std::filesystem::create_directories(file.parent_path(), fault);
@@ -103,8 +100,8 @@ bool write_whole(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-PartsCache::PartsCache(const std::filesystem::path& cell) {
-  if (!cell.empty()) folders_.emplace_back(cell) += ".parts";
+PartsCache::PartsCache(const std::optional<std::filesystem::path>& beside) {
+  if (beside) folders_.push_back(*beside / "clearance.parts");
   const char* const cache = std::getenv("XDG_CACHE_HOME");
   const char* const home = std::getenv("HOME");
   if (cache != nullptr && *cache == '/') {
@@ -114,9 +111,9 @@ PartsCache::PartsCache(const std::filesystem::path& cell) {
   }
 }
 
-std::optional<ConvexParts> PartsCache::find(const std::string& name, const std::string& key) const {
+std::optional<ConvexParts> PartsCache::find(const std::string& key) const {
   for (const std::filesystem::path& folder : folders_) {
-    std::ifstream stream(folder / file_name(name, key), std::ios::binary);
+    std::ifstream stream(folder / (key + ".parts"), std::ios::binary);
     if (!stream) continue;
     std::ostringstream text;
     text << stream.rdbuf();
@@ -125,11 +122,10 @@ std::optional<ConvexParts> PartsCache::find(const std::string& name, const std::
   return std::nullopt;
 }
 
-std::filesystem::path PartsCache::keep(const std::string& name, const std::string& key,
-                                       const ConvexParts& parts) const {
+std::filesystem::path PartsCache::keep(const std::string& key, const ConvexParts& parts) const {
   const std::string text = text_of(key, parts);
   for (const std::filesystem::path& folder : folders_) {
-    if (write_whole(folder / file_name(name, key), text)) return folder;
+    if (write_whole(folder / (key + ".parts"), text)) return folder;
   }
   return {};
 }

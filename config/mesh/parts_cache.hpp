@@ -1,9 +1,10 @@
-// Keeps the convex parts of meshes beside the cell, so that they are made once.
+// Keeps the convex parts of meshes, so that they are made once.
 //
-// A file a mesh, scale, unit and limits: CELL.yaml.parts/NAME-KEY.parts, or, where that cannot be
-// written, XDG_CACHE_HOME/clearance/parts (default ~/.cache). Text: the key, the error, each part's
-// vertices as hexadecimal floating-point numbers, and a checksum. A file that is damaged counts as
-// none, and is written anew.
+// One folder serves all cells of a folder: clearance.parts beside them, or, where that cannot be
+// written, XDG_CACHE_HOME/clearance/parts (default ~/.cache). A file holds the parts of a mesh, a
+// scale, a unit and limits, and is called by the hash of all these: KEY.parts. It is text: the key,
+// the error, each part's vertices as hexadecimal floating-point numbers, and a checksum. A file
+// that is damaged, or is something else, counts as none, and is written anew.
 #pragma once
 
 #include <filesystem>
@@ -17,19 +18,17 @@ namespace clearance {
 
 class PartsCache {
  public:
-  // `cell`: the file that the cell was read from, or the URDF of a robot without one; empty: there
-  // is no folder beside it, as for the cell of a recording.
-  explicit PartsCache(const std::filesystem::path& cell);
+  // `beside`: the folder of the cell, or of the URDF of a robot without one; nothing: there is
+  // none, as for the cell of a recording.
+  explicit PartsCache(const std::optional<std::filesystem::path>& beside);
 
-  // `name`: of the mesh file without its folder; `key`: of all that decides on the parts.
-  [[nodiscard]] std::optional<ConvexParts> find(const std::string& name,
-                                                const std::string& key) const;
+  // `key`: the hash of all that decides on the parts.
+  [[nodiscard]] std::optional<ConvexParts> find(const std::string& key) const;
 
-  // The folder where they are now; empty: neither could be written.
-  std::filesystem::path keep(const std::string& name, const std::string& key,
-                             const ConvexParts& parts) const;
+  // Returns the folder where they are now; empty: no folder could be written.
+  std::filesystem::path keep(const std::string& key, const ConvexParts& parts) const;
 
-  // Where they belong, for messages.
+  // Returns the folder where parts belong, for messages.
   [[nodiscard]] std::filesystem::path folder() const {
     return folders_.empty() ? "XDG_CACHE_HOME" : folders_.front();
   }

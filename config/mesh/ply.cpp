@@ -1,5 +1,5 @@
-// A header of lines, then the numbers of each element in the order in which the header names them.
-// The first thing wrong ends the reading by an exception that does not leave this file.
+// A header of lines is followed by the numbers of each element, in the header's order. The first
+// fault ends the reading by an exception that does not leave this file.
 #include "config/mesh/ply.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace clearance {
 namespace {
 
-// Left through ply_triangles() only.
+// Thrown and caught inside this file.
 struct BadPly {
   std::string reason;
 };
@@ -61,12 +61,12 @@ struct Header {
   std::vector<Element> elements;
 };
 
-// The words of a file, and behind the header its numbers.
+// Reads the words of a file, and the numbers behind its header.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
 
-  // The words of the next line.
+  // Returns the words of the next line.
   std::vector<std::string_view> line() {
     const std::size_t end = rest_.find('\n');
     if (end == std::string_view::npos) throw BadPly{"its header has no end"};
@@ -103,7 +103,7 @@ class Reader {
  private:
   static constexpr std::string_view kBlanks = " \t\r\n";
 
-  // Empty at the end.
+  // Returns an empty word at the end.
   std::string_view word() {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
     const std::size_t end = std::min(rest_.find_first_of(kBlanks), rest_.size());
@@ -153,7 +153,7 @@ std::uint64_t count_of(std::string_view text) {
   return count;
 }
 
-// One line behind the first; false at the end of the header.
+// Reads one line behind the first; returns false at the end of the header.
 bool read_header_line(const std::vector<std::string_view>& words, Header& header) {
   if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
   if (words[0] == "end_header" && words.size() == 1) return false;
@@ -184,13 +184,14 @@ Header read_header(Reader& reader) {
   return header;
 }
 
-// Vertices, and three corners of each triangle as numbers of vertices.
+// Vertices, and triangles as three indices of vertices.
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<double> corners;
 };
 
-// Counts that no file of this size can hold end at the end of the file: nothing is reserved.
+// A count that no file of this size can hold fails at the end of the file: nothing is reserved for
+// it.
 std::vector<double> read_list(const Property& property, Format format, Reader& reader) {
   const double count = reader.number(*property.count_type, format);
   if (!(count >= 0.0) || count != std::floor(count)) {

@@ -1,4 +1,4 @@
-// The sums of ForwardKinematics::carry, with the largest lengths that can stand in them.
+// Bounds the sums of ForwardKinematics::carry with the largest lengths that can stand in them.
 #include "config/scene/chain_rounding.hpp"
 
 #include <algorithm>
@@ -7,23 +7,23 @@
 namespace clearance {
 namespace {
 
-// The sums below round, too: by less than this in all.
+// The sums in this file round as well; together they lose less than this factor.
 constexpr double kRounded = 1.0 + 0x1p-40;
 
-// Of one link: its error, and how far it can be from the world's origin, m.
+// The bound of one link: its error, and its largest distance from the world's origin, m.
 struct LinkBound {
   ChainError error;
   double farthest = 0.0;
 };
 
-// The largest length that a position can have.
+// Returns the largest length that a position can have, m.
 double largest(const JointVariable& variable, double multiplier, double offset) noexcept {
   const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
   const double way = std::isfinite(limit) ? limit : kSureWay;
   return std::abs(multiplier) * way + std::abs(offset);
 }
 
-// As of the joint's largest_slide.
+// Returns the largest slide of the joint, as ForwardKinematics does.
 double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
   switch (joint.type) {
     case JointType::kPrismatic:
@@ -84,7 +84,7 @@ void account_for(const ChainError& error, Object& object) {
     reach = std::max(reach, part.object_from_part.position.norm() + part.shape.bounding_radius);
     reach += part.shape.radius + part.shape.position_error;
   }
-  // Twice the arm: what asks for the error at run time takes a sphere around the parts for them.
+  // The lever arm is doubled: at run time, the error is taken for a sphere around the parts.
   object.pose_error = kRounded * (error.shift + 2.0 * error.turn * reach);
   for (Part& part : object.parts) {
     ConvexBody& shape = part.shape;

@@ -1,4 +1,4 @@
-// How far a robot's links can be from where the doubles of forward kinematics put them.
+// Bounds how far a robot's links can be from the poses that forward kinematics computes in doubles.
 #pragma once
 
 #include <vector>
@@ -8,32 +8,33 @@
 
 namespace clearance {
 
-// How far a joint's rotation can be from the exact one, rad, and its step for each metre: the
-// origin's quaternion, made of three angles by some forty operations, is within 2^-48 of its half,
-// the half angle's sine and cosine within 2^-50, and two products of quaternions round eight times
-// more.
+// A joint's rotation is within this of the exact one, rad, and its step within this for each metre.
+// The origin's quaternion, made of three angles by some forty operations, is within 2^-48 of its
+// half. The half angle's sine and cosine are within 2^-50, and two products of quaternions round
+// eight times more.
 inline constexpr double kJointError = 0x1p-46;
-// Of a position that is scaled and shifted (mimic), for each radian or metre.
+// A position that is scaled and shifted (mimic) is within this, for each radian or metre.
 inline constexpr double kPositionError = 0x1p-51;
 
-// Up to these the bound below holds: angles, rad; ways of joints without limits, and how far an
-// object that a robot stands on is from the world's origin, m.
+// The bounds hold up to these limits: angles in rad; lengths in m, of joints without limits and of
+// the position of an object that carries a robot.
 inline constexpr double kSureAngle = 1e3;
 inline constexpr double kSureWay = 1e2;
 
-// No point within r of a link's origin is farther than shift + turn r from where the chain has it.
+// No point within r of a link's origin is farther than shift + turn r from its place by forward
+// kinematics.
 struct ChainError {
   double shift = 0.0;  // m
   double turn = 0.0;   // rad
 };
 
-// Of every link of the last of these robots, as Robot::links. The robots before it are those that
-// it may stand on.
+// Returns the error of every link of the last of these robots, as Robot::links. It may stand on the
+// robots before it.
 [[nodiscard]] std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
                                                      const std::vector<JointVariable>& variables);
 
-// The object's points are where its pose puts them, to within this error of the pose: its parts'
-// own errors grow by it, so that every bound holds for the chain. Object::pose_error is set.
+// Widens the errors of the object's parts by this error of its pose, so that every bound holds for
+// the chain. Object::pose_error is set.
 void account_for(const ChainError& error, Object& object);
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// The share of the budget that refreshing every pair in time takes.
+// The share of the budget that refreshes every pair in time.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,17 @@
 
 namespace clearance {
 
-// What it takes to refresh some pairs round-robin, the stalest first.
+// The cost of refreshing some pairs round-robin, the stalest first.
 struct RefreshCost {
-  std::uint64_t part_pairs = 0;  // of all pairs: at most this many queries evaluate each pair once
-  std::uint64_t most = 0;        // of the pair that has the most
+  std::uint64_t part_pairs = 0;  // sum over the pairs: queries that evaluate each once, at most
+  std::uint64_t most = 0;        // part pairs of the largest pair
 
   void add(std::uint64_t part_pairs_of_one) noexcept;
-  // Queries a tick that refresh every pair within `ticks`.
+  // Returns the queries a tick that refresh every pair within `ticks`.
   [[nodiscard]] std::uint64_t queries(std::uint64_t ticks) const noexcept;
 };
 
-// Queries that refreshing takes in each tick. A cell whose budget is smaller is refused when it is
+// The queries of each tick that refresh pairs. A cell whose budget is smaller is refused when it is
 // loaded.
 struct RefreshShare {
   std::uint64_t ticks = 1;  // every pair is refreshed within so many
@@ -32,11 +32,12 @@ struct RefreshShare {
   }
 };
 
-// Published pairs stay apart if all their part pairs fit into the budget of one tick, unless only
-// the common round-robin fits. The caller compares queries() with Scene::budget.
+// Published pairs stay apart if all their part pairs fit into the budget of one tick, unless only a
+// common round-robin fits. The caller compares queries() with Scene::budget.
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
 
-// Whether a pair is published: it is then evaluated in every tick as long as the budget allows.
+// Tells whether a pair is published: it is then evaluated in every tick as long as the budget
+// lasts.
 [[nodiscard]] inline bool is_published(const ObjectPair& pair, const Scene& scene) noexcept {
   return pair.publish || scene.evaluate_all;
 }

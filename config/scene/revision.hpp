@@ -1,5 +1,5 @@
-// The files of a scene: where they are, and their 64-bit FNV-1a hash, by which two scenes are told
-// apart. It detects mistakes, not attacks.
+// The files of a cell: their paths, and their 64-bit FNV-1a hash, by which two scenes are told
+// apart. The hash detects mistakes, not attacks.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace clearance {
 
-// `name` as it is written in a file that stands in `base`. Under a `root`, which is not empty,
-// stand the files of another machine, as they did there: absolute paths lead there as well, and
-// those that do already stay as they are.
+// Returns the path of a file that a file in the folder `base` calls `name`. A `root` holds the
+// files of another machine at their paths there: absolute names then lead into it as well. Names
+// that lie in it already stay as they are.
 [[nodiscard]] inline std::filesystem::path path_in(const std::filesystem::path& root,
                                                    const std::filesystem::path& base,
                                                    const std::filesystem::path& name) {
@@ -24,7 +24,7 @@ namespace clearance {
 
 class Revision {
  public:
-  // As of path_in().
+  // `root` as in path_in().
   explicit Revision(std::filesystem::path root = {}) : root_(std::move(root)) {}
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
 
@@ -34,16 +34,16 @@ class Revision {
     }
   }
 
-  // A file's bytes; its path is kept.
+  // Adds a file's bytes, and keeps its path.
   void add_file(const std::filesystem::path& path, std::string_view bytes) {
     add(bytes);
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (std::ranges::find(files_, absolute) == files_.end()) files_.push_back(absolute);
   }
-  // Absolute; each once, in order.
+  // Returns absolute paths, each once, in the order in which they were added.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
 
-  // Never 0: on the wire that means "not checked".
+  // The hash is never 0, which means "not checked" on the wire.
   [[nodiscard]] std::uint64_t value() const noexcept { return hash_ == 0 ? 1 : hash_; }
 
  private:

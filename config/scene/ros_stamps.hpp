@@ -1,11 +1,11 @@
-// The two times that a message of ROS 2 has.
+// The two times of a message of ROS 2.
 #pragma once
 
 #include <cstdint>
 
 namespace clearance {
 
-// When a message of ROS 2 held: as its header says, or when it was sent, by the clock of the
+// Which time counts: that of the message's header, or that of its sending, by the clock of the
 // machine that sent it.
 enum class RosStamps : std::uint8_t { kMessage, kSent };
 

@@ -1,4 +1,4 @@
-// What is asked of a Scene as a whole.
+// Counts over a whole Scene.
 #include "config/scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -6,15 +6,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
-namespace {
-
-// "1 object", "2 objects".
-std::string counted(std::size_t count, const std::string& singular) {
-  return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 SeparatedCount separated_count(const Scene& scene) noexcept {
   SeparatedCount count;

@@ -1,5 +1,5 @@
 // A robot cell as the tick needs it: plain structs, already checked. config/cell/cell.hpp has the
-// rest of a cell, and config/cell/cell_file.hpp reads both from YAML.
+// rest of a cell; config/cell/cell_file.hpp reads both from YAML.
 //
 // Ids are indices: object i is scene.objects[i], in the order of the file. SI units; stamps in ns.
 #pragma once
@@ -30,24 +30,24 @@ struct Object {
   std::vector<std::string> groups;
   std::vector<Part> parts;
   bool fixed = false;
-  Pose world_from_object;  // of a fixed object; of a moving one: meaningless until a pose arrives
-  double margin = 0.0;     // m, >= 0: zones subtract it; published distances do not
-  double max_speed = kInfinity;  // m/s, of any point of the object; infinity: not stated
+  Pose world_from_object;        // of a fixed object; a moving one's arrives at run time
+  double margin = 0.0;           // m, >= 0: zones subtract it; published distances do not
+  double max_speed = kInfinity;  // m/s: no point is faster; infinity: not stated
   // An older pose makes the object's pairs stale; unused by fixed objects.
   std::int64_t age_limit_ns = 0;
-  // A pose that comes again, bit for bit, for longer than this is frozen; 0: it may, as of an
+  // A pose that repeats bit for bit for longer than this is frozen; 0: it may repeat, as that of an
   // object at rest.
   std::int64_t frozen_limit_ns = 0;
-  // Of a link whose pose follows from joints: no point of it is farther from where the chain has
-  // it, m. Its parts' own errors have been widened by it. 0: of poses that are sent.
+  // For a link whose pose follows from joints: the largest distance of a point from its place by
+  // forward kinematics, m. The errors of its parts include it. 0: poses are sent.
   double pose_error = 0.0;
-  bool may_jump = false;  // poses need not be such as the object can have reached: a simulation's
-  // Only poses of this source are used; empty: of the first that sends some, while it does.
+  bool may_jump = false;  // its poses may jump, as a simulation's do
+  // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
-  std::string frame;  // of tf, whose poses are the object's; empty: none
+  std::string frame;  // of tf: its pose is the object's; empty: none
 };
 
-// Two objects to be watched. first < second; every pair once.
+// Two objects that are watched. first < second; every pair stands once.
 struct ObjectPair {
   std::uint32_t first = 0, second = 0;
   bool publish = false;  // in every report's pair list, not only when it is the minimum
@@ -60,11 +60,11 @@ struct Zone {
   double enter_below = 0.0;                   // m
   double leave_above = 0.0;                   // m, >= enter_below: hysteresis
   std::vector<std::uint32_t> pairs;           // indices into Scene::pairs
-  std::optional<Separation> separation = {};  // of people and a robot; its pairs are published
+  std::optional<Separation> separation = {};  // between people and a robot; its pairs are published
 };
 
 // All that the tick reads. Indices are valid, names unique, pairs sorted by (first, second), and
-// the budget covers the refreshing: whoever has a Scene checks none of this again.
+// the budget covers the refreshing: nothing of this is checked again.
 struct Scene {
   std::string name;
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
@@ -76,21 +76,21 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  bool gradients = false;  // of published pairs by the joints of robots: in every report
+  bool gradients = false;  // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;
-  std::vector<Robot> robots;  // each stands on the world, an object, or a robot before it
-  std::vector<JointVariable> variables;  // of all robots: what joint states can give
+  std::vector<Robot> robots;             // each stands on the world, an object, or an earlier robot
+  std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;
 };
 
-// How many zones have `separation`, and how many pairs these have, each counted once a zone.
+// Counts the zones with `separation`, and their pairs, each once a zone.
 struct SeparatedCount {
   std::size_t zones = 0, pairs = 0;
 };
 [[nodiscard]] SeparatedCount separated_count(const Scene& scene) noexcept;
 
-// One line: how many objects, robots, parts, facets, pairs and zones.
+// Returns one line: how many objects, robots, parts, facets, pairs and zones.
 [[nodiscard]] std::string summary(const Scene& scene);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// Words one after another, as MoveIt reads them; the name of the scene and of each object are whole
-// lines. The first fault ends the reading.
+// The file is read word by word, as MoveIt does; the names of the scene and of each object are
+// whole lines. The first fault ends the reading.
 #include "config/urdf/planning_scene.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ class Words {
 
   [[noreturn]] void fail(const std::string& reason) const { throw Fault{{line_, reason}}; }
 
-  // The rest of this line, without blanks around it.
+  // Returns the rest of this line, without blanks around it.
   std::string rest_of_line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view line = text_.substr(at_, end - at_);
@@ -37,7 +37,7 @@ class Words {
     return std::string(line);
   }
 
-  // Empty at the end of the file.
+  // Returns an empty word at the end of the file.
   std::string_view word() {
     skip_blanks();
     const std::size_t begin = at_;
@@ -45,7 +45,7 @@ class Words {
     return text_.substr(begin, at_ - begin);
   }
 
-  // Of the next line that has some.
+  // Counts the words of the next line that has some.
   std::size_t words_in_line() {
     skip_blanks();
     std::size_t count = 0;
@@ -75,7 +75,7 @@ class Words {
     return static_cast<std::size_t>(value);
   }
 
-  // MoveIt writes a unit quaternion in six digits: it is made one again.
+  // MoveIt writes unit quaternions in six digits: they are normalised again.
   Pose pose() {
     Pose pose;
     for (int i = 0; i < 3; ++i) pose.position[i] = number("a position in m");
@@ -99,7 +99,7 @@ class Words {
   int line_ = 1;
 };
 
-// In a mesh, its convex hull.
+// A mesh becomes its convex hull.
 ShapeResult read_mesh(Words& words) {
   const std::size_t vertices = words.count("how many vertices the mesh has");
   const std::size_t triangles = words.count("how many triangles the mesh has");
@@ -112,7 +112,7 @@ ShapeResult read_mesh(Words& words) {
   return polyhedron_from_vertices(points);
 }
 
-// a x + b y + c z + d = 0: solid below it.
+// Reads a x + b y + c z + d = 0, a half-space that is solid below.
 ShapeResult read_plane(Words& words) {
   Vec3 normal;
   for (int i = 0; i < 3; ++i) normal[i] = words.number("a plane a b c d");
@@ -170,7 +170,7 @@ Object read_object(Words& words) {
   return object;
 }
 
-// Once for each kind.
+// Adds one note for each kind of shape.
 void note_shapes(PlanningScene& scene) {
   std::string meshes, planes;
   for (const Object& object : scene.objects) {

@@ -1,5 +1,5 @@
 // Reads a planning scene of MoveIt in its text format (.scene), as its RViz panel exports it:
-// obstacles made of boxes, spheres, cylinders, cones, meshes and planes.
+// boxes, spheres, cylinders, cones, meshes and planes.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct PlanningScene {
   std::string name;
   std::vector<Object> objects;  // fixed, without groups
   std::vector<std::string>
-      notes;  // what is not as in the file: meshes are hulls, planes half-spaces
+      notes;  // differences from the file: meshes are hulls, planes half-spaces
 };
 
 struct PlanningSceneFault {
@@ -23,8 +23,8 @@ struct PlanningSceneFault {
   std::string reason;  // "found ...; expected ..."
 };
 
-// Lengths are in m. Both forms of the format: with the pose of each object, and the older one
-// without. Colours and subframes are read and not kept.
+// Reads both forms of the format: with the pose of each object, and the older one without. Lengths
+// are in m. Colours and subframes are skipped.
 [[nodiscard]] std::variant<PlanningScene, PlanningSceneFault> read_planning_scene(
     std::string_view text);
 

@@ -1,4 +1,4 @@
-// Faults and notes are made for people who have the wrong file, or none: they name links and lines.
+// Faults and notes help a person who has the wrong file, or none: they name links and lines.
 #include "config/urdf/robot_exceptions.hpp"
 
 #include <fmt/format.h>
@@ -7,17 +7,16 @@
 #include <map>
 #include <utility>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 
-// An SRDF of another robot disables pairs that have nothing to do with this one, and leaves
-// neighbours watched.
+// An SRDF of another robot would disable unrelated pairs, and leave neighbours watched.
 UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
                      const UrdfRobot& robot, const std::filesystem::path& urdf_file) {
   UrdfFaults faults;
   const auto refuse = [&](int line, const std::string& text) {
-    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, printable(text))});
+    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, excerpt(text))});
   };
   const std::string urdf = urdf_file.filename().string();
   if (srdf.robot != robot.name) {
@@ -26,7 +25,7 @@ UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
   }
   std::set<std::string> links;
   for (const UrdfLink& link : robot.links) links.insert(link.name);
-  // Each name once, where it stands first.
+  // Each name is checked once, at its first place.
   const auto check = [&](const std::string& link, int line) {
     if (!links.insert(link).second) return;
     refuse(line, fmt::format("found the link '{}'; expected one of the links of {}", link, urdf));
@@ -47,7 +46,7 @@ using LinkPair = std::pair<std::string, std::string>;
 
 LinkPair in_order(const std::string& a, const std::string& b) { return std::minmax(a, b); }
 
-// As MoveIt: what is disabled by default, less what is enabled, and what is disabled one by one.
+// As in MoveIt: pairs disabled by default, less the enabled ones, and pairs disabled one by one.
 std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped,
                                        std::vector<std::string>& notes) {
   std::vector<SrdfDisabled> all = srdf.disabled;
@@ -76,8 +75,8 @@ std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped
 
 }  // namespace
 
-// The SRDF speaks of links without shapes too, and sometimes of a pair twice: neither is an
-// exception of ours.
+// The SRDF names links without shapes too, and sometimes a pair twice: neither becomes an
+// exception.
 std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shaped,
                                         const LinkNames& fixed, std::vector<std::string>& notes) {
   std::set<LinkPair> seen;
@@ -108,8 +107,8 @@ std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shape
   return useful;
 }
 
-// A link and the next one above it that has shapes: what joins them overlaps by design. Of links
-// that only hang on the same frame nothing is known, so they stay watched.
+// A link and the next one above it that has shapes overlap by design. Nothing is known of links
+// that merely share a frame, so they stay watched.
 std::vector<SrdfDisabled> neighbours_of(const UrdfRobot& robot, const LinkNames& shaped,
                                         const LinkNames& fixed, std::vector<std::string>& notes) {
   std::map<std::string, std::string> parents;

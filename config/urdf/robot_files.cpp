@@ -11,7 +11,7 @@ namespace {
 
 const std::string kPackage = "package://", kFile = "file://";
 
-// Where an installation of ROS 2 or a workspace of it says that packages are: PREFIX/share/NAME.
+// Looks where an installation or a workspace of ROS 2 has packages: PREFIX/share/NAME.
 std::optional<std::filesystem::path> installed_package(const std::string& package) {
   const char* const prefixes = std::getenv("AMENT_PREFIX_PATH");
   std::istringstream list(prefixes == nullptr ? "" : prefixes);
@@ -23,7 +23,7 @@ std::optional<std::filesystem::path> installed_package(const std::string& packag
   return std::nullopt;
 }
 
-// Under the root of another machine: what was installed there, wherever that was.
+// Looks under the root of another machine for a package that was installed there, at any path.
 std::optional<std::filesystem::path> kept_package(const std::string& package,
                                                   const std::filesystem::path& root) {
   std::error_code fault;
@@ -33,8 +33,8 @@ std::optional<std::filesystem::path> kept_package(const std::string& package,
   return std::nullopt;
 }
 
-// A package that is named wins. Otherwise the search goes upwards, as packages usually contain the
-// description that refers to them; what ROS 2 has installed comes last.
+// A package that the cell names wins. Otherwise the search goes upwards, as packages usually
+// contain the description that refers to them. Installed packages of ROS 2 come last.
 std::optional<std::filesystem::path> directory_of(const std::string& package,
                                                   const RobotFiles& files) {
   for (const auto& [name, directory] : files.packages) {
@@ -72,7 +72,7 @@ std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) c
   return std::filesystem::absolute(path).lexically_normal();
 }
 
-// The matrix product has z on the left.
+// In the matrix product, z stands on the left.
 Pose pose_of(const UrdfOrigin& origin) {
   return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
                           Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *

@@ -1,5 +1,5 @@
-// Where the files are that a robot's description names, and its shapes and frames in our terms:
-// shared by the cells that robots are written to and the cells that name robots.
+// Finds the files that a robot's description names. Cells that robots are written to and cells that
+// name robots share it.
 #pragma once
 
 #include <filesystem>
@@ -13,23 +13,24 @@
 
 namespace clearance {
 
-// Files are named as package://NAME/PATH, file://PATH, or by a path relative to the file that names
-// them.
+// A file is named as package://NAME/PATH, as file://PATH, or by a path relative to the file that
+// names it.
 struct RobotFiles {
   std::filesystem::path named_in;
-  // package:// names and where they are. Others are looked for in the directory of `named_in` and
-  // those above it, a directory of that name or one within, and then where AMENT_PREFIX_PATH says.
+  // Packages and their folders. Others are looked for in the directory of `named_in` and those
+  // above it, as a directory of that name or one within. AMENT_PREFIX_PATH comes last.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   std::filesystem::path root = {};  // as of path_in()
 
-  // The absolute path, whether there is such a file or not; nothing: its package is nowhere.
+  // Returns the absolute path, whether or not there is such a file; nothing: its package was not
+  // found.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
 };
 
-// NAME of package://NAME/PATH; empty: the name has none.
+// Returns NAME of package://NAME/PATH; empty: the name has none.
 [[nodiscard]] std::string package_of(const std::string& name);
 
-// Rpy of URDF: rotations about the fixed axes x, then y, then z.
+// Converts rpy of URDF: rotations about the fixed axes x, then y, then z.
 [[nodiscard]] Pose pose_of(const UrdfOrigin& origin);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// Links are put in an order in which parents come first; then each joint is made from what its type
-// needs. Mimic joints are resolved last, when every joint has its variable.
+// Links are put in an order in which parents come first. Then each joint is made from the elements
+// that its type needs. Mimic joints are resolved last, when every joint has its variable.
 #include "config/urdf/robot_model.hpp"
 
 #include <fmt/format.h>
@@ -11,9 +11,10 @@
 #include <set>
 #include <string_view>
 
+#include "config/text/printable.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "config/urdf/robot_files.hpp"
-#include "config/yaml/spelling.hpp"
-#include "config/yaml/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 const std::array<std::string, 6> kTypes = {"fixed",     "revolute", "continuous",
                                            "prismatic", "planar",   "floating"};  // as JointType
 
-// As MoveIt names them.
+// The names of MoveIt.
 constexpr std::array<std::string_view, 3> kPlanar = {"/x", "/y", "/theta"};
 constexpr std::array<std::string_view, 7> kFloating = {"/trans_x", "/trans_y", "/trans_z", "/rot_x",
                                                        "/rot_y",   "/rot_z",   "/rot_w"};
@@ -61,10 +62,10 @@ class ModelBuilder {
 };
 
 void ModelBuilder::refuse(int line, const std::string& text) {
-  faults_.push_back({line, fmt::format("{}:{}: {}", urdf_.string(), line, printable(text))});
+  faults_.push_back({line, fmt::format("{}:{}: {}", urdf_.string(), line, excerpt(text))});
 }
 
-// The link that no joint carries.
+// Returns the link that no joint carries.
 std::optional<std::string> ModelBuilder::root() {
   std::set<std::string> carried;
   for (const UrdfJoint& joint : description_.joints) carried.insert(joint.child);
@@ -82,7 +83,7 @@ std::optional<std::string> ModelBuilder::root() {
   return found;
 }
 
-// From the root outwards. The URDF is a tree: every link is met once.
+// Goes from the root outwards. The URDF is a tree: every link is met once.
 void ModelBuilder::order_links(const std::string& root) {
   std::map<std::string, std::vector<const UrdfJoint*>> below;
   for (const UrdfJoint& joint : description_.joints) below[joint.parent].push_back(&joint);
@@ -97,7 +98,7 @@ void ModelBuilder::order_links(const std::string& root) {
   }
 }
 
-// Of a type that is unknown, a fixed one stands in until the fault is reported.
+// A joint of an unknown type counts as fixed until the fault is reported.
 void ModelBuilder::add_joint(const UrdfJoint& joint, std::uint32_t parent) {
   RobotJoint made{.name = prefix_ + joint.name,
                   .parent = parent,
@@ -124,7 +125,7 @@ void ModelBuilder::add_joint(const UrdfJoint& joint, std::uint32_t parent) {
 }
 
 // URDF's default axis is x, but MoveIt takes the plane of a planar joint to be x y: the file has to
-// state its normal.
+// state the normal.
 void ModelBuilder::read_axis(const UrdfJoint& joint, RobotJoint& made) {
   if (made.type == JointType::kFloating) return;
   if (made.type == JointType::kPlanar && !joint.axis) {
@@ -189,7 +190,7 @@ void ModelBuilder::read_limits(const UrdfJoint& joint, JointVariable& variable) 
   }
 }
 
-// One mimic may follow another; the last one followed has the variable.
+// One mimic joint may follow another; the last in the chain has the variable.
 bool ModelBuilder::follow(const UrdfJoint& mimic, RobotJoint& made) {
   const UrdfJoint* at = &mimic;
   for (std::size_t steps = 0; at->mimic; ++steps) {

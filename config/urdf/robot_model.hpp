@@ -17,15 +17,15 @@ struct RobotModel {
   std::vector<JointVariable> variables;
 };
 
-// Every name gets the prefix. Refused, by line of `urdf`: more than one root, joints of unknown
-// types or without what their type needs, axes of no length, limits the wrong way round, and mimic
-// joints that follow nothing or themselves.
+// Makes the tree; every name gets the prefix. It refuses, with the line of `urdf`: more than one
+// root; joints of unknown types, or without the elements of their type; axes of length zero; limits
+// in the wrong order; mimic joints that follow nothing or themselves.
 [[nodiscard]] std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,
                                                                const std::filesystem::path& urdf,
                                                                const std::string& prefix);
 
-// Puts a floating joint below the root, as a robot has it whose base follows a frame of tf: its
-// first link is then the world, "PREFIXNAME_world", its first joint and variables those of
+// Puts a floating joint below the root, for a robot whose base follows a frame of tf. Its first
+// link is then the world, "PREFIXNAME_world"; its first joint and variables are those of
 // "PREFIXNAME_base".
 void float_root(RobotModel& model, const std::string& prefix, const std::string& name);
 

@@ -1,6 +1,6 @@
 // Reads the XML elements that a cell needs and ignores the others (visual, inertial, transmission).
-// A mistake is remembered with its line and the reading goes on, so that one run finds all of them;
-// only XML that cannot be parsed ends it.
+// A mistake is kept with its line and the reading goes on, so that one run finds all of them. Only
+// XML that cannot be parsed ends it.
 #include "config/urdf/urdf.hpp"
 
 #include <fmt/format.h>
@@ -17,14 +17,14 @@
 #include <string_view>
 #include <system_error>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 namespace {
 
 using tinyxml2::XMLElement;
 
-// The children of this name, in order.
+// Returns the children of this name, in order.
 std::vector<const XMLElement*> children(const XMLElement& element, const char* name) {
   std::vector<const XMLElement*> found;
   for (const XMLElement* at = element.FirstChildElement(name); at != nullptr;
@@ -34,8 +34,9 @@ std::vector<const XMLElement*> children(const XMLElement& element, const char* n
   return found;
 }
 
-// An XML file, and what is wrong with it. A value that cannot be read is reported and left at its
-// default.
+enum class Sign { kAny, kPositive };
+
+// An XML file and its mistakes. A value that cannot be read is reported and keeps its default.
 class XmlReader {
  public:
   explicit XmlReader(const std::filesystem::path& file) : file_(file.string()) {
@@ -49,14 +50,14 @@ class XmlReader {
     }
   }
 
-  // <robot>, of URDF and SRDF; null after a fault.
+  // Returns <robot>, of URDF or SRDF; null after a fault.
   const XMLElement* root() const { return root_; }
 
   void report(const XMLElement& at, const std::string& text) { add(at.GetLineNum(), text); }
 
   [[nodiscard]] UrdfFaults faults() const { return faults_; }
 
-  // An attribute that must be there.
+  // Returns an attribute, which is required.
   std::string attribute(const XMLElement& element, const char* name) {
     const char* value = element.Attribute(name);
     if (value != nullptr) return value;
@@ -64,7 +65,7 @@ class XmlReader {
     return "";
   }
 
-  // A child element that must be there; the first one if there are more, null after a fault.
+  // Returns the first child element of this name, which is required; null after a fault.
   const XMLElement* child(const XMLElement& element, const char* name) {
     const XMLElement* found = element.FirstChildElement(name);
     if (found == nullptr) {
@@ -73,37 +74,26 @@ class XmlReader {
     return found;
   }
 
-  // The attribute of a child element, both of which must be there.
+  // Returns an attribute of a child element; both are required.
   std::string attribute_of_child(const XMLElement& element, const char* child_name,
                                  const char* name) {
     const XMLElement* found = child(element, child_name);
     return found == nullptr ? "" : attribute(*found, name);
   }
 
-  // A length or a radius. URDF is in SI units.
-  double size(const XMLElement& element, const char* name) {
+  // Reads finite numbers in SI units; lengths and radii have to be positive.
+  double number(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
     double value = 0.0;
-    numbers(element, name, std::span(&value, 1), Sign::kPositive);
+    numbers(element, name, std::span(&value, 1), sign);
     return value;
   }
-  Vec3 sizes(const XMLElement& element, const char* name) {
+  Vec3 vector(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
     std::array<double, 3> values{};
-    numbers(element, name, values, Sign::kPositive);
+    numbers(element, name, values, sign);
     return {values[0], values[1], values[2]};
   }
-
-  // A finite number.
-  double number(const XMLElement& element, const char* name) {
-    double value = 0.0;
-    numbers(element, name, std::span(&value, 1), Sign::kAny);
-    return value;
-  }
-
-  // Three finite numbers.
-  Vec3 vector(const XMLElement& element, const char* name) {
-    std::array<double, 3> values{};
-    numbers(element, name, values, Sign::kAny);
-    return {values[0], values[1], values[2]};
+  double length(const XMLElement& element, const char* name) {
+    return number(element, name, Sign::kPositive);
   }
 
   // <origin xyz="..." rpy="..."/>: the element and both attributes are optional, zero by default.
@@ -117,9 +107,7 @@ class XmlReader {
   }
 
  private:
-  enum class Sign { kAny, kPositive };
-
-  // Exactly values.size() finite numbers, separated by blanks.
+  // Reads exactly values.size() finite numbers, separated by blanks.
   void numbers(const XMLElement& element, const char* name, std::span<double> values, Sign sign) {
     if (element.Attribute(name) == nullptr) {
       static_cast<void>(attribute(element, name));
@@ -149,7 +137,7 @@ class XmlReader {
   }
 
   void add(int line, const std::string& text) {
-    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, printable(text))});
+    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, excerpt(text))});
   }
 
   std::string file_;
@@ -158,8 +146,8 @@ class XmlReader {
   UrdfFaults faults_;
 };
 
-// One collision shape with its place in the link; its shape is unset after a fault. Visual geometry
-// is not read.
+// Reads one collision shape with its place in the link; the shape is unset after a fault. Visual
+// geometry is not read.
 UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
   UrdfCollision collision;
   collision.link_from_shape = xml.origin(element);
@@ -170,15 +158,15 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
     if (mesh->Attribute("scale") != nullptr) shape.scale = xml.vector(*mesh, "scale");
     collision.shape = shape;
   } else if (const XMLElement* box = geometry->FirstChildElement("box")) {
-    collision.shape = UrdfBox{xml.sizes(*box, "size")};
+    collision.shape = UrdfBox{xml.vector(*box, "size", Sign::kPositive)};
   } else if (const XMLElement* cylinder = geometry->FirstChildElement("cylinder")) {
-    const double radius = xml.size(*cylinder, "radius");
-    collision.shape = UrdfCylinder{radius, xml.size(*cylinder, "length")};
+    const double radius = xml.length(*cylinder, "radius");
+    collision.shape = UrdfCylinder{radius, xml.length(*cylinder, "length")};
   } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
-    collision.shape = UrdfSphere{xml.size(*sphere, "radius")};
+    collision.shape = UrdfSphere{xml.length(*sphere, "radius")};
   } else if (const XMLElement* capsule = geometry->FirstChildElement("capsule")) {
-    const double radius = xml.size(*capsule, "radius");
-    collision.shape = UrdfCapsule{radius, xml.size(*capsule, "length")};
+    const double radius = xml.length(*capsule, "radius");
+    collision.shape = UrdfCapsule{radius, xml.length(*capsule, "length")};
   } else {
     xml.report(
         *geometry,
@@ -187,7 +175,7 @@ UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
   return collision;
 }
 
-// A robot of frames only would give a cell that watches nothing.
+// A robot without shapes would give a cell that watches nothing, and is refused.
 void read_links(XmlReader& xml, UrdfRobot& robot) {
   for (const XMLElement* at = xml.root()->FirstChildElement(); at != nullptr;
        at = at->NextSiblingElement()) {
@@ -220,7 +208,7 @@ void read_number(XmlReader& xml, const XMLElement& element, const char* name, do
   if (element.Attribute(name) != nullptr) value = xml.number(element, name);
 }
 
-// All that the element says, whatever its type needs.
+// Reads the whole element, whatever its type needs.
 UrdfJoint read_joint(XmlReader& xml, const XMLElement& element) {
   UrdfJoint joint{.type = xml.attribute(element, "type"),
                   .parent = xml.attribute_of_child(element, "parent", "link"),
@@ -246,7 +234,8 @@ UrdfJoint read_joint(XmlReader& xml, const XMLElement& element) {
   return joint;
 }
 
-// The joints so far are trees; whether this one would make its child an ancestor of itself.
+// Tells whether this joint would make its child an ancestor of itself; the joints before it form
+// trees.
 bool closes_loop(const UrdfJoint& joint, const std::map<std::string, std::string>& parents) {
   std::string at = joint.parent;
   for (auto found = parents.find(at); at != joint.child; found = parents.find(at)) {
@@ -284,7 +273,7 @@ void read_joints(XmlReader& xml, UrdfRobot& robot) {
   }
 }
 
-// The pairs of one kind of element. The reason is optional in an SRDF but required in a cell.
+// Reads the pairs of one kind of element. The reason is optional in an SRDF but required in a cell.
 std::vector<SrdfDisabled> read_pairs_of(XmlReader& xml, const char* name) {
   std::vector<SrdfDisabled> pairs;
   for (const XMLElement* at : children(*xml.root(), name)) {
@@ -297,7 +286,7 @@ std::vector<SrdfDisabled> read_pairs_of(XmlReader& xml, const char* name) {
   return pairs;
 }
 
-// The value, if nothing was wrong with the file; else all that was, by line.
+// Returns the value, or, where the file has faults, all of them by line.
 template <class Value>
 std::variant<Value, UrdfFaults> value_or_faults(Value value, const XmlReader& xml) {
   UrdfFaults faults = xml.faults();

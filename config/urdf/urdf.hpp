@@ -1,5 +1,5 @@
-// What a cell needs of a robot's description: the collision shapes and joints of URDF, and the
-// pairs that SRDF disables.
+// The elements of a robot's description that a cell needs: the collision shapes and joints of URDF,
+// and the pairs that SRDF disables.
 #pragma once
 
 #include <filesystem>
@@ -27,12 +27,12 @@ struct UrdfCylinder {
 struct UrdfSphere {
   double radius;  // m
 };
-// An extension of URDF; length between the centres of its ends.
+// An extension of URDF; `length` is between the centres of its ends.
 struct UrdfCapsule {
   double radius, length;  // m; along z, centred
 };
 
-// Where a child's frame is in its parent's, as written: rpy about the fixed axes x, y, z.
+// The place of a child's frame in its parent's, as written: rpy about the fixed axes x, y, z.
 struct UrdfOrigin {
   Vec3 xyz = Vec3::Zero();  // m
   Vec3 rpy = Vec3::Zero();  // rad
@@ -50,7 +50,7 @@ struct UrdfLink {
   std::vector<UrdfCollision> collisions;
 };
 
-// <limit>: rad or m, and rad/s or m/s. What is not written is 0, as URDF has it.
+// <limit>: rad or m, and rad/s or m/s. A missing attribute is 0, as in URDF.
 struct UrdfLimit {
   double lower = 0.0, upper = 0.0;
   std::optional<double> velocity;
@@ -62,8 +62,7 @@ struct UrdfMimic {
   double multiplier = 1.0, offset = 0.0;
 };
 
-// <joint>: as written; what its type needs is checked by whoever moves it
-// (config/urdf/robot_model.hpp).
+// <joint>, as written; config/urdf/robot_model.hpp checks the elements that its type needs.
 struct UrdfJoint {
   std::string type, parent, child;
   UrdfOrigin parent_from_child;  // at position zero
@@ -94,8 +93,7 @@ struct SrdfDefault {
   int line = 0;
 };
 
-// <robot> of an SRDF, in the order of the file. What is disabled one by one is so whatever else is
-// said of it.
+// <robot> of an SRDF, in the order of the file. A pair that is disabled one by one stays disabled.
 struct Srdf {
   std::string robot;  // its name
   int line = 0;       // of the name
@@ -103,7 +101,7 @@ struct Srdf {
   std::vector<SrdfDefault> disabled_by_default = {};
 };
 
-// "FILE:LINE: what was found, what was expected".
+// `text` reads "FILE:LINE: what was found; what was expected".
 struct UrdfFault {
   int line;
   std::string text;
@@ -113,7 +111,7 @@ using UrdfFaults = std::vector<UrdfFault>;  // at least one, by line
 // Plain URDF: xacro has to be expanded before. Checks that joints join links that exist into trees.
 [[nodiscard]] std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file);
 
-// What an SRDF says of pairs.
+// Reads the pairs of an SRDF.
 [[nodiscard]] std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file);
 
 }  // namespace clearance

@@ -1,6 +1,6 @@
-// Links with collision shapes become objects; the pairs are all of one group with itself, less the
-// SRDF's disabled ones, or, without an SRDF, less the neighbours. What cannot be written is
-// remembered and returned instead of a cell with a gap.
+// Links with collision shapes become objects. The pairs are all of one group with itself, less the
+// SRDF's disabled ones, or, without an SRDF, less the neighbours. Faults are kept and returned
+// instead of a cell with a gap.
 #include "config/write/robot_cell.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <set>
 #include <system_error>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -56,7 +56,7 @@ class RobotCellWriter {
   std::map<std::string, Pose> fixed_;  // links that never move, in the world
   YAML::Emitter out_;
   std::vector<std::string> notes_;
-  // Kept instead of thrown, as the emitter is in the middle of a document.
+  // Faults are kept and not thrown, as the emitter is in the middle of a document.
   UrdfFaults faults_;
 };
 
@@ -64,8 +64,8 @@ void RobotCellWriter::fail(int line, const std::string& text) {
   faults_.push_back({line, fmt::format("{}:{}: {}", options_.urdf.string(), line, text)});
 }
 
-// The root and what fixed joints join to it. The URDF is a tree, so each round fixes what the last
-// reached.
+// Finds the root and all links that fixed joints join to it. The URDF is a tree, so each round
+// fixes the children of the last.
 void RobotCellWriter::find_fixed_links() {
   if (!options_.fixed_base) return;
   std::set<std::string> children;
@@ -84,7 +84,7 @@ void RobotCellWriter::find_fixed_links() {
   }
 }
 
-// Where the mesh is, relative to the cell.
+// Returns the path of the mesh, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   const auto path = RobotFiles{options_.urdf, options_.packages}.find(mesh.file);
   if (!path) {
@@ -102,7 +102,7 @@ std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   return path->lexically_relative(directory).string();
 }
 
-// The shape's key and its value, in the map of its part.
+// Emits the shape's key and its value, in the map of its part.
 void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   const auto* cylinder = std::get_if<UrdfCylinder>(&collision.shape);
   const auto* mesh = std::get_if<UrdfMesh>(&collision.shape);
@@ -142,7 +142,8 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   out_ << YAML::EndMap;
 }
 
-// One link: its name, its group, its pose if it never moves, and its collision shapes as parts.
+// Emits one link: its name, its group, its pose if it never moves, and its collision shapes as
+// parts.
 void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::BeginMap << YAML::Key << "name" << YAML::Value;
   emit_text(out_, link.name);
@@ -176,7 +177,7 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::EndSeq << YAML::EndMap;
 }
 
-// [A, B] under "between".
+// Emits [A, B] under "between".
 void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b) {
   out << YAML::Key << "between" << YAML::Value << YAML::Flow << YAML::BeginSeq;
   emit_text(out, a);
@@ -184,7 +185,7 @@ void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b
   out << YAML::EndSeq;
 }
 
-// What the file has is told; a file with a fault is the cell's to report.
+// Notes of the files are passed on; the reader of the cell reports a file with a fault.
 void RobotCellWriter::emit_scenes() {
   if (options_.scenes.empty()) return;
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
@@ -197,7 +198,7 @@ void RobotCellWriter::emit_scenes() {
     emit_text(out_, scene.stem().string());
     out_ << YAML::EndMap;
     const auto bytes = read_bytes(path.string());
-    if (std::holds_alternative<MeshFault>(bytes)) continue;
+    if (std::holds_alternative<FileFault>(bytes)) continue;
     const auto read = read_planning_scene(std::get<std::string>(bytes));
     if (const auto* planning = std::get_if<PlanningScene>(&read)) {
       for (const std::string& note : planning->notes)
@@ -207,7 +208,7 @@ void RobotCellWriter::emit_scenes() {
   out_ << YAML::EndSeq;
 }
 
-// The group against itself is every pair of links; and against each planning scene.
+// The group against itself is every pair of links; it also meets each planning scene.
 void RobotCellWriter::emit_pairs() {
   out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
   emit_between(out_, group_, group_);
@@ -220,7 +221,7 @@ void RobotCellWriter::emit_pairs() {
   out_ << YAML::EndSeq;
 }
 
-// Both kinds of exceptions stand in the cell with their reasons.
+// Emits both kinds of exceptions with their reasons.
 void RobotCellWriter::emit_exceptions() {
   LinkNames fixed_links;
   for (const auto& [link, world_from_link] : fixed_) fixed_links.insert(link);
@@ -241,7 +242,7 @@ void RobotCellWriter::emit_exceptions() {
   out_ << YAML::EndSeq;
 }
 
-// Name, units (URDF is in metres and radians) and defaults.
+// Emits name, units (URDF is in metres and radians) and defaults.
 void RobotCellWriter::emit_head() {
   const std::string srdf =
       options_.srdf.empty() ? "" : fmt::format(" and {}", options_.srdf.filename().string());
@@ -264,14 +265,14 @@ void RobotCellWriter::emit_head() {
   out_ << YAML::EndMap;
 }
 
-// The fixed links first: objects and exceptions depend on them.
+// Fixed links come first: objects and exceptions depend on them.
 std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   for (const UrdfLink& link : robot_.links) {
     if (!link.collisions.empty()) shaped_.insert(link.name);
   }
   find_fixed_links();
   if (srdf_) faults_ = faults_of(*srdf_, options_.srdf, robot_, options_.urdf);
-  // Frames such as tool0 have no shapes; the person should see that they are not watched.
+  // Frames such as tool0 have no shapes; the note tells that they are not watched.
   std::string without;
   out_ << YAML::BeginMap;
   emit_head();
@@ -297,8 +298,7 @@ std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
 
 }  // namespace
 
-// Both files are read even if the first is wrong, so that one run reports what is wrong with
-// either.
+// Both files are read even if the first has faults, so that one run reports all.
 std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options) {
   auto robot = read_urdf(options.urdf);
   std::optional<Srdf> srdf;

@@ -12,37 +12,37 @@
 
 namespace clearance {
 
-// What URDF and SRDF do not say.
+// The settings that URDF and SRDF do not have.
 struct RobotCellOptions {
   std::filesystem::path urdf;
   std::filesystem::path srdf;       // empty: neighbours are left out
   std::filesystem::path directory;  // of the cell: mesh paths are written relative to it
-  // As in RobotFiles; the others are looked for from the URDF upwards.
+  // As in RobotFiles; other packages are looked for from the URDF upwards.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   std::string group;       // of all links; empty: the robot's name
   double max_speed = 0.0;  // m/s; 0: not stated
   double age_limit_ms = 20.0;
-  // The cell's keys `tolerance`, m, and `max_parts`: into how fine parts meshes are split.
+  // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
   std::optional<double> mesh_tolerance;
   std::optional<unsigned> max_parts;
-  // The root link, and what fixed joints join to it, is fixed at the origin of the world. Otherwise
-  // every link moves, and its pose has to arrive.
+  // Whether the root link, and all links that fixed joints join to it, stand fixed at the origin of
+  // the world. Otherwise the pose of every link has to arrive.
   bool fixed_base = false;
-  // MoveIt planning scenes, whose obstacles are watched against the robot; each a group of the
-  // file's name.
+  // Planning scenes of MoveIt, whose obstacles are watched against the robot; each is a group of
+  // its file's name.
   std::vector<std::filesystem::path> scenes;
 };
 
-// The text of the cell, and notes for the person who asked for it (what was left out and why).
+// The text of the cell, and notes for the person who asked for it: omissions and their reasons.
 struct RobotCell {
   std::string yaml;
   std::vector<std::string> notes;
 };
 
 // Each link that has collision shapes becomes an object of the link's name in the link's frame.
-// Every pair of them is watched except the SRDF's disabled ones, or, without an SRDF, a link and
-// the next above it that has shapes; these are listed with their reasons. An SRDF with another
-// robot's name, or with links that the URDF does not have, is refused.
+// Every pair of them is watched, except the SRDF's disabled ones, or, without an SRDF, a link and
+// the next above it that has shapes. Exceptions stand in the cell with their reasons. An SRDF with
+// another robot's name, or with links that the URDF does not have, is refused.
 [[nodiscard]] std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options);
 
 }  // namespace clearance

@@ -10,11 +10,11 @@ namespace clearance {
 class SeededDraw {
  public:
   explicit SeededDraw(std::uint64_t seed) : state_(seed) {}
-  // In [low, high).
+  // Returns a number in [low, high).
   double uniform(double low, double high) { return low + (high - low) * unit(); }
 
  private:
-  // In [0, 1): the upper 53 bits, one double for each.
+  // Returns a number in [0, 1): the upper 53 bits, one double for each.
   double unit() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// A name that a cell can have: that of the robot, or of the file where the URDF cannot be read,
+// Returns a name for the cell: that of the robot, or of the file where the URDF cannot be read,
 // which the reader of the cell reports.
 std::string name_of(const std::filesystem::path& urdf) {
   const auto read = read_urdf(urdf);
@@ -57,7 +57,9 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
 }
 
 CellResult read_single_robot(const SingleRobotOptions& options, const CellOptions& cell_options) {
-  return parse_cell(single_robot_cell(options), options.urdf, cell_options);
+  CellOptions of_urdf = cell_options;
+  of_urdf.is_of_urdf = true;
+  return parse_cell(single_robot_cell(options), options.urdf, of_urdf);
 }
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// The cell of one robot and nothing else, for who has a URDF and no cell file.
+// Makes the cell of one robot and nothing else, from a URDF without a cell file.
 #pragma once
 
 #include <filesystem>
@@ -13,16 +13,16 @@ namespace clearance {
 struct SingleRobotOptions {
   std::filesystem::path urdf;
   std::filesystem::path srdf = {};  // empty: neighbours may touch
-  // As `packages:` of a robot's keys in a cell.
+  // As `packages:` of a robot in a cell.
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
   double age_limit_ms = 20.0;  // of its joints
 };
 
-// The text of the cell: the robot stands in the world, under its URDF's name, and every pair of its
-// links is watched and published. Paths are absolute.
+// Returns the text of the cell: the robot stands in the world, under its URDF's name, and every
+// pair of its links is watched and published. Paths are absolute.
 [[nodiscard]] std::string single_robot_cell(const SingleRobotOptions& options);
 
-// What that text says; the errors are those of a cell, at lines of this text.
+// Reads that text; the errors are those of a cell, at lines of this text.
 [[nodiscard]] CellResult read_single_robot(const SingleRobotOptions& options,
                                            const CellOptions& cell_options = {});
 

@@ -1,6 +1,6 @@
 // Places racks, pallets and boxes row by row until the wanted number stands, then a robot station,
-// then vehicles in the aisles. Everything random is drawn from one seeded generator in a fixed
-// order, so the text depends on the options alone.
+// then vehicles in the aisles. One seeded generator draws every random number in a fixed order, so
+// the text depends on the options alone.
 #include "config/write/warehouse_cell.hpp"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ constexpr std::uint32_t kBaysInRow = 12, kPalletsInBay = 3, kBoxesOnPallet = 2;
 constexpr std::uint32_t kLinks = 6;  // of the arm
 constexpr double kMostSpeed = 1.5;   // m/s
 
-// Parts of every rack, pallet, forklift and mobile robot: the file has each list once, under an
-// anchor.
+// The parts of every rack, pallet, forklift and mobile robot: each list stands once in the file,
+// under an anchor.
 constexpr const char* kRackParts = R"(
 - {name: post0, box: {size: [0.1, 0.1, 4]}, pose: {xyz: [-1.3, -0.5, 2]}}
 - {name: post1, box: {size: [0.1, 0.1, 4]}, pose: {xyz: [1.3, -0.5, 2]}}
@@ -55,7 +55,7 @@ constexpr const char* kPersonCapsule = "{from: [0, 0, 0.25], to: [0, 0, 1.55], r
 constexpr const char* kLinkParts = R"(
 - {capsule: {from: [0, 0, 0.06], to: [0, 0, 0.2]}}
 - {box: {size: [0.1, 0.14, 0.08]}, pose: {xyz: [0.05, 0, 0.08]}})";
-// What is near the arm is published; the rest is reported when it is the minimum, or in a zone.
+// Pairs near the arm are published; others are reported when they are the minimum, or in a zone.
 constexpr const char* kPairs = R"(
 - {between: [arm, station]}
 - {between: [moving, moving], publish: false}
@@ -75,7 +75,7 @@ constexpr const char* kZones = R"(
 - {name: aisle, between: [vehicles, standing], enter_below: 0.25, leave_above: 0.3}
 - {name: stop, between: [arm, station], enter_below: 0.05, leave_above: 0.07})";
 
-// What drives or walks in the aisles.
+// The objects that drive or walk in the aisles.
 enum class Kind : std::uint8_t { kForklift, kRobot, kPerson };
 
 // One kind of moving object.
@@ -92,7 +92,7 @@ constexpr Vehicle kVehicles[] = {{"forklift", "vehicles", "parts", 1.2, 1.4},
 
 const Vehicle& vehicle(Kind kind) { return kVehicles[static_cast<std::size_t>(kind)]; }
 
-// [ITEM, ITEM, ...] on one line.
+// Makes [ITEM, ITEM, ...] on one line.
 template <class... Items>
 YAML::Node list(const Items&... items) {
   YAML::Node node(YAML::NodeType::Sequence);
@@ -101,7 +101,7 @@ YAML::Node list(const Items&... items) {
   return node;
 }
 
-// {KEY: VALUE, ...} on one line.
+// Makes {KEY: VALUE, ...} on one line.
 YAML::Node map_on_a_line() {
   YAML::Node node(YAML::NodeType::Map);
   node.SetStyle(YAML::EmitterStyle::Flow);
@@ -140,7 +140,7 @@ class Warehouse {
   }
 
  private:
-  // Up to the end of the longest row, m.
+  // Returns the end of the longest row, m.
   [[nodiscard]] double aisle_length() const {
     const double bays = std::min(rows_ > 1 ? kBaysInRow : bays_, kBaysInRow);
     return kBay * bays;

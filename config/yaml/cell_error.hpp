@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-// `text` reads "FILE:LINE:COLUMN: what was found, what was expected".
+// `text` reads "FILE:LINE:COLUMN: what was found; what was expected".
 struct CellError {
   std::string text;
 };

@@ -1,4 +1,4 @@
-// Collects messages in whatever order the sections are read, and sorts them by place at the end. A
+// Collects messages in the order in which sections are read, and sorts them by place at the end. A
 // person then corrects the file from top to bottom.
 #include "config/yaml/diagnostics.hpp"
 
@@ -8,44 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "config/yaml/scalar.hpp"
-
 namespace clearance {
-namespace {
-
-constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
-
-// A text from the file may be a whole document by mistake; its beginning identifies it.
-std::string shortened(const std::string& text) {
-  return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
-}
-
-}  // namespace
-
-std::string describe(const YamlNode& node) {
-  switch (node.kind) {
-    case YamlNode::Kind::kNull:
-      return "nothing";
-    case YamlNode::Kind::kSequence:
-      return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
-    case YamlNode::Kind::kMap:
-      return "a map";
-    case YamlNode::Kind::kScalar:
-      break;
-  }
-  switch (scalar_type(node)) {
-    case ScalarType::kNumber:
-      return fmt::format("the number {}", shortened(node.text));
-    case ScalarType::kFlag:
-      return node.text;
-    case ScalarType::kText:
-      break;
-  }
-  return node.text.empty() ? "an empty text" : fmt::format("the text '{}'", shortened(node.text));
-}
 
 void Diagnostics::add(int line, int column, const std::string& text) {
-  // What was found may hold line breaks; a message is one line.
+  // The text that was found may hold line breaks; a message is one line.
   std::string one_line = text;
   std::replace_if(
       one_line.begin(), one_line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
@@ -53,13 +19,13 @@ void Diagnostics::add(int line, int column, const std::string& text) {
   diagnostics_.push_back({line, column, std::move(one_line)});
 }
 
-// Stable for equal input: ties of place are ordered by their text.
+// Equal input gives equal output: messages of one place are ordered by their text.
 std::vector<CellError> Diagnostics::sorted() const {
   std::vector<Diagnostic> ordered = diagnostics_;
   std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
   });
-  // A mistake behind an anchor (&x) is met once for every alias of it.
+  // A mistake inside an anchor (&x) is met once for every alias of it.
   const auto end =
       std::unique(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
         return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);

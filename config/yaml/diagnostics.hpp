@@ -1,4 +1,4 @@
-// Everything that is wrong with a cell file, each with its place.
+// The mistakes in a cell file, each with its place.
 #pragma once
 
 #include <string>
@@ -8,10 +8,6 @@
 #include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
-
-// "nothing", "the number 12", "the text 'abc'", "a list of 3", "a map": what a message says was
-// found.
-[[nodiscard]] std::string describe(const YamlNode& node);
 
 // The list of mistakes that all readers of one file share. A reader adds to it and goes on, and
 // callers compare count() before and after to learn whether a section was read without a mistake.
@@ -28,7 +24,7 @@ class Diagnostics {
   [[nodiscard]] bool empty() const { return diagnostics_.empty(); }
   [[nodiscard]] std::size_t count() const { return diagnostics_.size(); }
 
-  // In the order of the file.
+  // Returns the mistakes in the order of the file.
   [[nodiscard]] std::vector<CellError> sorted() const;
 
  private:

@@ -8,7 +8,9 @@
 #include <map>
 #include <utility>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
+#include "config/yaml/scalar.hpp"
 
 namespace clearance {
 
@@ -22,7 +24,7 @@ MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagno
     diagnostics_.add(node, fmt::format("found {}; expected {} (a map)", describe(node), what_));
     return;
   }
-  // Where each key was seen first.
+  // The first place of each key.
   std::map<std::string, const YamlNode*> first;
   for (const YamlEntry& entry : node.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) {
@@ -55,7 +57,7 @@ const YamlNode* MapReader::required(const std::string& key) {
   return value;
 }
 
-// A misspelt optional key would otherwise be a default in silence.
+// Otherwise a misspelt optional key would silently mean a default.
 void MapReader::refuse_unknown_keys() {
   for (const YamlEntry& entry : node_.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) continue;
@@ -66,7 +68,7 @@ void MapReader::refuse_unknown_keys() {
   }
 }
 
-// A reference to something static stands for the list that is none.
+// The reference leads to a static empty list where there is none.
 const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
                                        Diagnostics& diagnostics) {
   static const std::vector<YamlNode> kEmpty;

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Readers ask for each key that they know and call refuse_unknown_keys() at the end. A node that is
-// no map answers every request with nullptr, after one diagnostic.
+// A reader asks for each key that it knows and calls refuse_unknown_keys() at the end. A node that
+// is no map answers every request with nullptr, after one diagnostic.
 class MapReader {
  public:
   // `what` names the map in messages: "a zone". Reports a node that is no map, and a key
@@ -19,11 +19,11 @@ class MapReader {
 
   [[nodiscard]] bool is_map() const { return is_map_; }
 
-  // The value of a key, or nullptr. Asking makes the key known.
+  // Returns the value of a key, or nullptr. Asking makes the key known.
   [[nodiscard]] const YamlNode* optional(const std::string& key);
   [[nodiscard]] const YamlNode* required(const std::string& key);  // reports when it is missing
 
-  // To be called after the last key was asked for.
+  // Call this after the last key was asked for.
   void refuse_unknown_keys();
 
  private:
@@ -34,8 +34,8 @@ class MapReader {
   std::vector<std::string> known_;
 };
 
-// The items of a list; reports and returns an empty list when it is none. `what` finishes
-// "expected a list of ...".
+// Returns the items of a list; where there is none, an empty list after a diagnostic. `what`
+// finishes "expected a list of ...".
 [[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
                                                      Diagnostics& diagnostics);
 

@@ -20,7 +20,8 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // A quaternion typed with this many digits is meant to be a unit one; farther off it is a mistake.
 constexpr double kTypedUnitTolerance = 1e-3;
 
-// N numbers of a list, each checked; nothing when one of them, or their count, is wrong.
+// Reads a list of N numbers, each checked; returns nothing when one of them, or their count, is
+// wrong.
 template <std::size_t N>
 std::optional<std::array<double, N>> numbers(const YamlNode& node, const std::string& what,
                                              const std::string& each, const Range& range,
@@ -40,17 +41,17 @@ std::optional<std::array<double, N>> numbers(const YamlNode& node, const std::st
   return good ? std::optional(values) : std::nullopt;
 }
 
-// As messages name them.
+// The names of units in messages.
 const char* word(LengthUnit unit) { return unit == LengthUnit::kMetre ? "m" : "mm"; }
 const char* word(AngleUnit unit) { return unit == AngleUnit::kRadian ? "rad" : "deg"; }
 
-// Multiples of 90 deg in a pose do not come through here; see turn().
+// Multiples of 90 deg in a pose are handled by turn(), exactly.
 double radians(double value, AngleUnit unit) {
   return unit == AngleUnit::kRadian ? value : value * kRadPerDeg;
 }
 
-// The turn about one axis, not normalised: right angles in degrees have whole components, so that
-// products of them are exact and parallel faces stay parallel.
+// Returns the rotation about one axis, not normalised. Right angles in degrees have whole
+// components, so that their products are exact and parallel faces stay parallel.
 Eigen::Quaterniond turn(double value, AngleUnit unit, const Vec3& axis) {
   if (unit == AngleUnit::kDegree && std::fmod(value, 90.0) == 0.0) {
     switch (static_cast<int>(std::fmod(value, 360.0)) / 90) {
@@ -95,7 +96,7 @@ std::optional<AngleUnit> read_angle_unit(const YamlNode& node, Diagnostics& diag
 }
 
 // Division rounds once: 300 mm is exactly the double nearest to 0.3.
-double metres(double value, LengthUnit unit) {
+double to_metres(double value, LengthUnit unit) {
   return unit == LengthUnit::kMetre ? value : value / 1000.0;
 }
 
@@ -103,7 +104,7 @@ std::optional<double> Quantities::length(const YamlNode& node, const std::string
                                          const Range& range) const {
   const auto value = read_number(node, within_cell(range, units_.length),
                                  fmt::format("{} in {}", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 // Degrees become radians here, with the rounding of one multiplication.
@@ -113,12 +114,12 @@ std::optional<double> Quantities::angle(const YamlNode& node, const std::string&
   return value ? std::optional(radians(*value, units_.angle)) : std::nullopt;
 }
 
-// Lengths a second in the cell's unit become m/s.
+// Lengths per second in the cell's unit become m/s.
 std::optional<double> Quantities::speed(const YamlNode& node, const std::string& what) const {
   const auto value =
       read_number(node, within_cell(kPositive, units_.length),
                   fmt::format("{} in {}/s", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 std::optional<double> Quantities::acceleration(const YamlNode& node,
@@ -126,7 +127,7 @@ std::optional<double> Quantities::acceleration(const YamlNode& node,
   const auto value =
       read_number(node, within_cell(kNotNegative, units_.length),
                   fmt::format("{} in {}/s2", what, word(units_.length)), diagnostics_);
-  return value ? std::optional(metres(*value, units_.length)) : std::nullopt;
+  return value ? std::optional(to_metres(*value, units_.length)) : std::nullopt;
 }
 
 // Fractions of a millisecond are allowed; the result is rounded to whole nanoseconds.
@@ -145,11 +146,11 @@ std::optional<Vec3> Quantities::lengths(const YamlNode& node, const std::string&
       numbers<3>(node, fmt::format("{} in {}", what, unit), fmt::format("a length in {}", unit),
                  within_cell(range, units_.length), diagnostics_);
   if (!values) return std::nullopt;
-  return Vec3(metres((*values)[0], units_.length), metres((*values)[1], units_.length),
-              metres((*values)[2], units_.length));
+  return Vec3(to_metres((*values)[0], units_.length), to_metres((*values)[1], units_.length),
+              to_metres((*values)[2], units_.length));
 }
 
-// Used for angular velocities about the axes, too: their unit is the angle's a second.
+// Angular velocities about the axes are read with this as well, in the angle's unit per second.
 std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& what) const {
   const std::string unit = word(units_.angle);
   const auto values = numbers<3>(node, fmt::format("{} in {}", what, unit),
@@ -159,17 +160,17 @@ std::optional<Vec3> Quantities::angles(const YamlNode& node, const std::string& 
               radians((*values)[2], units_.angle));
 }
 
-// Vertices of the base of a prism.
+// The vertices of the base of a prism are read with this.
 std::optional<Vec2> Quantities::lengths_2d(const YamlNode& node, const std::string& what) const {
   const std::string unit = word(units_.length);
   const auto values =
       numbers<2>(node, fmt::format("{} in {}", what, unit), fmt::format("a length in {}", unit),
                  within_cell({}, units_.length), diagnostics_);
   if (!values) return std::nullopt;
-  return Vec2(metres((*values)[0], units_.length), metres((*values)[1], units_.length));
+  return Vec2(to_metres((*values)[0], units_.length), to_metres((*values)[1], units_.length));
 }
 
-// A normal of any length but zero; the core normalises it.
+// A normal may have any length but zero; the core normalises it.
 std::optional<Vec3> Quantities::direction(const YamlNode& node, const std::string& what) const {
   const auto values = numbers<3>(node, what, "a number", {}, diagnostics_);
   if (!values) return std::nullopt;
@@ -194,7 +195,7 @@ std::optional<Eigen::Quaterniond> Quantities::rpy(const YamlNode& node) const {
   return product.normalized();
 }
 
-// x, y, z, w. Normalised here; one that is far from unit length is a mistake, not a rounding error.
+// Reads x, y, z, w and normalises them. A length far from 1 is a mistake, not a rounding error.
 std::optional<Eigen::Quaterniond> Quantities::quaternion(const YamlNode& node) const {
   const auto values =
       numbers<4>(node, "a unit quaternion x, y, z, w", "a number", {}, diagnostics_);

@@ -17,26 +17,26 @@ namespace clearance {
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
-// No coordinate of a cell may be larger, nor what a speed covers in a second: what is larger is a
-// mistake of units.
+// No coordinate of a cell may be larger, nor the path of a speed in one second: larger ones are
+// mistakes of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
-// What the `units:` section says.
+// The `units:` section.
 struct Units {
   LengthUnit length = LengthUnit::kMetre;
   AngleUnit angle = AngleUnit::kRadian;
 };
 
-// "m" or "mm"; "rad" or "deg". Nothing after a diagnostic.
+// Reads "m" or "mm"; "rad" or "deg". Returns nothing after a diagnostic.
 [[nodiscard]] std::optional<LengthUnit> read_length_unit(const YamlNode& node,
                                                          Diagnostics& diagnostics);
 [[nodiscard]] std::optional<AngleUnit> read_angle_unit(const YamlNode& node,
                                                        Diagnostics& diagnostics);
 
-// A length in this unit, in metres.
-[[nodiscard]] double metres(double value, LengthUnit unit);
+// Converts a length in this unit into metres.
+[[nodiscard]] double to_metres(double value, LengthUnit unit);
 
-// Every reading function returns nothing after a diagnostic. `what` says what the quantity is: "the
+// Every reading function returns nothing after a diagnostic. `what` names the quantity: "the
 // radius".
 class Quantities {
  public:
@@ -56,7 +56,7 @@ class Quantities {
                                             const std::string& what) const;  // m/s
   [[nodiscard]] std::optional<double> acceleration(const YamlNode& node,
                                                    const std::string& what) const;  // m/s2
-  // At most a day; ns.
+  // Returns ns; at most a day.
   [[nodiscard]] std::optional<std::int64_t> milliseconds(const YamlNode& node,
                                                          const std::string& what,
                                                          const Range& range) const;
@@ -71,7 +71,7 @@ class Quantities {
   [[nodiscard]] std::optional<Vec3> direction(const YamlNode& node, const std::string& what) const;
 
   // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each may be
-  // absent. rpy turns about the fixed axes x, then y, then z, as in URDF. Right angles in degrees
+  // absent. rpy rotates about the fixed axes x, then y, then z, as in URDF. Right angles in degrees
   // are exact.
   [[nodiscard]] std::optional<Pose> pose(const YamlNode& node) const;
 

@@ -1,6 +1,6 @@
 // Classifies a scalar by the core schema of YAML 1.2 (section 10.3.2), in decimals only, and
-// converts it with std::from_chars. A value of the wrong type is reported with a hint at what was
-// probably meant.
+// converts it with std::from_chars. A hint at the probable meaning goes with a value of the wrong
+// type.
 #include "config/yaml/scalar.hpp"
 
 #include <fmt/format.h>
@@ -19,11 +19,18 @@ namespace {
 // The longest name that the wire carries (idl/clearance.idl, ZoneState::name).
 constexpr std::size_t kMaxName = 64;
 
-// A scalar as a number.
+constexpr std::size_t kShown = 60;  // bytes of a text that a message repeats
+
+// A text from the file may be a whole document by mistake; its beginning identifies it.
+std::string shortened(const std::string& text) {
+  return text.size() <= kShown ? text : fmt::format("{}...", text.substr(0, kShown));
+}
+
+// The number that a text may be.
 struct Parsed {
   double value = 0.0;
   bool number = false;    // the whole text is one
-  bool in_range = false;  // of a double
+  bool in_range = false;  // it fits into a double
 };
 
 // The three spellings that YAML 1.2 allows for its special values.
@@ -32,7 +39,7 @@ bool is_special(const std::string& text, const std::string& lower, const std::st
   return text == lower || text == title || text == upper;
 }
 
-// YAML's numbers in decimals. std::from_chars depends on no locale and rounds correctly.
+// Parses YAML's numbers in decimals. std::from_chars depends on no locale and rounds correctly.
 Parsed parse_number(const std::string& text) {
   std::string unsigned_text = text;
   if (!text.empty() && (text[0] == '+' || text[0] == '-')) unsigned_text.erase(0, 1);
@@ -53,7 +60,7 @@ Parsed parse_number(const std::string& text) {
   return {text[0] == '-' ? -value : value, true, result.ec == std::errc()};
 }
 
-// 0.001, 10000, 1e+12: as a person would write it.
+// Writes a number as a person would: 0.001, 10000, 1e+12.
 std::string shown(double value) {
   std::array<char, 64> text;
   const auto format = std::fabs(value) < 1e9 && std::fabs(value) >= 1e-4
@@ -63,7 +70,7 @@ std::string shown(double value) {
   return {text.data(), end.ptr};
 }
 
-// Every limit that there is.
+// Names every limit of the range.
 std::string expectation(const std::string& what, const Range& range) {
   const bool limited = std::isfinite(range.most);
   if (!std::isfinite(range.least))
@@ -76,7 +83,7 @@ std::string expectation(const std::string& what, const Range& range) {
                          : fmt::format(", at least {}", shown(range.least)));
 }
 
-// "12 mm" is a number and then some: say what to do about it.
+// "12 mm" begins with a number: the hint says how to write it.
 std::string number_hint(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kScalar) return "";
   if (node.quoted && parse_number(node.text).number) return " (without the quotes)";
@@ -102,7 +109,29 @@ ScalarType scalar_type(const YamlNode& scalar) {
   return parse_number(scalar.text).number ? ScalarType::kNumber : ScalarType::kText;
 }
 
-// Text that is no number, one that is not finite, and one out of range get messages of their own.
+std::string describe(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      return "nothing";
+    case YamlNode::Kind::kSequence:
+      return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
+    case YamlNode::Kind::kMap:
+      return "a map";
+    case YamlNode::Kind::kScalar:
+      break;
+  }
+  switch (scalar_type(node)) {
+    case ScalarType::kNumber:
+      return fmt::format("the number {}", shortened(node.text));
+    case ScalarType::kFlag:
+      return node.text;
+    case ScalarType::kText:
+      break;
+  }
+  return node.text.empty() ? "an empty text" : fmt::format("the text '{}'", shortened(node.text));
+}
+
+// There are three messages: for no number, for one that is not finite, and for one out of range.
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
                                   Diagnostics& diagnostics) {
   const std::string expected = fmt::format("; expected {}", expectation(what, range));
@@ -150,7 +179,7 @@ std::optional<bool> read_flag(const YamlNode& node, Diagnostics& diagnostics) {
   return node.text[0] == 't' || node.text[0] == 'T';
 }
 
-// A plain 12 or true is no text: a name that looks like a number is more often a value in the wrong
+// A plain 12 or true is no text: a name that looks like a number is usually a value in the wrong
 // place.
 std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
                                      Diagnostics& diagnostics) {

@@ -15,10 +15,15 @@ class Diagnostics;
 // The types of scalars that a cell file uses. null is a kind of YamlNode; integers are numbers.
 enum class ScalarType { kNumber, kFlag, kText };
 
-// What an unquoted scalar is by the core schema of YAML 1.2; a quoted one is always text.
+// Returns the type of an unquoted scalar by the core schema of YAML 1.2; a quoted one is always
+// text.
 [[nodiscard]] ScalarType scalar_type(const YamlNode& scalar);
 
-// Which numbers are accepted.
+// Describes a node for messages: "nothing", "the number 12", "the text 'abc'", "a list of 3", "a
+// map".
+[[nodiscard]] std::string describe(const YamlNode& node);
+
+// The numbers that are accepted.
 struct Range {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -38,8 +43,8 @@ inline constexpr Range kNotNegative{.least = 0.0};
 [[nodiscard]] std::optional<std::string> read_text(const YamlNode& node, const std::string& what,
                                                    Diagnostics& diagnostics);
 
-// A name that people and CSV files can hold: 1 to 64 bytes, no control characters, commas, quotes,
-// nor blanks at its ends.
+// Reads a name that people and CSV files can hold: 1 to 64 bytes, no control characters, commas,
+// quotes, nor blanks at its ends.
 [[nodiscard]] std::optional<std::string> read_name(const YamlNode& node, const std::string& what,
                                                    Diagnostics& diagnostics);
 

@@ -1,4 +1,4 @@
-// What the writers of cell files share on top of yaml-cpp's emitter.
+// The formats that the writers of cell files share, for yaml-cpp's emitter.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,17 +10,17 @@
 
 namespace clearance {
 
-// The shortest decimal that reads back as the same double; no minus sign on zero.
+// Returns the shortest decimal that reads back as the same double; zero has no minus sign.
 [[nodiscard]] inline std::string shortest(double value) {
   return fmt::format("{}", value == 0.0 ? 0.0 : value);
 }
 
-// In this many decimals.
+// Returns the number with this many decimals.
 [[nodiscard]] inline std::string decimals(double value, int count) {
   return fmt::format("{:.{}f}", value, count);
 }
 
-// [ITEM, ITEM, ...] on one line. Items are what the emitter takes: strings, or nodes.
+// Emits [ITEM, ITEM, ...] on one line. The emitter has to accept each item: a string, or a node.
 template <class... Items>
 void emit_list(YAML::Emitter& out, const Items&... items) {
   out << YAML::Flow << YAML::BeginSeq;
@@ -28,12 +28,12 @@ void emit_list(YAML::Emitter& out, const Items&... items) {
   out << YAML::EndSeq;
 }
 
-// A vector in shortest decimals.
+// Emits a vector in shortest decimals.
 inline void emit(YAML::Emitter& out, const Vec3& v) {
   emit_list(out, shortest(v.x()), shortest(v.y()), shortest(v.z()));
 }
 
-// Text in double quotes, which no name or reason can break.
+// Emits text in double quotes, which no name or reason can break.
 inline void emit_text(YAML::Emitter& out, const std::string& text) {
   out << YAML::DoubleQuoted << text;
 }

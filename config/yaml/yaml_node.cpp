@@ -17,25 +17,25 @@
 #include <string_view>
 #include <utility>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {
 
-// Aliases of aliases can make a short file enormous: how many values they may add.
+// Aliases of aliases can make a short file enormous: together they may add so many values.
 constexpr std::size_t kMaxCopies = 1'000'000;
 
-// Faults of ours, beside those of the parser.
+// Faults that the parser does not find.
 constexpr const char* kAliasOfItself = "an alias inside of the value that it stands for";
 constexpr const char* kTooManyCopies = "aliases that stand for more than a million values";
 
-// What to write instead, for one kind of mistake.
+// The advice for one kind of mistake.
 struct Remedy {
-  std::string_view fault;  // how the parser's message begins
+  std::string_view fault;  // the beginning of the parser's message
   const char* expected;
 };
 
-// The mistakes that people make; the parser says only what it stumbled over.
+// The most frequent mistakes; the parser tells only where it failed.
 const std::array<Remedy, 13> kRemedies{{
     {YAML::ErrorMsg::END_OF_MAP_FLOW, "',' or '}' after a value inside of '{'"},
     {YAML::ErrorMsg::END_OF_MAP, "another key as far to the right as the one before, or the end"},
@@ -53,7 +53,7 @@ const std::array<Remedy, 13> kRemedies{{
     {kTooManyCopies, "fewer"},
 }};
 
-// What a person should write instead, by the parser's message.
+// Returns the advice that belongs to the parser's message.
 std::string remedy_for(const std::string& fault) {
   const auto remedy = std::ranges::find_if(
       kRemedies, [&](const Remedy& known) { return fault.starts_with(known.fault); });
@@ -61,7 +61,7 @@ std::string remedy_for(const std::string& fault) {
                                    : "valid YAML; see also the end of the line before";
 }
 
-// The values in a tree, which every alias to it adds again.
+// Counts the values in a tree, which each alias to it adds again.
 std::size_t count_nodes(const YamlNode& node) {
   std::size_t count = 1;
   for (const YamlNode& item : node.items) count += count_nodes(item);
@@ -145,7 +145,7 @@ class TreeBuilder : public YAML::EventHandler {
     finish(std::move(done.node), done.anchor);
   }
 
-  // A whole value: it belongs to what is open, or it is the document.
+  // A finished value belongs to the innermost open one, or is the document.
   void finish(YamlNode node, YAML::anchor_t anchor) {
     if (anchor != 0) anchored_[anchor] = node;
     if (open_.empty()) {

@@ -24,7 +24,7 @@
 #include <thread>
 #include <utility>
 
-#include "monitor/app/printable.hpp"
+#include "config/text/printable.hpp"
 
 namespace clearance {
 namespace {

@@ -12,7 +12,8 @@ namespace clearance {
 // A line waits in a bounded queue until the log's own thread has written it. When stderr takes
 // nothing (a full pipe, a stopped terminal), each new line displaces the oldest one in the queue,
 // and a line in their place says how many are missing. Each event is one line: its text is made
-// printable (printable.hpp). At its end, the program waits at most kLogPatience for the queue.
+// printable (config/text/printable.hpp). At its end, the program waits at most kLogPatience for the
+// queue.
 void start_log(const std::string& name, const std::string& level);
 
 inline constexpr std::chrono::milliseconds kLogPatience{200};

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
 
 // The code stands at the end of every line, "... are late [poses-late]": programs and tests look
@@ -36,13 +38,10 @@ void log_line(const LogLine<Arguments...>& line,
   spdlog::default_logger_raw()->log(line.level, std::string_view(text));
 }
 
-// "1 batch", "2 batches".
+// "1 batch", "2 batches"; a plural in -s is made by counted() of config/text.
 [[nodiscard]] inline std::string counted(std::uint64_t count, std::string_view one,
                                          std::string_view more) {
   return fmt::format("{} {}", count, count == 1 ? one : more);
-}
-[[nodiscard]] inline std::string counted(std::uint64_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace clearance

@@ -102,36 +102,34 @@ inline constexpr LogLine<double> kClockStepped{
 // ---- Zones
 
 inline constexpr LogLine<Text, Count> kZoneLeft{"zone-left", kInfo, "zone '{}' left at cycle {}"};
-inline constexpr LogLine<Text, Count, Text, double, double> kZoneNear{
+inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneNear{
     "zone-near", kInfo,
-    "zone '{}' entered at cycle {} by distance: {}, {:.3f} m clear, {:.3f} m since the tick "
+    "zone '{}' entered at cycle {} {}: {}, at least {:.3f} m clear, {:.3f} m since the tick "
     "before"};
 inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneLate{
     "zone-late", kInfo,
-    "zone '{}' entered at cycle {} because poses of {} are late, not by distance: {}, at least "
-    "{:.3f} m clear, {:.3f} m since the tick before"};
+    "zone '{}' entered at cycle {} because {}: {}, at least {:.3f} m clear, {:.3f} m since the "
+    "tick before"};
 inline constexpr LogLine<Text, Count, Text, Text> kZoneUnknown{
-    "zone-unknown", kInfo,
-    "zone '{}' entered at cycle {} because no pose of {} has come: {} unknown"};
+    "zone-unknown", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{
-    "zone-contradicted", kInfo,
-    "zone '{}' entered at cycle {} because poses of {} contradict each other or the cell: {} "
-    "unknown"};
+    "zone-contradicted", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 inline constexpr LogLine<Text, Count, Text, Text> kZoneDiscontinuous{
-    "zone-discontinuous", kInfo,
-    "zone '{}' entered at cycle {} because the pose of {} is discontinuous: {} unknown since the "
-    "last tick"};
+    "zone-discontinuous", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 
 // ---- DDS and ROS 2
 
 inline constexpr LogLine<Text> kDdsWarning{"dds-warning", kWarn, "dds: {}"};
 inline constexpr LogLine<Text> kDdsError{"dds-error", kError, "dds: {}"};
 inline constexpr LogLine<Text> kDdsLeftOut{"dds-left-out", kWarn, "dds: {} left out"};
+inline constexpr LogLine<Text, Text> kOlderReader{
+    "older-reader", kWarn,
+    "a reader of {} was built with another version of its type: it gets nothing. Build it with the "
+    "IDL of this daemon ({})"};
 inline constexpr LogLine<Text, Count> kIncompatibleReader{
     "incompatible-reader", kWarn,
     "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: only "
-    "catalogue, zones and health are latched; 24: another type; idl/README.md has the whole "
-    "contract"};
+    "catalogue, zones and health are latched; idl/README.md has the whole contract"};
 inline constexpr LogLine<Text, Text, Count> kWriteFailed{
     "write-failed", kError, "writing {} failed: {} ({} failed so far)"};
 inline constexpr LogLine<Text, Count> kRosWriteFailed{
@@ -191,6 +189,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kDdsWarning,
                                  kDdsError,
                                  kDdsLeftOut,
+                                 kOlderReader,
                                  kIncompatibleReader,
                                  kWriteFailed,
                                  kRosWriteFailed,

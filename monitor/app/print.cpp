@@ -11,8 +11,8 @@
 #include <climits>
 #include <string>
 
+#include "config/text/printable.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/printable.hpp"
 #include "monitor/app/stop_signal.hpp"
 
 namespace clearance {

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "config/text/printable.hpp"
 #include "monitor/app/print.hpp"
-#include "monitor/app/printable.hpp"
 #include "monitor/files/build_info.hpp"
 
 namespace clearance {

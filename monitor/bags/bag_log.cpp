@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

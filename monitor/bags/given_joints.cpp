@@ -5,7 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {

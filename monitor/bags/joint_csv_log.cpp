@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {

@@ -75,6 +75,9 @@ class Stream {
   [[nodiscard]] std::uint32_t daemons() const;
   // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
+  // A sentence for a person: why a daemon that is there cannot be heard. It was built with another
+  // version of the message, or its QoS does not fit. Empty: no such daemon was met.
+  [[nodiscard]] std::string refusal() const;
 
  private:
   bool take();

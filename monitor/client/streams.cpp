@@ -116,6 +116,11 @@ bool Stream<Message>::has_ended() const {
   return writers_there(reader_) == 0;
 }
 
+template <class Message>
+std::string Stream<Message>::refusal() const {
+  return why_unheard(reader_);
+}
+
 template class Stream<clearance_msg_Distances>;
 template class Stream<clearance_msg_Gradients>;
 template class Stream<clearance_msg_Separation>;

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/log_lines.hpp"

@@ -3,31 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
-#include <utility>
+#include <ranges>
+#include <string>
+#include <vector>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/app/options.hpp"
 
 namespace clearance {
 namespace {
 
-// The cell's names of the topics. The catalogue is missing here, since no recording can be read
-// without it.
-constexpr std::array<std::pair<std::string_view, TopicKind>, 7> kTopicKeys = {
-    {{"poses", TopicKind::kPoses},
-     {"joint_states", TopicKind::kJointStates},
-     {"distances", TopicKind::kDistances},
-     {"zones", TopicKind::kZones},
-     {"health", TopicKind::kHealth},
-     {"separation", TopicKind::kSeparation},
-     {"gradients", TopicKind::kGradients}}};
+// The catalogue stays: no recording can be read without it.
+bool can_be_left_out(const Topic& topic) { return topic.kind != TopicKind::kCatalogue; }
 
 std::string is_topic(const std::string& text) {
   std::vector<std::string> keys;
-  for (const auto& [key, kind] : kTopicKeys) keys.emplace_back(key);
+  for (const Topic& topic : kTopics | std::views::filter(can_be_left_out))
+    keys.emplace_back(topic.key);
   if (std::ranges::find(keys, text) != keys.end()) return {};
   return fmt::format("found '{}'; expected {}", text, one_of(keys));
 }
@@ -77,8 +70,8 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .pairs_every = pairs_every,
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),
       .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost)))};
-  for (const auto& [key, kind] : kTopicKeys) {
-    if (std::ranges::find(without, key) != without.end()) options.left_out.insert(kind);
+  for (const Topic& topic : kTopics) {
+    if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }
   return options;
 }

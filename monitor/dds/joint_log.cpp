@@ -6,21 +6,13 @@
 #include <map>
 #include <utility>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/log_lines.hpp"
 
 namespace clearance {
 namespace {
 
-// "a, b, c and 4 more".
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kListed = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kListed); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  return names.size() > kListed ? fmt::format("{} and {} more", text, names.size() - kListed)
-                                : text;
-}
+constexpr std::size_t kNamesALine = 3;
 
 }  // namespace
 
@@ -71,11 +63,13 @@ void JointLog::update_robot(std::uint32_t robot,
     log_change(name, change.first, change.second, joined.first, joined.second);
   }
   for (const auto& [sources, names] : rivals) {
-    log_line(lines::kTwoJointSources, name, sources.first, sources.second, listed(names));
+    log_line(lines::kTwoJointSources, name, sources.first, sources.second,
+             listed(names, kNamesALine));
   }
   if (unseen.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
   silence_said_[robot] = true;
-  log_line(lines::kJointsSilent, counted(unseen.size(), "joint"), name, listed(unseen), senders());
+  log_line(lines::kJointsSilent, counted(unseen.size(), "joint"), name, listed(unseen, kNamesALine),
+           senders());
 }
 
 void JointLog::log_change(const std::string& robot, State before, State now, const Names& names,
@@ -86,13 +80,13 @@ void JointLog::log_change(const std::string& robot, State before, State now, con
       return;
     case State::kFine:
       log_line(before == State::kUnseen ? lines::kJointsHeard : lines::kJointsBack, joints, robot,
-               listed(names));
+               listed(names, kNamesALine));
       return;
     case State::kLate:
-      log_line(lines::kJointsLate, joints, robot, age_ns / 1'000'000, listed(names));
+      log_line(lines::kJointsLate, joints, robot, age_ns / 1'000'000, listed(names, kNamesALine));
       return;
     case State::kContradicted:
-      log_line(lines::kJointsContradict, joints, robot, listed(names));
+      log_line(lines::kJointsContradict, joints, robot, listed(names, kNamesALine));
       return;
   }
 }

@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
 namespace {
 
@@ -69,17 +71,11 @@ std::string PresentTopics::listed() const {
   std::map<std::string, std::size_t> counts;
   for (const auto& [handle, writer] : writers_) ++counts[writer.topic];
   if (counts.empty()) return "no other program";
-  std::string text;
-  std::size_t listed = 0;
+  std::vector<std::string> topics;
   for (const auto& [topic, count] : counts) {
-    if (listed++ == kListed) {
-      text += fmt::format(" and {} more", counts.size() - kListed);
-      break;
-    }
-    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", topic,
-                        count > 1 ? fmt::format(" ({} writers)", count) : "");
+    topics.push_back(count > 1 ? fmt::format("{} ({} writers)", topic, count) : topic);
   }
-  return text;
+  return clearance::listed(topics, kListed);
 }
 
 }  // namespace clearance

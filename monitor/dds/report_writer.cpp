@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
+#include "monitor/zone_cause.hpp"
 
 namespace clearance {
 namespace {
@@ -23,28 +25,33 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
   if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // another cell's reader
   char topic[128] = "?";
   dds_get_name(dds_get_topic(writer), topic, sizeof topic);
-  log_line(lines::kIncompatibleReader, topic, status.last_policy_id);
+  if (status.last_policy_id == DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID) {
+    log_line(lines::kOlderReader, topic, kBuild);
+  } else {
+    log_line(lines::kIncompatibleReader, topic, status.last_policy_id);
+  }
 }
 
-// Says that a zone was entered, and why, or that it was left.
+// Says that a zone was entered, and why, or that it was left. Only near and late ones have bounds.
 void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
               std::uint64_t cycle) {
   const std::string& name = scene.zones[index].name;
   if (!zone.active) return log_line(lines::kZoneLeft, name, cycle);
   const std::string pair = pair_name(scene, zone.pair);
-  const std::string& object = scene.objects[zone.cause_object].name;
+  const std::string cause = cause_text(zone.cause, scene.objects[zone.cause_object].name);
   switch (zone.cause) {
-    case ZoneCause::kUnknown:
-      return log_line(lines::kZoneUnknown, name, cycle, object, pair);
     case ZoneCause::kLate:
-      return log_line(lines::kZoneLate, name, cycle, object, pair, zone.clearance,
+      return log_line(lines::kZoneLate, name, cycle, cause, pair, zone.clearance,
                       zone.swept_clearance);
+    case ZoneCause::kUnknown:
+      return log_line(lines::kZoneUnknown, name, cycle, cause, pair);
     case ZoneCause::kContradicted:
-      return log_line(lines::kZoneContradicted, name, cycle, object, pair);
+      return log_line(lines::kZoneContradicted, name, cycle, cause, pair);
     case ZoneCause::kDiscontinuous:
-      return log_line(lines::kZoneDiscontinuous, name, cycle, object, pair);
+      return log_line(lines::kZoneDiscontinuous, name, cycle, cause, pair);
     default:
-      return log_line(lines::kZoneNear, name, cycle, pair, zone.clearance, zone.swept_clearance);
+      return log_line(lines::kZoneNear, name, cycle, cause, pair, zone.clearance,
+                      zone.swept_clearance);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/loop/ports.hpp"
 
 namespace clearance {

@@ -51,6 +51,10 @@ struct WriterFacts {
 [[nodiscard]] std::uint32_t writers_there(dds_entity_t reader);
 [[nodiscard]] std::uint32_t writers_alive(dds_entity_t reader);
 
+// Why the last writer that did not match this reader is not heard, in a sentence that names topic
+// and cause; empty: there was none. Partitions that differ are no cause: they are meant to.
+[[nodiscard]] std::string why_unheard(dds_entity_t reader);
+
 // Owns the domain's configuration, the participant and all endpoints made through it.
 class Participant {
  public:

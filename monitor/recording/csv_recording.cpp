@@ -9,7 +9,7 @@
 #include <map>
 #include <string_view>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/csv/pose_log.hpp"
 #include "monitor/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"

@@ -2,6 +2,11 @@
 // summary leaves questions open.
 #include "monitor/recording/reader.hpp"
 
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "monitor/files/build_info.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/cdr.hpp"
 
@@ -14,7 +19,7 @@ std::optional<TopicKind> kind_of(const McapChannel& channel) {
   return topic_kind(channel.schema.name);
 }
 
-// From the summary: which kinds the file has; none when there is no summary.
+// Whether the summary says that the file has messages of a kind; none when there is no summary.
 std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKind kind) {
   if (!summary || summary->statistics.messages == 0) return std::nullopt;
   for (const auto& [id, count] : summary->statistics.channel_messages) {
@@ -48,18 +53,40 @@ double RecordingReader::progress() const noexcept {
          static_cast<double>(files_.size());
 }
 
-// Each channel's kind is looked up once.
+// Each channel is examined once.
 bool RecordingReader::next_in_file(RecordedMessage& message) {
   McapMessage raw;
-  while (open_.back()->next(raw)) {
-    const auto [known, added] = kinds_.try_emplace(raw.channel);
-    if (added) known->second = kind_of(*raw.channel);
-    if (!known->second) continue;
-    message = {*known->second, static_cast<std::int64_t>(raw.log_time),
-               static_cast<std::int64_t>(raw.publish_time), raw.payload, raw.channel};
+  while (refusal_.empty() && open_.back()->next(raw)) {
+    auto known = channels_.find(raw.channel);
+    if (known == channels_.end())
+      known = channels_.emplace(raw.channel, examine(*raw.channel)).first;
+    Channel& channel = known->second;
+    if (!channel.kind || !refusal_.empty()) continue;
+    message = {*channel.kind, static_cast<std::int64_t>(raw.log_time),
+               static_cast<std::int64_t>(raw.publish_time),
+               channel.change ? channel.change->apply(raw.payload) : raw.payload, raw.channel};
     return true;
   }
   return false;
+}
+
+// A schema in another language than ours cannot be compared: such messages are taken by the name of
+// their type, and what does not decode is left out.
+RecordingReader::Channel RecordingReader::examine(const McapChannel& channel) {
+  Channel found{.kind = kind_of(channel), .change = {}};
+  if (!found.kind || channel.schema.encoding != kIdlEncoding) return found;
+  const McapSchema& ours = topic_schema(*found.kind);
+  if (channel.schema.text == ours.text) return found;
+  LayoutChange change(channel.schema.text, ours.text, type_of(*found.kind));
+  if (!change.error().empty()) {
+    const std::string build = about("build");
+    refusal_ = fmt::format("{}: this build ({}) cannot read {} of the build that made it ({}): {}",
+                           files_[open_.size() - 1].string(), kBuild, channel.schema.name,
+                           build.empty() ? "not named" : build, change.error());
+  }
+  not_recorded_.insert(change.not_recorded().begin(), change.not_recorded().end());
+  if (!change.is_none()) found.change = std::move(change);
+  return found;
 }
 
 // Metadata written by the recorder; files of other origin have none.
@@ -79,6 +106,7 @@ RecordingOutline outline(const std::filesystem::path& file) {
   const std::optional<bool> reports = says_kind(reader.summary(), TopicKind::kDistances);
   const std::optional<bool> catalogue = says_kind(reader.summary(), TopicKind::kCatalogue);
   found.has_reports = reports.value_or(false);
+  found.has_gradients = says_kind(reader.summary(), TopicKind::kGradients).value_or(false);
   bool first = true;
   RecordedMessage message;
   CdrDecoder decoder;

@@ -6,21 +6,25 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "monitor/mcap/reader.hpp"
+#include "monitor/recording/layout_change.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 
-// One message of ours; not decoded yet, since most readers want some kinds only.
+// One message of ours; not decoded yet, since most readers want some kinds only. Its bytes are of
+// this build's types, whichever build recorded it.
 struct RecordedMessage {
   TopicKind kind = TopicKind::kCatalogue;
   std::int64_t log_ns = 0, publish_ns = 0;
-  std::span<const std::byte> cdr;        // valid until the next call
+  // Valid until the next call. Empty: the bytes are not what their schema says.
+  std::span<const std::byte> cdr;
   const McapChannel* channel = nullptr;  // valid as long as the reader
 };
 
@@ -30,41 +34,58 @@ class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& file, const McapWindow& window = {})
       : RecordingReader(std::vector{file}, window) {}
-  // Of one recording, in their order; at least one. Damage in one of them ends the reading.
+  // The files of one recording in their order, at least one. Damage in one of them ends the
+  // reading.
   explicit RecordingReader(const std::vector<std::filesystem::path>& files,
                            const McapWindow& window = {});
 
   // Other topics are passed over.
   [[nodiscard]] bool next(RecordedMessage& message);
 
-  // After next() returned false; see McapReader.
-  [[nodiscard]] const std::string& error() const noexcept { return open_.back()->error(); }
-  [[nodiscard]] bool readable() const noexcept {
-    return open_.size() > 1 || open_.back()->readable();
+  // After next() returned false; see McapReader. Messages of a type that this build cannot read are
+  // an error that names the build which recorded them.
+  [[nodiscard]] const std::string& error() const noexcept {
+    return refusal_.empty() ? open_.back()->error() : refusal_;
   }
+  [[nodiscard]] bool readable() const noexcept {
+    return refusal_.empty() && (open_.size() > 1 || open_.back()->readable());
+  }
+  // Fields of this build that messages so far do not have, since their build did not know them:
+  // "Distances.queries". They read as 0, NaN or empty.
+  [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
   // Share of the files that has been read, 0 to 1.
   [[nodiscard]] double progress() const noexcept;
-  // Of the first file.
+  // The summary of the first file.
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
     return open_.front()->summary();
   }
-  // What the metadata seen so far tell of the recording under this key; empty: nothing.
+  // The value of a key in the metadata read so far; empty: there is none.
   [[nodiscard]] std::string about(const std::string& key) const;
 
  private:
+  // One channel as examined.
+  struct Channel {
+    std::optional<TopicKind> kind;       // none: not of ours
+    std::optional<LayoutChange> change;  // none: the layout is that of this build
+  };
+
   [[nodiscard]] bool next_in_file(RecordedMessage& message);
+  [[nodiscard]] Channel examine(const McapChannel& channel);
 
   std::vector<std::filesystem::path> files_;
   McapWindow window_;
   std::vector<std::unique_ptr<McapReader>> open_;  // one after the other: channels stay valid
-  std::map<const McapChannel*, std::optional<TopicKind>> kinds_;
+  std::map<const McapChannel*, Channel> channels_;
+  std::set<std::string> not_recorded_;
+  std::string refusal_;
 };
 
-// What a replay must know before it begins.
+// The facts that a replay must know before it begins.
 struct RecordingOutline {
   std::string error;  // not empty: the file cannot be read at all
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one
   bool has_reports = false;
+  bool has_gradients = false;       // as far as its summary tells
   std::string build;                // of the reports; empty: the recording does not say
   std::string cell_file;            // where its cell stood; empty: it keeps no files of the cell
   bool some_without_pairs = false;  // of the reports: RecordingOptions::pairs_every

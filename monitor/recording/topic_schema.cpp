@@ -46,7 +46,7 @@ struct Definition {
   std::string text;
 };
 
-// From `begin` to where the brackets that follow are closed, and the semicolon.
+// The end of a definition: the semicolon behind the brackets that open after `begin`.
 std::size_t end_of_definition(std::string_view text, std::size_t begin) {
   int depth = 0;
   for (std::size_t i = begin; i < text.size(); ++i) {
@@ -108,14 +108,17 @@ std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
   return std::nullopt;
 }
 
+std::string_view type_of(TopicKind kind) noexcept {
+  return std::string_view(topic(kind).type->m_typename).substr(kScope.size());
+}
+
 // Made once, on first use; initialisation of statics is thread-safe.
 const McapSchema& topic_schema(TopicKind kind) {
   static const std::array<McapSchema, kTopics.size()> kSchemas = [] {
     std::array<McapSchema, kTopics.size()> all;
     for (const Topic& each : kTopics) {
-      const std::string name = each.type->m_typename;
-      all[index(each.kind)] = {name, std::string(kIdlEncoding),
-                               self_contained_idl(kIdlText, name.substr(kScope.size()))};
+      all[index(each.kind)] = {each.type->m_typename, std::string(kIdlEncoding),
+                               self_contained_idl(kIdlText, type_of(each.kind))};
     }
     return all;
   }();

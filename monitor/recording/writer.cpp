@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 
@@ -44,7 +44,7 @@ std::string RecordingWriter::attach(const Cell& cell) {
   std::uint64_t total = 0;
   for (const std::filesystem::path& file : cell.files) {
     const auto read = read_bytes(file.string());
-    if (const auto* fault = std::get_if<MeshFault>(&read)) return fault->reason;
+    if (const auto* fault = std::get_if<FileFault>(&read)) return fault->reason;
     const auto bytes = std::as_bytes(std::span(std::get<std::string>(read)));
     Attached& one = all.emplace_back(file.string(), "application/octet-stream");
     if (options_.compress) compress_zstd(bytes, one.bytes);

@@ -64,9 +64,9 @@ class RecordingWriter {
     mcap_->write(channel, time_ns, time_ns, cdr);
   }
 
-  // What was written so far survives a crash.
+  // Afterwards everything written so far survives a crash.
   void flush() { mcap_->flush(); }
-  // As McapWriter::check.
+  // Calls McapWriter::check.
   bool check() { return mcap_->check(); }
   bool close() { return mcap_->close(); }
   [[nodiscard]] bool ok() const noexcept { return mcap_->ok(); }

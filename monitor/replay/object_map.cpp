@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

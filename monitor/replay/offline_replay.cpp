@@ -12,12 +12,12 @@
 
 #include "monitor/files/build_info.hpp"
 #include "monitor/replay/expectations.hpp"
+#include "monitor/replay/message_difference.hpp"
 #include "monitor/replay/reference_check.hpp"
-#include "monitor/replay/report_difference.hpp"
-#include "monitor/replay/separation_difference.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/replay/zone_difference.hpp"
 #include "monitor/wire/convert.hpp"
+#include "monitor/wire/gradient_message.hpp"
 
 namespace clearance {
 namespace {
@@ -65,6 +65,7 @@ class Replay {
         zones_(scene),
         replayed_(make_distances(scene)),
         separation_(make_separation(scene)),
+        gradients_(scene),
         monitor_(std::make_unique<Monitor>(scene)) {}
 
   OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
@@ -77,8 +78,7 @@ class Replay {
   void end_tick(const TickInput& input, const Report& report,
                 const std::function<void(const ReplayedTick&)>& on_tick);
   void compare(const TickInput& input, const Report& report);
-  [[nodiscard]] std::optional<std::string> separation_differs(const TickInput& input,
-                                                              const Report& report);
+  [[nodiscard]] std::optional<std::string> difference(const TickInput& input, const Report& report);
   void compare_zones();
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
@@ -99,6 +99,7 @@ class Replay {
   ZoneDifference zones_;
   Sample<clearance_msg_Distances> replayed_;
   Sample<clearance_msg_Separation> separation_;
+  GradientMessage gradients_;
   std::unique_ptr<Monitor> monitor_;
 
   OfflineReplay result_;
@@ -168,7 +169,7 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
   if (options_.progress) options_.progress(1.0);
 }
 
-// What can be said only after the last tick.
+// Judgements that are possible only after the last tick.
 void Replay::judge_the_whole() {
   compare_zones();
   if (in_window_ == 0) {
@@ -216,7 +217,7 @@ void Replay::begin_tick(const TickInput& input) {
   last_recorded_cycle_ = cycle;
 }
 
-// Expectations see every tick, since they begin when all objects have been seen; everything else
+// Expectations see every tick, since they begin when all objects are known; everything else
 // only the ticks of the window.
 void Replay::end_tick(const TickInput& input, const Report& report,
                       const std::function<void(const ReplayedTick&)>& on_tick) {
@@ -227,7 +228,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     fail(report.cycle, report.now_ns, what);
   }
   if (options_.compare) {
-    // What is certain of other poses says nothing about these.
+    // Bounds for other poses say nothing about these.
     const bool comparable = input.complete || *options_.compare == Comparison::kBits;
     if (in_window && comparable && !differs_) compare(input, report);
     zones_.replayed(report, cycle_offset_);
@@ -251,15 +252,11 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 
 // Only the first difference is reported: later ones are its consequences.
 void Replay::compare(const TickInput& input, const Report& report) {
-  to_wire(report, input.sources, 0, *replayed_);
-  if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
-  auto difference =
-      report_difference(scene_, *input.recorded, *replayed_, cycle_offset_, *options_.compare);
-  if (!difference) difference = separation_differs(input, report);
+  const std::optional<std::string> found = difference(input, report);
   ++result_.compared;
-  if (!difference) return;
+  if (!found) return;
   differs_ = true;
-  const std::string what = fmt::format("the replay differs in {}", *difference);
+  const std::string what = fmt::format("the replay differs in {}", *found);
   fail(report.cycle, report.now_ns,
        input.complete
            ? what + other_build_
@@ -268,12 +265,26 @@ void Replay::compare(const TickInput& input, const Report& report) {
                  what));
 }
 
-// Of other bounds, as where tracking began later, follow other figures.
-std::optional<std::string> Replay::separation_differs(const TickInput& input,
-                                                      const Report& report) {
-  if (input.separation == nullptr || *options_.compare != Comparison::kBits) return std::nullopt;
-  to_wire(report, 0, *separation_);
-  return separation_difference(scene_, *input.separation, *separation_);
+// The report comes first, since the other messages follow from it. Where only bounds are compared,
+// other bounds lead to other separations and gradients.
+std::optional<std::string> Replay::difference(const TickInput& input, const Report& report) {
+  to_wire(report, input.sources, 0, *replayed_);
+  if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
+  if (*options_.compare == Comparison::kBounds)
+    return bounds_difference(scene_, *input.recorded, *replayed_);
+  const DifferenceOptions how{.cycle_offset = cycle_offset_, .not_recorded = &feed_.not_recorded()};
+  if (auto found = message_difference(scene_, *input.recorded, *replayed_, how)) return found;
+  if (input.separation != nullptr) {
+    to_wire(report, 0, *separation_);
+    if (input.separation->pairs._length == 0) separation_->pairs._length = 0;  // thinned out
+    if (const auto found = message_difference(scene_, *input.separation, *separation_, how))
+      return "separation." + *found;
+  }
+  if (input.gradients != nullptr) {
+    const auto found = message_difference(scene_, *input.gradients, gradients_.of(report, 0), how);
+    if (found) return "gradients." + *found;
+  }
+  return std::nullopt;
 }
 
 // Zone changes come on a topic of their own and are compared when all are known; only where the
@@ -281,7 +292,7 @@ std::optional<std::string> Replay::separation_differs(const TickInput& input,
 void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
-  if (const auto found = zones_.first(feed_.zones())) {
+  if (const auto found = zones_.first(feed_.zones(), feed_.not_recorded())) {
     fail(found->cycle, found->now_ns,
          fmt::format("the replay differs in {}{}", found->what, other_build_));
   }
@@ -314,7 +325,7 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
   result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
-// What was left out, at the end and as totals.
+// Notes at the end what was left out, as totals.
 void Replay::note_counts() {
   const auto note = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
@@ -324,6 +335,20 @@ void Replay::note_counts() {
   note(feed_.silences(),
        "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
   note(feed_.undecodable(), "messages do not decode as what their channel says and were left out");
+  if (options_.compare) {
+    note(feed_.unwanted_gradients(),
+         "messages of gradients were not compared: the cell asks for none");
+    if (const std::uint64_t count = feed_.unmatched(); count == 1) {
+      result_.notes.push_back("1 message of gradients or separation belongs to no report");
+    } else {
+      note(count, "messages of gradients or separation belong to no report");
+    }
+  }
+  if (options_.compare && !feed_.not_recorded().empty()) {
+    result_.notes.push_back(
+        fmt::format("the recording does not have these fields, which were not compared: {}",
+                    fmt::join(feed_.not_recorded(), ", ")));
+  }
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
     note(result_.rejected[cause],
          std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
@@ -358,8 +383,16 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
   }
   std::vector<std::filesystem::path> files{recording};
   files.insert(files.end(), options.continued_in.begin(), options.continued_in.end());
-  TickFeed feed(files, cell.scene, outlined, options.tick_hz.value_or(0.0));
-  return Replay(cell.scene, std::move(feed), options, outlined).run(on_tick);
+  // Recorded gradients are compared even where the cell does not ask for them: clearanced
+  // --gradients does.
+  std::optional<Scene> with_gradients;
+  if (options.compare == Comparison::kBits && outlined.has_gradients && !cell.scene.gradients) {
+    with_gradients = cell.scene;
+    with_gradients->gradients = true;
+  }
+  const Scene& scene = with_gradients ? *with_gradients : cell.scene;
+  TickFeed feed(files, scene, outlined, options.tick_hz.value_or(0.0));
+  return Replay(scene, std::move(feed), options, outlined).run(on_tick);
 }
 
 }  // namespace clearance

@@ -2,11 +2,16 @@
 // them in pieces of 256 KiB.
 #include "monitor/replay/report_csv.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "monitor/files/file_error.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/report_fields.hpp"
 
 namespace clearance {
 namespace {
@@ -14,7 +19,7 @@ namespace {
 // Large enough that writing takes no noticeable time for each tick.
 constexpr std::size_t kWriteAt = std::size_t{1} << 18;  // bytes
 
-// As RFC 4180 has it.
+// Quotes a name as RFC 4180 demands.
 std::string quoted(const std::string& name) {
   if (name.find_first_of(",\"\n") == std::string::npos) return name;
   std::string out = "\"";
@@ -24,18 +29,47 @@ std::string quoted(const std::string& name) {
 
 // The shortest text that reads back as the same number.
 template <class Number>
+requires std::is_arithmetic_v<Number>
 void put(std::string& row, Number value) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   row.append(text.data(), end);
 }
 
-void put(std::string& row, const Vec3& vector) {
-  for (int i = 0; i < 3; ++i) {
-    row += ',';
-    put(row, vector[i]);
-  }
+// The columns of a field: its name, or, of vectors, an axis behind a letter, "ax". Empty: the table
+// leaves the field out, since it names the objects and not the parts, and ticks by their own
+// number.
+std::string column_of(std::string_view field) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherwise = {
+      {{"pair", ""},
+       {"part_a", ""},
+       {"part_b", ""},
+       {"evaluated_cycle", ""},
+       {"witness_a", "a"},
+       {"witness_b", "b"},
+       {"normal", "n"}}};
+  const auto* const found =
+      std::ranges::find(kOtherwise, field, &decltype(kOtherwise)::value_type::first);
+  return std::string(found == kOtherwise.end() ? field : found->second);
 }
+
+// Walks the columns that a pair's fields have.
+template <class Visit>
+void for_each_column(const PairReport& pair, const Visit& visit) {
+  for_each_field(
+      [&visit]<class Value>(const Field& field, const Value& value) {
+        const std::string column = column_of(field.name);
+        if (column.empty()) return;
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          for (int i = 0; i < 3; ++i) visit(column + "xyz"[i], value[i]);
+        } else {
+          visit(column, value);
+        }
+      },
+      pair);
+}
+
+void put(std::string& row, PairStatus status) { row += name(status); }
 
 }  // namespace
 
@@ -47,10 +81,9 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
     return;
   }
   for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
-  rows_ =
-      "tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_lower,ax,ay,az,bx,by,bz,nx,"
-      "ny,nz,"
-      "closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles\n";
+  rows_ = "tick,now_ns,object_a,object_b";
+  for_each_column({}, [this](const std::string& column, const auto&) { rows_ += "," + column; });
+  rows_ += '\n';
 }
 
 // Rows are collected and written in large pieces.
@@ -73,24 +106,10 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   rows_ += ',';
   put(rows_, report.now_ns);
   rows_.append(",").append(names_[objects.first]).append(",").append(names_[objects.second]);
-  rows_.append(",").append(name(pair.status));
-  for (const double value : {pair.distance, pair.lower, pair.upper, pair.swept_lower}) {
+  for_each_column(pair, [this](const std::string&, const auto& value) {
     rows_ += ',';
     put(rows_, value);
-  }
-  put(rows_, pair.witness_a);
-  put(rows_, pair.witness_b);
-  put(rows_, pair.normal);
-  for (const double value : {pair.closing_speed, pair.time_to_contact}) {
-    rows_ += ',';
-    put(rows_, value);
-  }
-  for (const std::int64_t value : {pair.age_a_ns, pair.age_b_ns}) {
-    rows_ += ',';
-    put(rows_, value);
-  }
-  rows_ += ',';
-  put(rows_, pair.refresh_age_cycles);
+  });
   rows_ += '\n';
 }
 

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// How far behind a report, in log time, a batch that it used may stand in the file: recorded over
+// A batch may stand behind the report that used it by this much log time: recorded over
 // DDS, topics overtake each other.
 constexpr std::int64_t kReadAheadNs = 2'000'000'000;
 
@@ -20,6 +20,32 @@ constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 }  // namespace
 
+template <class Message>
+void TickMessages<Message>::add(std::span<const std::byte> cdr, CdrDecoder& decoder) {
+  if (!wanted_) ++unwanted_;
+  Sample<Message> message;
+  if (!wanted_ || !decoder.decode(cdr, message)) return;
+  waiting_.push_back(std::move(message));
+  expected_ = true;
+}
+
+template <class Message>
+template <class ReadAhead>
+const Message* TickMessages<Message>::of_tick(std::int64_t now_ns, const ReadAhead& read_ahead) {
+  if (!wanted_) return nullptr;
+  const auto has_reached = [&] {
+    for (; !waiting_.empty() && waiting_.front()->now_ns < now_ns; waiting_.pop_front())
+      unmatched_ += matched_ns_ && waiting_.front()->now_ns != *matched_ns_;
+    return !waiting_.empty();
+  };
+  while (!has_reached() && expected_) {
+    if (!read_ahead()) expected_ = false;
+  }
+  const bool found = has_reached() && waiting_.front()->now_ns == now_ns;
+  matched_ns_ = now_ns;
+  return found ? &*waiting_.front() : nullptr;
+}
+
 TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
                    const RecordingOutline& outline, double tick_hz)
     : reader_(files),
@@ -28,7 +54,8 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
       sources_(scene),
       by_report_(outline.has_reports),
       tick_hz_(tick_hz),
-      separated_(separated_count(scene).zones > 0) {}
+      separations_(separated_count(scene).zones > 0),
+      gradients_(scene.gradients) {}
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
@@ -37,7 +64,8 @@ TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tic
       sources_(scene),
       by_report_(false),
       tick_hz_(tick_hz),
-      separated_(false) {}
+      separations_(false),
+      gradients_(false) {}
 
 // Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
@@ -46,6 +74,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.sources.clear();
   tick.recorded = nullptr;
   tick.separation = nullptr;
+  tick.gradients = nullptr;
   tick.restart = false;
   tick.complete = true;
   if (by_report_) return next_by_report(tick);
@@ -63,6 +92,8 @@ bool TickFeed::read_one() {
   RecordedMessage message;
   if (!reader_->next(message)) return false;
   read_to_ns_ = message.log_ns;
+  if (not_recorded_.size() != reader_->not_recorded().size())
+    not_recorded_ = reader_->not_recorded();
   read_message(message);
   return true;
 }
@@ -79,11 +110,8 @@ void TickFeed::read_message(const RecordedMessage& message) {
       ++undecodable_;
     }
   }
-  if (message.kind == TopicKind::kSeparation && separated_) {
-    Sample<clearance_msg_Separation> separation;
-    if (decoder_.decode(message.cdr, separation))
-      separations_waiting_.push_back(std::move(separation));
-  }
+  if (message.kind == TopicKind::kSeparation) separations_.add(message.cdr, decoder_);
+  if (message.kind == TopicKind::kGradients) gradients_.add(message.cdr, decoder_);
   if (message.kind == TopicKind::kZones) {
     Sample<clearance_msg_ZoneState> zone;
     if (decoder_.decode(message.cdr, zone)) zones_.push_back(*zone);
@@ -139,32 +167,19 @@ bool TickFeed::next_by_report(TickInput& tick) {
     const clearance_msg_SourceUse& use = report.sources._buffer[i];
     tick.sources.push_back({SourceName(use.source), use.sequence_number});
   }
-  while (!all_there(tick.sources) && read_to_ns_ < current_.log_ns + kReadAheadNs) {
-    if (!read_one()) break;
+  while (!all_there(tick.sources) && read_ahead()) {
   }
   take_used(tick);
-  if (separated_) tick.separation = separation_of(report.now_ns);
+  const auto further = [this] { return read_ahead(); };
+  tick.separation = separations_.of_tick(report.now_ns, further);
+  tick.gradients = gradients_.of_tick(report.now_ns, further);
   tick.complete = missing_.empty();
   forget_unused(current_.log_ns);
   return true;
 }
 
-// A tick's time is its own. Recorded over DDS, it may stand behind the report; a recording that has
-// none at all is not read ahead for it.
-const clearance_msg_Separation* TickFeed::separation_of(std::int64_t now_ns) {
-  const auto is_of_tick = [&] {
-    while (!separations_waiting_.empty() && separations_waiting_.front()->now_ns < now_ns)
-      separations_waiting_.pop_front();
-    return !separations_waiting_.empty();
-  };
-  const bool any = any_separation_ || !separations_waiting_.empty();
-  any_separation_ = any;
-  while (!is_of_tick() && any && read_to_ns_ < current_.log_ns + kReadAheadNs) {
-    if (!read_one()) break;
-  }
-  const bool found = is_of_tick() && separations_waiting_.front()->now_ns == now_ns;
-  return found ? &*separations_waiting_.front() : nullptr;
-}
+// Reads behind the report of the tick, as far as topics may overtake each other.
+bool TickFeed::read_ahead() { return read_to_ns_ < current_.log_ns + kReadAheadNs && read_one(); }
 
 // The place among the waiting batches; their count when it is not there.
 std::size_t TickFeed::place_of(const SourceUse& use) const {
@@ -188,7 +203,7 @@ bool TickFeed::all_there(std::span<const SourceUse> sources) const {
   });
 }
 
-// Of each source everything up to the batch that is named, all sources in file order.
+// Takes everything of each source up to the batch that is named, all sources in file order.
 void TickFeed::take_used(TickInput& tick) {
   const std::vector<SourceUse>& sources = tick.sources;
   std::vector<std::size_t> until;  // by source: one past the place of its last batch
@@ -231,7 +246,7 @@ void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   }
 }
 
-// What no report has named in time, the daemon did not use.
+// The daemon did not use a batch that no report has named in time.
 void TickFeed::forget_unused(std::int64_t log_ns) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
     batches_waiting_.pop_front();

@@ -1,4 +1,4 @@
-// Reads a recording, or a log of somebody else's, tick by tick: the poses that each tick of the
+// Reads a recording, or a log of another program, tick by tick: the poses that each tick of the
 // daemon took in, and its time.
 //
 // Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
@@ -31,17 +31,45 @@
 
 namespace clearance {
 
-// What Monitor::tick gets, and the report that the daemon made of it.
+// The input of Monitor::tick, and the report that the daemon made of it.
 struct TickInput {
   TickTime time;
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
-  // Of the same tick; null: the cell has no zone with `separation`, or it is not in the recording.
+  // Messages of the same tick; null: the scene asks for none, or the recording has none of this
+  // tick.
   const clearance_msg_Separation* separation = nullptr;
+  const clearance_msg_Gradients* gradients = nullptr;
   bool restart = false;  // the daemon had been started anew: its monitor knew nothing
   bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
+};
+
+// The messages of one topic that a daemon writes every tick beside its report, in file order. A
+// tick's time is its own, so that it tells which tick they belong to.
+template <class Message>
+class TickMessages {
+ public:
+  explicit TickMessages(bool wanted) : wanted_(wanted) {}
+  void add(std::span<const std::byte> cdr, CdrDecoder& decoder);
+  // The message of the tick at `now_ns`; null: there is none. Recorded over DDS, it may stand
+  // behind the report: `read_ahead` reads one message more, and is false where it may not. After
+  // one search in vain nothing is read ahead until a message comes: most recordings have all or
+  // none.
+  template <class ReadAhead>
+  [[nodiscard]] const Message* of_tick(std::int64_t now_ns, const ReadAhead& read_ahead);
+  // The number that came, though the scene asks for none.
+  [[nodiscard]] std::uint64_t unwanted() const noexcept { return unwanted_; }
+  // The number that belong to no report; those from before the first report do not count.
+  [[nodiscard]] std::uint64_t unmatched() const noexcept { return unmatched_; }
+
+ private:
+  bool wanted_;  // by the scene
+  bool expected_ = true;
+  std::uint64_t unwanted_ = 0, unmatched_ = 0;
+  std::optional<std::int64_t> matched_ns_;  // of the last tick that was asked for
+  std::deque<Sample<Message>> waiting_;
 };
 
 // Reads ahead by at most two seconds of log time.
@@ -51,14 +79,14 @@ class TickFeed {
   // log times.
   TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
            const RecordingOutline& outline, double tick_hz = 0.0);
-  // Somebody else's.
+  // A log of another program.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 
   // The next tick; its content is valid until the next call. False at the end or the damage.
   [[nodiscard]] bool next(TickInput& tick);
 
   [[nodiscard]] const ObjectMap& objects() const noexcept { return objects_; }
-  // What the recording said of its zones so far, in file order.
+  // The states of zones in the recording so far, in file order.
   [[nodiscard]] const std::vector<clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
@@ -76,7 +104,13 @@ class TickFeed {
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
   [[nodiscard]] std::uint64_t not_in_the_file() const noexcept { return not_in_the_file_; }
   [[nodiscard]] std::uint64_t undecodable() const noexcept { return undecodable_; }
-  // How often nothing came for so long that ticks at a fixed rate were left out.
+  [[nodiscard]] std::uint64_t unwanted_gradients() const noexcept { return gradients_.unwanted(); }
+  [[nodiscard]] std::uint64_t unmatched() const noexcept {
+    return separations_.unmatched() + gradients_.unmatched();
+  }
+  // Fields that the recording's build did not have: RecordingReader::not_recorded().
+  [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
+  // The number of pauses so long that ticks at a fixed rate were left out.
   [[nodiscard]] std::uint64_t silences() const noexcept { return silences_; }
 
  private:
@@ -94,7 +128,7 @@ class TickFeed {
   void read_batch(const RecordedMessage& message);
   void read_joints(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
-  [[nodiscard]] const clearance_msg_Separation* separation_of(std::int64_t now_ns);
+  [[nodiscard]] bool read_ahead();
   [[nodiscard]] bool next_by_time(TickInput& tick);
   [[nodiscard]] bool next_by_rate(TickInput& tick);
   void take_until_now(TickInput& tick);
@@ -122,9 +156,9 @@ class TickFeed {
   std::deque<Waiting> batches_waiting_;        // in file order
   std::deque<WaitingReport> reports_waiting_;  // in file order
   WaitingReport current_;
-  bool separated_;                                                    // zones of the scene
-  bool any_separation_ = false;                                       // has been read
-  std::deque<Sample<clearance_msg_Separation>> separations_waiting_;  // in file order
+  TickMessages<clearance_msg_Separation> separations_;
+  TickMessages<clearance_msg_Gradients> gradients_;
+  std::set<std::string> not_recorded_;
   std::map<std::string, std::uint64_t> consumed_;  // by source: the last sequence number
   std::set<std::string> missing_;                  // sources whose last batch is not in the file
   std::vector<clearance_msg_ZoneState> zones_;

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "monitor/pair_name.hpp"
+#include "monitor/replay/message_difference.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -28,17 +28,6 @@ States changes_of(const States& recorded, std::uint32_t zone) {
   return changes;
 }
 
-// NaN equals itself here, and -0 differs from 0.
-bool same_bits(double a, double b) {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-// To the bit, as reports are compared.
-bool same(const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
-  return a.cycle == b.cycle && a.active == b.active && a.pair == b.pair &&
-         same_bits(a.clearance, b.clearance) && same_bits(a.swept_clearance, b.swept_clearance);
-}
-
 // 17 digits, so that values that differ look different.
 std::string described(const Scene& scene, const clearance_msg_ZoneState& state) {
   return fmt::format("{} at tick {}, clearance {:.17g} m, since the last tick {:.17g} m ({})",
@@ -55,32 +44,47 @@ void ZoneDifference::replayed(const Report& report, std::uint64_t cycle_offset) 
     clearance_msg_ZoneState state{};
     to_wire(scene_, report, zone, state);
     state.cycle += cycle_offset;
+    state.since_cycle += cycle_offset;
     changes_[zone].push_back(state);
   }
 }
 
 // The earliest difference of all zones.
-std::optional<ZoneDifference::Found> ZoneDifference::first(const States& recorded) const {
+std::optional<ZoneDifference::Found> ZoneDifference::first(
+    const States& recorded, const std::set<std::string>& not_recorded) const {
   std::optional<Found> earliest;
   for (std::uint32_t zone = 0; zone < changes_.size(); ++zone) {
-    const States theirs = changes_of(recorded, zone);
-    const States& ours = changes_[zone];
-    // Both lists have the changes in order of time.
-    const auto [there, here] = std::ranges::mismatch(theirs, ours, same);
-    if (there == theirs.end() && here == ours.end()) continue;
-    const bool theirs_first =
-        here == ours.end() || (there != theirs.end() && there->cycle <= here->cycle);
-    const clearance_msg_ZoneState& at = theirs_first ? *there : *here;
-    if (earliest && earliest->cycle <= at.cycle) continue;
-    const auto side = [this](bool has, auto state) {
-      return has ? described(scene_, *state) : std::string("no change");
-    };
-    earliest =
-        Found{at.cycle, at.now_ns,
-              fmt::format("zone '{}': recorded {}, replayed {}", scene_.zones[zone].name,
-                          side(there != theirs.end(), there), side(here != ours.end(), here))};
+    const auto found = first_of(zone, changes_of(recorded, zone), not_recorded);
+    if (found && (!earliest || found->cycle < earliest->cycle)) earliest = found;
   }
   return earliest;
+}
+
+// Both lists have the changes in order of time.
+std::optional<ZoneDifference::Found> ZoneDifference::first_of(
+    std::uint32_t zone, const States& theirs, const std::set<std::string>& not_recorded) const {
+  const States& ours = changes_[zone];
+  std::optional<std::string> field;
+  const auto agree = [&](const clearance_msg_ZoneState& a, const clearance_msg_ZoneState& b) {
+    field = message_difference(scene_, a, b, {.not_recorded = &not_recorded});
+    return !field;
+  };
+  const auto [there, here] = std::ranges::mismatch(theirs, ours, agree);
+  if (there == theirs.end() && here == ours.end()) return std::nullopt;
+  const bool both = there != theirs.end() && here != ours.end();
+  if (both && there->cycle == here->cycle) {
+    return Found{there->cycle, there->now_ns,
+                 fmt::format("zone '{}', {}", scene_.zones[zone].name, *field)};
+  }
+  const bool theirs_first =
+      here == ours.end() || (there != theirs.end() && there->cycle < here->cycle);
+  const clearance_msg_ZoneState& at = theirs_first ? *there : *here;
+  const auto side = [this](bool has, auto state) {
+    return has ? described(scene_, *state) : std::string("no change");
+  };
+  return Found{at.cycle, at.now_ns,
+               fmt::format("zone '{}': recorded {}, replayed {}", scene_.zones[zone].name,
+                           side(there != theirs.end(), there), side(here != ours.end(), here))};
 }
 
 }  // namespace clearance

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,16 @@ class ZoneDifference {
   // Every tick's report; its recorded cycle number is `cycle_offset` larger.
   void replayed(const Report& report, std::uint64_t cycle_offset);
 
-  // The earliest change that only one side has, or that differs in pair or clearance.
-  [[nodiscard]] std::optional<Found> first(
-      const std::vector<clearance_msg_ZoneState>& recorded) const;
+  // The earliest change that only one side has, or that differs in any field but those of
+  // `not_recorded` (DifferenceOptions).
+  [[nodiscard]] std::optional<Found> first(const std::vector<clearance_msg_ZoneState>& recorded,
+                                           const std::set<std::string>& not_recorded = {}) const;
 
  private:
+  [[nodiscard]] std::optional<Found> first_of(std::uint32_t zone,
+                                              const std::vector<clearance_msg_ZoneState>& theirs,
+                                              const std::set<std::string>& not_recorded) const;
+
   const Scene& scene_;
   std::vector<std::vector<clearance_msg_ZoneState>> changes_;  // by zone
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "monitor/pair_name.hpp"
+#include "monitor/zone_cause.hpp"
 
 namespace clearance {
 namespace {
@@ -105,28 +106,10 @@ Status joints_status(const Scene& scene, std::uint32_t robot, const clearance_ms
   return status;
 }
 
-std::string cause_of(const Scene& scene, const ZoneReport& zone) {
-  const std::string& object = scene.objects[zone.cause_object].name;
-  switch (zone.cause) {
-    case ZoneCause::kInactive:
-      return "clear";
-    case ZoneCause::kNear:
-      return "by distance";
-    case ZoneCause::kLate:
-      return object + " is late";
-    case ZoneCause::kUnknown:
-      return object + " was never seen";
-    case ZoneCause::kDiscontinuous:
-      return object + " made a discontinuity";
-    case ZoneCause::kContradicted:
-      return object + " is contradicted";
-  }
-  return "";
-}
-
 Status zone_status(const Scene& scene, std::uint32_t index, const ZoneReport& zone) {
   Status status{.name = "zone " + scene.zones[index].name, .message = "not active"};
-  const std::string cause = cause_of(scene, zone);
+  const std::string cause =
+      zone.active ? cause_text(zone.cause, scene.objects[zone.cause_object].name) : "clear";
   const std::string pair = pair_name(scene, zone.pair);
   if (zone.active) status.raise(DiagnosticLevel::kWarn, fmt::format("active: {}, {}", pair, cause));
   if (zone.active && zone.cause > ZoneCause::kLate) status.level = DiagnosticLevel::kError;

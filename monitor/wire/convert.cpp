@@ -1,10 +1,13 @@
-// Field by field, in the order of idl/clearance.idl. Functions for the tick thread and beside it
-// write into sequences that make_distances or make_batch sized.
+// Reports go by the lists of monitor/report_fields.hpp; inputs and the catalogue field by field.
+// Functions for the tick thread and beside it write into sequences that make_distances or
+// make_batch sized.
 #include "monitor/wire/convert.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
+
+#include "monitor/wire/to_wire.hpp"
 
 namespace clearance {
 namespace {
@@ -45,36 +48,9 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
   out.leave_above = zone.leave_above;
 }
 
-void fill(const ZoneSeparation& zone, clearance_msg_ZoneSeparation& out) noexcept {
-  out.zone = zone.zone;
-  out.validity = static_cast<std::uint8_t>(zone.validity);
-  out.pair = zone.pair;
-  out.remaining = zone.remaining;
-  out.speed_limit = zone.speed_limit;
-  out.scaling = zone.scaling;
-}
-
-void fill(const PairSeparation& pair, clearance_msg_PairSeparation& out) noexcept {
-  out.zone = pair.zone;
-  out.pair = pair.pair;
-  out.validity = static_cast<std::uint8_t>(pair.validity);
-  out.clearance = pair.clearance;
-  out.human_speed = pair.human_speed;
-  out.robot_speed = pair.robot_speed;
-  out.human_term = pair.human_term;
-  out.robot_term = pair.robot_term;
-  out.stopping_term = pair.stopping_term;
-  out.protective_distance = pair.protective_distance;
-  out.remaining = pair.remaining;
-  out.speed_limit = pair.speed_limit;
-  out.scaling = pair.scaling;
-  out.age_human_ns = pair.age_human_ns;
-  out.age_robot_ns = pair.age_robot_ns;
-}
-
 }  // namespace
 
-// Sequences get all the room that any report of this scene needs.
+// Sequences get the capacity that any report of this scene needs.
 Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
@@ -84,75 +60,24 @@ Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   return sample;
 }
 
-void to_wire(const PairReport& pair, clearance_msg_PairDistance& out) noexcept {
-  out.pair = pair.pair;
-  out.part_a = pair.part_a;
-  out.part_b = pair.part_b;
-  out.status = static_cast<std::uint8_t>(pair.status);
-  out.distance = pair.distance;
-  out.lower = pair.lower;
-  out.upper = pair.upper;
-  out.swept_lower = pair.swept_lower;
-  out.witness_a = to_wire(pair.witness_a);
-  out.witness_b = to_wire(pair.witness_b);
-  out.normal = to_wire(pair.normal);
-  out.closing_speed = pair.closing_speed;
-  out.time_to_contact = pair.time_to_contact;
-  out.age_a_ns = pair.age_a_ns;
-  out.age_b_ns = pair.age_b_ns;
-  out.evaluated_cycle = pair.evaluated_cycle;
-  out.refresh_age_cycles = pair.refresh_age_cycles;
-}
-
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
              clearance_msg_Distances& out) noexcept {
-  out.cycle = report.cycle;
-  out.now_ns = report.now_ns;
-  out.clock_offset_ns = report.clock_offset_ns;
-  out.newest_pose_ns = report.newest_pose_ns;
-  out.oldest_pose_ns = report.oldest_pose_ns;
+  DistanceFields::for_each(ToWire{}, report, out);
   out.publish_ns = publish_ns;
-  out.scene_revision = report.scene_revision;
-  out.minimum_known = report.minimum_known;
-  out.minimum_certified = report.minimum_certified;
-  out.lower_all = report.lower_all;
-  out.swept_lower_all = report.swept_lower_all;
-  to_wire(report.minimum, out.minimum);
-  out.pairs_total = report.pairs_total;
-  out.evaluated = report.evaluated;
-  out.carried = report.carried;
-  out.stale = report.stale;
-  out.unknown = report.unknown;
-  out.queries = report.queries;
-  out.oldest_evaluation_cycles = report.oldest_evaluation_cycles;
-
   out.sources._length =
       static_cast<std::uint32_t>(std::min<std::size_t>(sources.size(), out.sources._maximum));
   for (std::uint32_t i = 0; i < out.sources._length; ++i) {
     copy_text(sources[i].source.view(), out.sources._buffer[i].source);
     out.sources._buffer[i].sequence_number = sources[i].sequence_number;
   }
-  out.pairs._length =
-      static_cast<std::uint32_t>(std::min<std::size_t>(report.pairs.size(), out.pairs._maximum));
-  for (std::uint32_t i = 0; i < out.pairs._length; ++i) {
-    to_wire(report.pairs[i], out.pairs._buffer[i]);
-  }
   return out.sources._length == sources.size() && out.pairs._length == report.pairs.size();
 }
 
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
              clearance_msg_ZoneState& out) noexcept {
-  const ZoneReport& state = report.zones[zone];
+  PublishedZoneFields::for_each(ToWire{}, report.zones[zone], out);
   out.zone = zone;
   copy_text(scene.zones[zone].name, out.name);
-  out.active = state.active;
-  out.certified = state.certified;
-  out.cause = static_cast<std::uint8_t>(state.cause);
-  out.cause_object = state.cause_object;
-  out.pair = state.pair;
-  out.clearance = state.clearance;
-  out.swept_clearance = state.swept_clearance;
-  out.since_cycle = state.since_cycle;
   out.cycle = report.cycle;
   out.now_ns = report.now_ns;
 }
@@ -167,18 +92,11 @@ Sample<clearance_msg_Separation> make_separation(const Scene& scene) {
 
 void to_wire(const Report& report, std::int64_t publish_ns,
              clearance_msg_Separation& out) noexcept {
-  out.cycle = report.cycle;
-  out.now_ns = report.now_ns;
+  constexpr ToWire kToWire;
+  TickFields::for_each(kToWire, report, out);
   out.publish_ns = publish_ns;
-  out.scene_revision = report.scene_revision;
-  out.zones._length = static_cast<std::uint32_t>(
-      std::min<std::size_t>(report.separated_zones.size(), out.zones._maximum));
-  for (std::uint32_t i = 0; i < out.zones._length; ++i)
-    fill(report.separated_zones[i], out.zones._buffer[i]);
-  out.pairs._length = static_cast<std::uint32_t>(
-      std::min<std::size_t>(report.separated_pairs.size(), out.pairs._maximum));
-  for (std::uint32_t i = 0; i < out.pairs._length; ++i)
-    fill(report.separated_pairs[i], out.pairs._buffer[i]);
+  kToWire(Field{"pairs"}, report.separated_pairs, out.pairs);
+  kToWire(Field{"zones"}, report.separated_zones, out.zones);
 }
 
 // Ids are places in the lists, as in the scene.

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "config/cell/topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -26,7 +27,7 @@ enum class TopicKind : std::uint8_t {
   kGradients,
 };
 
-// How a topic is delivered. Both are reliable with keep-last history.
+// The delivery of a topic. Both are reliable with keep-last history.
 enum class Delivery : std::uint8_t {
   kStream,   // volatile: a reader gets what is sent from now on
   kLatched,  // transient-local, depth 1: a late reader gets the last sample of each key
@@ -35,6 +36,7 @@ enum class Delivery : std::uint8_t {
 // One row of the table.
 struct Topic {
   TopicKind kind;
+  std::string_view key;       // in a cell and in command lines
   std::string Topics::*name;  // in a scene; Topics has the defaults
   const dds_topic_descriptor_t* type;
   Delivery delivery;
@@ -42,25 +44,30 @@ struct Topic {
   std::int32_t reader_depth;  // samples of a key that may wait, unless a reader asks for more
 };
 
-// In the order of TopicKind, which is that of recordings: what comes in stands before the reports
-// that used them. A distances writer keeps 64 reports for a client that is held up for a moment;
-// the daemon may be 16 batches of a source (16 ms at 1 kHz) late in taking poses without losing
-// any.
-inline constexpr std::array<Topic, 8> kTopics = {{
-    {TopicKind::kCatalogue, &Topics::catalogue, &clearance_msg_Catalogue_desc, Delivery::kLatched,
-     1, 1},
-    {TopicKind::kPoses, &Topics::poses, &clearance_msg_PoseBatch_desc, Delivery::kStream, 64, 16},
-    {TopicKind::kJointStates, &Topics::joint_states, &clearance_msg_JointStates_desc,
-     Delivery::kStream, 64, 16},
-    {TopicKind::kDistances, &Topics::distances, &clearance_msg_Distances_desc, Delivery::kStream,
-     64, 64},
-    {TopicKind::kZones, &Topics::zones, &clearance_msg_ZoneState_desc, Delivery::kLatched, 1, 1},
-    {TopicKind::kHealth, &Topics::health, &clearance_msg_Health_desc, Delivery::kLatched, 1, 1},
-    {TopicKind::kSeparation, &Topics::separation, &clearance_msg_Separation_desc, Delivery::kStream,
-     64, 64},
-    {TopicKind::kGradients, &Topics::gradients, &clearance_msg_Gradients_desc, Delivery::kStream,
-     64, 64},
-}};
+// In the order of TopicKind and of kTopicKeys, which is that of recordings: what comes in stands
+// before the reports that used them. A distances writer keeps 64 reports for a client that is held
+// up for a moment; the daemon may be 16 batches of a source (16 ms at 1 kHz) late in taking poses
+// without losing any.
+inline constexpr auto kTopics = [] {
+  constexpr auto row = [](TopicKind kind, const dds_topic_descriptor_t& type, Delivery delivery,
+                          std::int32_t writer_depth, std::int32_t reader_depth) {
+    const TopicKey& key = kTopicKeys[static_cast<std::size_t>(kind)];
+    return Topic{kind, key.key, key.name, &type, delivery, writer_depth, reader_depth};
+  };
+  using enum TopicKind;
+  using enum Delivery;
+  return std::array{
+      row(kCatalogue, clearance_msg_Catalogue_desc, kLatched, 1, 1),
+      row(kPoses, clearance_msg_PoseBatch_desc, kStream, 64, 16),
+      row(kJointStates, clearance_msg_JointStates_desc, kStream, 64, 16),
+      row(kDistances, clearance_msg_Distances_desc, kStream, 64, 64),
+      row(kZones, clearance_msg_ZoneState_desc, kLatched, 1, 1),
+      row(kHealth, clearance_msg_Health_desc, kLatched, 1, 1),
+      row(kSeparation, clearance_msg_Separation_desc, kStream, 64, 64),
+      row(kGradients, clearance_msg_Gradients_desc, kStream, 64, 64),
+  };
+}();
+static_assert(kTopics.size() == kTopicKeys.size());
 
 [[nodiscard]] constexpr std::size_t index(TopicKind kind) noexcept {
   return static_cast<std::size_t>(kind);

@@ -7,6 +7,7 @@
 #include "config/decomposition/convex_parts.hpp"
 #include "config/decomposition/surface_error.hpp"
 #include "config/mesh/mesh_file.hpp"
+#include "config/text/file_bytes.hpp"
 #include "config/write/single_robot_cell.hpp"
 #include "core/shapes.hpp"
 #include "monitor/app/program.hpp"
@@ -95,7 +96,7 @@ std::optional<PartsModel> split(const TriangleMesh& mesh, const PartLimits& limi
 
 std::variant<Original, Faults> original_of(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file);
-  if (const auto* fault = std::get_if<MeshFault>(&bytes)) return Faults{fault->reason};
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) return Faults{fault->reason};
   const auto read = read_mesh(std::get<std::string>(bytes), file.extension());
   if (const auto* fault = std::get_if<MeshFault>(&read)) {
     return Faults{"'" + file.string() + "' " + fault->reason};

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "monitor/app/printable.hpp"
+#include "config/text/printable.hpp"
 
 // Last, without their macros of common names.
 #define NCURSES_NOMACROS

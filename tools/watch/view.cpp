@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "monitor/report.hpp"
+#include "monitor/zone_cause.hpp"
 #include "tools/watch/number_text.hpp"
 #include "tools/watch/separation_lines.hpp"
 
@@ -21,9 +21,7 @@ constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 const char* status_name(std::uint8_t status) {
-  return status <= static_cast<std::uint8_t>(PairStatus::kUnknown)
-             ? name(static_cast<PairStatus>(status))
-             : "?";
+  return status < kPairStatuses ? name(static_cast<PairStatus>(status)) : "?";
 }
 
 Style status_style(std::uint8_t status) {
@@ -91,19 +89,10 @@ std::string trouble(const Feed& feed, std::int64_t now_ns) {
 
 // "", or ": poses of hand are late".
 std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
-  const std::string object = feed.object_name(zone.cause_object);
-  switch (static_cast<ZoneCause>(zone.cause)) {
-    case ZoneCause::kLate:
-      return fmt::format(": poses of {} are late", object);
-    case ZoneCause::kUnknown:
-      return fmt::format(": no pose of {}", object);
-    case ZoneCause::kContradicted:
-      return fmt::format(": poses of {} contradict each other or the cell", object);
-    case ZoneCause::kDiscontinuous:
-      return fmt::format(": the pose of {} is discontinuous", object);
-    default:
-      return "";
-  }
+  const auto cause = static_cast<ZoneCause>(zone.cause);
+  if (cause == ZoneCause::kNear) return "";
+  const std::string text = cause_text(cause, feed.object_name(zone.cause_object));
+  return text.empty() ? text : ": " + text;
 }
 
 Line title_line(const Feed& feed, const ViewContext& context, std::size_t width) {
@@ -113,7 +102,11 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
     line.add(fmt::format("{} at {:.0f} Hz, ", catalogue->scene, catalogue->rate_hz));
   }
   line.add(context.where).add("  ");
-  if (!feed.any()) return line.add("waiting for clearanced", Style::kWarning);
+  if (!feed.any()) {
+    const bool is_refused = !feed.refusal().empty();
+    return line.add(is_refused ? feed.refusal() : "waiting for clearanced",
+                    is_refused ? Style::kAlarm : Style::kWarning);
+  }
   if (!trouble(feed, context.now_ns).empty()) return line.add("not live", Style::kAlarm);
   if (feed.publishers() > 1) {
     return line.add(fmt::format("{} daemons publish here: figures are mixed", feed.publishers()),
@@ -165,6 +158,7 @@ void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
       .add(", ")
       .add(fmt::format("{} unknown", report.unknown),
            report.unknown != 0 ? Style::kWarning : Style::kPlain)
+      .add(absent_pairs(report) != 0 ? fmt::format(", {} absent", absent_pairs(report)) : "")
       .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m; refreshed no more "
                        "than {} ticks ago",
                        report.lower_all, report.swept_lower_all, report.oldest_evaluation_cycles));
@@ -307,6 +301,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
 }
 
 std::string plain_line(const Feed& feed, const ViewContext& context) {
+  if (!feed.any() && !feed.refusal().empty()) return feed.refusal();
   if (!feed.any()) return fmt::format("waiting for clearanced on {}", context.where);
   if (const std::string why = frozen(feed, context.now_ns); !why.empty()) return why;
   const clearance_msg_Distances& report = feed.distances();

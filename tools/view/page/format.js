@@ -1,7 +1,7 @@
 // Figures for people, and the knowledge of a pair's distance.
 
 // PairStatus of monitor/report.hpp.
-export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown"];
+export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown", "absent"];
 const STALE = STATUS.indexOf("stale");
 export const isKnown = (pair) => pair.status < STALE;
 

@@ -2,7 +2,7 @@
 // the protective separation distance S_p, and the robot's allowed speed.
 import { mm, put } from "./format.js";
 
-const VALIDITY = ["not known", "by stated speeds", "measured"];
+const VALIDITY = ["not known", "by stated speeds", "measured", "absent"];
 const AGAIN_MS = 125;
 const FIGURES = 5; // cells of a row after the zone and the pair
 
@@ -11,6 +11,7 @@ const metresPerSecond = (value) => (value === Infinity ? "any" : Number.isFinite
 // Returns [texts of the figures, class] of a zone; `pairs` are those of the message.
 function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pairs) {
   const { clearance, protective_distance } = pairs.find((each) => each.zone === zone && each.pair === pair) ?? {};
+  if (validity === 3) return [["-", "-", "-", "1.00", "any"], ""];
   if (validity === 0) return [["?", "?", "?", "0.00", "0.00"], "lost"];
   return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit)], scaling < 1 ? "alarm" : ""];
 }

@@ -3,15 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <thread>
 
 #include "config/mesh/file_lock.hpp"
+#include "config/write/single_robot_cell.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -37,16 +40,17 @@ class PartsOfMeshes : public testing::Test {
                      "}}\n  - {name: b, sphere: {radius: 1}}\npairs: [{between: [a, b]}]\n");
   }
 
-  Scene read_text(const std::string& sections) {
+  Scene read_text(const std::string& sections, const std::string& file = "cell.yaml") {
     const std::string text = cell_text(sections);
     told_.clear();
+    errors_.clear();
     CellOptions options;
     options.tell = [this](const std::string& line) {
       told_ += line + "\n";
       if (told_to_) told_to_(line);
     };
     options.mesh_errors = &mesh_errors_;
-    CellResult result = parse_cell(text, folder_ / "cell.yaml", options);
+    CellResult result = parse_cell(text, folder_ / file, options);
     if (auto* cell = std::get_if<Cell>(&result)) return std::move(cell->scene);
     for (const CellError& error : std::get<std::vector<CellError>>(result)) errors_ += error.text;
     return {};
@@ -75,7 +79,7 @@ class PartsOfMeshes : public testing::Test {
 TEST_F(PartsOfMeshes, AreMadeOnceAndKeptBesideTheCell) {
   const Scene first = read();
   EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
-  only_file(folder_ / "cell.yaml.parts");
+  only_file(folder_ / "clearance.parts");
   const Scene second = read();
   EXPECT_THAT(told_, IsEmpty());
   EXPECT_EQ(anchors(first), anchors(second));
@@ -86,9 +90,44 @@ TEST_F(PartsOfMeshes, AreMadeOnceAndKeptBesideTheCell) {
   EXPECT_FALSE(mesh_errors_.contains("b"));
 }
 
+const std::string kOneMesh =
+    "objects:\n  - {name: a, mesh: {file: l.obj}}\n  - {name: b, sphere: {radius: 1}}\n"
+    "pairs: [{between: [a, b]}]\n";
+
+TEST_F(PartsOfMeshes, AreFoundByEveryCellOfTheFolderWhateverTheMeshIsCalled) {
+  const Scene first = read_text(kOneMesh, "first.yaml");
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  const Scene second = read_text(kOneMesh, "second.yaml");
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_EQ(anchors(first), anchors(second));
+  EXPECT_EQ(first.revision, second.revision);
+  std::filesystem::rename(folder_ / "l.obj", folder_ / "renamed.obj");
+  std::string renamed = kOneMesh;
+  renamed.replace(renamed.find("l.obj"), 5, "renamed.obj");
+  EXPECT_EQ(anchors(first), anchors(read_text(renamed)));
+  EXPECT_THAT(told_, IsEmpty());
+  only_file(folder_ / "clearance.parts");
+}
+
+TEST_F(PartsOfMeshes, AreMadeAfterTheMistakesOfTheCellAreTold) {
+  const std::string zone = "zones: [{name: z, between: [a, c], enter_below: 1}]\n";
+  read_text(kOneMesh + zone);
+  EXPECT_THAT(errors_, HasSubstr("found the unknown name 'c'"));
+  EXPECT_THAT(told_, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "clearance.parts"));
+  read_text("rate_herz: 5\n" + kOneMesh);
+  EXPECT_THAT(errors_, HasSubstr("rate_herz"));
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(PartsOfMeshes, CountInTheBudgetOfTheCell) {
+  read_text("budget: 1\nrefresh_s: 0.002\n" + kOneMesh);
+  EXPECT_THAT(errors_, HasSubstr("expected at least 2 queries a tick"));
+}
+
 TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
   const Scene first = read();
-  const auto file = only_file(folder_ / "cell.yaml.parts");
+  const auto file = only_file(folder_ / "clearance.parts");
   const std::string good = test::read_text(file);
   std::string other_number = good;
   other_number.replace(other_number.find("0x1."), 4, "0x0.");
@@ -117,7 +156,7 @@ TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
 }
 
 TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
-  test::write_text(folder_ / "cell.yaml.parts", "a file where a folder should be");
+  test::write_text(folder_ / "clearance.parts", "a file where a folder should be");
   read();
   EXPECT_THAT(told_, HasSubstr("kept in '" + (folder_ / "cache").string()));
   only_file(folder_ / "cache/clearance/parts");
@@ -128,7 +167,7 @@ TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
 // clearanced and clearance-robot are started together on a new cell.
 TEST_F(PartsOfMeshes, AreMadeByOneProgramAtATime) {
   const Scene first = read();
-  const auto made = only_file(folder_ / "cell.yaml.parts");
+  const auto made = only_file(folder_ / "clearance.parts");
   const std::string text = test::read_text(made);
   std::filesystem::remove(made);
   std::promise<void> waits;
@@ -147,7 +186,7 @@ TEST_F(PartsOfMeshes, AreMadeByOneProgramAtATime) {
 }
 
 TEST_F(PartsOfMeshes, AreUsedEvenWhereNothingCanBeKept) {
-  test::write_text(folder_ / "cell.yaml.parts", "a file where a folder should be");
+  test::write_text(folder_ / "clearance.parts", "a file where a folder should be");
   test::write_text(folder_ / "cache", "another");
   EXPECT_EQ(read().objects.at(0).parts.size(), 2u);
   EXPECT_THAT(told_, HasSubstr("warning: '"));
@@ -180,6 +219,39 @@ TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
   EXPECT_EQ(parts(", tolerance: 0.2"), 1u) << errors_;
   EXPECT_EQ(parts(", max_parts: 1"), 1u) << errors_;
   EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  EXPECT_THAT(told_, HasSubstr("raise max_parts (now 1) or tolerance in the cell\n"));
+}
+
+TEST_F(PartsOfMeshes, OfAUrdfAloneAreCoarseWithTheAdviceToWriteACell) {
+  std::string dust;  // more grains in a row than a mesh may have parts
+  for (int i = 0; i < 40; ++i) {
+    for (const char* corner : {"0 0 0", "0.1 0 0", "0 0.1 0", "0 0 0.1"}) {
+      std::istringstream numbers(corner);
+      double x = 0.0, y = 0.0, z = 0.0;
+      numbers >> x >> y >> z;
+      dust += "v " + std::to_string(x + i % 7) + " " + std::to_string(y + i / 7) + " " +
+              std::to_string(z + i % 3) + "\n";
+    }
+    const int at = 4 * i;
+    for (const std::array<int, 3> face : {std::array{1, 3, 2}, {1, 2, 4}, {1, 4, 3}, {2, 3, 4}}) {
+      dust += "f " + std::to_string(at + face[0]) + " " + std::to_string(at + face[1]) + " " +
+              std::to_string(at + face[2]) + "\n";
+    }
+  }
+  test::write_text(folder_ / "dust.obj", dust);
+  test::write_text(folder_ / "r.urdf",
+                   "<robot name='r'><link name='base'><collision><geometry><mesh "
+                   "filename='dust.obj'/></geometry></collision></link><link name='tip'><collision>"
+                   "<geometry><sphere radius='0.1'/></geometry></collision></link><joint name='j' "
+                   "type='prismatic'><origin xyz='1 0 0'/><axis xyz='1 0 0'/><limit lower='0' "
+                   "upper='1' velocity='1'/><parent link='base'/><child link='tip'/></joint>"
+                   "</robot>");
+  std::string told;
+  const CellResult result =
+      read_single_robot({.urdf = folder_ / "r.urdf"},
+                        {.tell = [&told](const std::string& line) { told += line + "\n"; }});
+  EXPECT_TRUE(std::holds_alternative<Cell>(result));
+  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene --from-urdf writes\n"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {

@@ -1,4 +1,4 @@
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,11 +25,6 @@ TEST(Spelling, OnlyANearNameIsSuggested) {
   EXPECT_EQ(did_you_mean("center", known), "; did you mean 'centre'?");
   EXPECT_EQ(did_you_mean("colour", known), "");
   EXPECT_EQ(did_you_mean("x", std::vector<std::string>{}), "");
-}
-
-TEST(Spelling, AlternativesReadAsASentence) {
-  EXPECT_EQ(one_of(std::vector<std::string>{"a"}), "'a'");
-  EXPECT_EQ(one_of(std::vector<std::string>{"a", "b", "c"}), "'a', 'b' or 'c'");
 }
 
 }  // namespace

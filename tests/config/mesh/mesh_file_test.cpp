@@ -11,8 +11,8 @@
 #include <limits>
 #include <string>
 
-#include "tests/config/box_meshes.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {

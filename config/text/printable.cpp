@@ -1,11 +1,11 @@
 // Goes character by character; a byte that begins no UTF-8 character is escaped alone.
-#include "monitor/app/printable.hpp"
+#include "config/text/printable.hpp"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {
@@ -62,6 +62,11 @@ std::string printable(std::string_view text, LineBreaks breaks) {
     text.remove_prefix(text.empty() ? 0 : 1);
   }
   return out;
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kMost = 300;
+  return text.size() <= kMost ? printable(text) : printable(text.substr(0, kMost)) + "...";
 }
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-#include "tests/config/box_meshes.hpp"
+#include "tests/config/mesh/box_meshes.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "monitor/app/printable.hpp"
+#include "config/text/printable.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +33,12 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
 
 TEST(Printable, KeepsLineBreaksWhereThatIsAskedFor) {
   EXPECT_EQ("a\tb\r\n\\x1B", printable("a\tb\r\n\x1b", LineBreaks::kKept));
+}
+
+TEST(Printable, AnExcerptIsTheBeginningOfALongText) {
+  EXPECT_EQ("a\\x00", excerpt(std::string_view("a\0", 2)));
+  EXPECT_EQ(std::string(300, 'x'), excerpt(std::string(300, 'x')));
+  EXPECT_EQ(std::string(300, 'x') + "...", excerpt(std::string(301, 'x')));
 }
 
 }  // namespace

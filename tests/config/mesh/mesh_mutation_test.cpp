@@ -11,8 +11,8 @@
 
 #include "config/mesh/mesh_file.hpp"
 #include "core/shapes.hpp"
-#include "tests/config/box_meshes.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

@@ -1,15 +1,15 @@
 // Follows the table of well-formed byte sequences (RFC 3629, section 4; Unicode, table 3-7): the
 // first byte gives the length and the range of the second byte, which excludes overlong forms and
 // surrogates.
-#include "config/yaml/utf8.hpp"
+#include "config/text/utf8.hpp"
 
 namespace clearance {
 namespace {
 
-// The shape of a character that begins with some first byte.
+// The shape of a character, given its first byte.
 struct Form {
   std::size_t length = 0;                   // 0: no character begins so
-  unsigned char least = 0x80, most = 0xBF;  // of the second byte
+  unsigned char least = 0x80, most = 0xBF;  // range of the second byte
 };
 
 // The rows of table 3-7, by first byte. C0, C1 and F5 to FF begin nothing.
@@ -38,7 +38,7 @@ bool begins_with(std::string_view text, const Form& form) {
 
 }  // namespace
 
-// Character by character; each is judged by its own bytes only.
+// Each character is judged by its own bytes only.
 std::size_t end_of_utf8(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {
@@ -47,17 +47,6 @@ std::size_t end_of_utf8(std::string_view text) {
     at += form.length;
   }
   return at;
-}
-
-std::string printable(std::string text) {
-  constexpr std::size_t kMost = 300;
-  if (text.size() > kMost) text.replace(kMost, std::string::npos, "...");
-  const bool is_utf8 = end_of_utf8(text) == text.size();
-  for (char& c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F || (byte > 0x7F && !is_utf8)) c = '?';
-  }
-  return text;
 }
 
 }  // namespace clearance

@@ -1,6 +1,6 @@
 // Compares words by the edit distance with swaps of neighbours (optimal string alignment), which
 // counts a typing error as one edit.
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ std::string folded(std::string_view word) {
 
 }  // namespace
 
-// Optimal string alignment: three rows of the usual table.
+// The usual table of optimal string alignment (Damerau, Levenshtein), of which three rows are kept.
 std::size_t edit_distance(std::string_view a_word, std::string_view b_word) {
   const std::string a = folded(a_word), b = folded(b_word);
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -53,16 +53,6 @@ std::string did_you_mean(std::string_view found, std::span<const std::string> kn
     }
   }
   return nearest == nullptr ? "" : fmt::format("; did you mean '{}'?", *nearest);
-}
-
-// Separated by commas, with "or" before the last.
-std::string one_of(std::span<const std::string> names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += fmt::format("'{}'", names[i]);
-  }
-  return text;
 }
 
 }  // namespace clearance

@@ -1,0 +1,13 @@
+// Limits of splitting a mesh.
+#pragma once
+
+#include <cstddef>
+
+namespace clearance {
+
+struct PartLimits {
+  double tolerance = 5e-3;     // m, beyond the mesh
+  std::size_t max_parts = 24;  // the search ends here, even where the tolerance is not met
+};
+
+}  // namespace clearance
