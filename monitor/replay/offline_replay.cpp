@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/replay/reference_check.hpp"
