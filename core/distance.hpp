@@ -14,15 +14,12 @@
 namespace clearance {
 
 struct DistanceOptions {
-  // m: where the spheres around both bodies certify as much, the query ends there. The status is
-  // kFarAway then, and the distance the lower bound.
-  double far_away = kInfinity;
-  // False: how deep overlapping bodies overlap is not looked for, which is most of such a query.
-  // Where they are not certified apart, the status is kDepthNotAsked then and the lower bound may
-  // be -infinity.
+  // False: the query does not look for the penetration depth, which takes most of the time where
+  // bodies overlap. Bodies that are not certified to be apart then get the status kDepthNotAsked,
+  // and their lower bound may be -infinity.
   bool depth = true;
 };
-static_assert(sizeof(DistanceOptions) == 16 && alignof(DistanceOptions) == 8);
+static_assert(sizeof(DistanceOptions) == 1 && alignof(DistanceOptions) == 1);
 
 // noexcept, no heap, deterministic. Any state is accepted.
 [[nodiscard]] DistanceResult distance(const ConvexBody& a, const ConvexBody& b,

@@ -9,7 +9,6 @@ namespace clearance {
 
 enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
-  kFarAway,         // lower >= far_away > 0, by the spheres around them; no query was made
   kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
   kOverlapping,     // certified: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
@@ -25,7 +24,6 @@ enum class DistancePath : std::uint8_t {
   kActiveSet,    // the active-set iteration, and of what touches or overlaps then the depth
   kGjk,          // the active-set iteration and then GJK
   kPenetration,  // penetration depth, at once from the features of the last overlap
-  kSpheres,      // see DistanceOptions::far_away
   kDirection,    // of curved bodies: the search for the separating direction (core/curved)
 };
 
@@ -80,7 +78,7 @@ enum class FeatureKind : std::uint8_t {
 // Of a pair with a curved body `kind` is kDirection, a.point the last separating direction (frame
 // A), and `feature` names pieces (core/curved/tracking.hpp).
 //
-// After a query that was not kFarAway the two points, or b.point alone, are the witness points,
+// After a query the two points, or b.point alone, are the witness points,
 // before radii, each in its own body's frame: transform(world_from_b, state.b.point) lies on B to
 // the rounding of B's own pose, however far away A is.
 struct alignas(64) TrackingState {

@@ -45,17 +45,6 @@ void release(ActiveFeature& side, const Lambda& l) noexcept {
   side.place(l.to, l.index, side.own());
 }
 
-// Two edges that all but point away from each other generate the facet between them by digits that
-// rounding takes: then neither leads closer, and yet the facet does.
-bool leave_for_facet(ActiveFeature& side, const Vec3& direction_in_common) noexcept {
-  if (side.feature() != FeatureKind::kVertex) return false;
-  const Vec3 direction = side.direction_to_own(direction_in_common);
-  const Lambda facet = lambda_case::of_facets_at_vertex(side, direction);
-  if (!(facet.derivative > kDerivativeError * direction.norm())) return false;
-  release(side, facet);
-  return true;
-}
-
 // On the far side of a body, where facets are parallel to within rounding, no edge and no facet
 // leads closer, and yet its inside does: a body's farthest points along the direction are those
 // that it does not. The inside itself may be that thin (of the body's size), and beyond that
@@ -98,7 +87,6 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
     const double best = std::max(of_a.derivative, of_b.derivative);
     // Zero to rounding: degenerate, and neither sign of it is certified.
     if (best * best < kDerivativeError * kDerivativeError * distance2) {
-      if (leave_for_facet(a, direction) || leave_for_facet(b, -direction)) continue;
       if (leave_for_inside(a, direction) || leave_for_inside(b, -direction)) continue;
       return ended(Dqp3End::kOptimal);
     }

@@ -1,8 +1,6 @@
 // The 'lambda' step: does letting go of an active facet bring the bodies closer? (§3.4.3)
 #pragma once
 
-#include <algorithm>
-
 #include "core/active_set/active_feature.hpp"
 #include "core/model/edge_scan.hpp"
 
@@ -35,25 +33,6 @@ inline Lambda of_vertex(const ActiveFeature& side, const Vec3& direction) noexce
   const SteepestEdge steepest = steepest_edge(side.body(), side.vertex(), direction);
   if (steepest.at == kNone) return {};
   return {steepest.derivative, FeatureKind::kEdge, side.body().vertex_edges[steepest.at].edge};
-}
-
-// The facets between the vertex's edges, one by one: along what is across each of two neighbours.
-inline Lambda of_facets_at_vertex(const ActiveFeature& side, const Vec3& direction) noexcept {
-  const ConvexBody& body = side.body();
-  const Vertex& vertex = side.vertex();
-  const auto across = [&](const EdgeUse& use, int k) {
-    return body.edges[use.edge].inward.row(k).dot(direction);
-  };
-  Lambda best;
-  for (std::int32_t i = 0; i < vertex.edges; ++i) {
-    const EdgeUse& right = body.vertex_edges[vertex.first_edge + i];
-    const EdgeUse& left = body.vertex_edges[vertex.first_edge + (i + 1) % vertex.edges];
-    const double derivative = std::min(across(right, right.side), across(left, 1 - left.side));
-    if (derivative > best.derivative) {
-      best = {derivative, FeatureKind::kFacet, body.edges[right.edge].facet[right.side]};
-    }
-  }
-  return best;
 }
 
 }  // namespace lambda_case

@@ -31,7 +31,7 @@ inline Vec3 normal_of(const ActiveFeature& s) noexcept {
 inline Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
   if (e.isZero(0.0)) return f.isZero(0.0) ? Vec3::UnitZ() : f.unitOrthogonal();
   const Vec3 turned = e.dot(f) < 0.0 ? Vec3(f + e) : Vec3(f - e);
-  const Vec3 across = e.cross(turned).stableNormalized();
+  const Vec3 across = e.cross(turned).normalized();
   if (across.isZero(0.0)) return e.unitOrthogonal();
   return (across - across.dot(e) * e).normalized();
 }

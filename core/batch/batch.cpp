@@ -14,6 +14,7 @@
 #include "core/batch/next_feature.hpp"
 #include "core/batch/residence.hpp"
 #include "core/batch/slots.hpp"
+#include "core/distance.hpp"
 #include "core/query/tracked_query.hpp"
 
 namespace clearance {
@@ -40,7 +41,7 @@ class DistanceBatch::Rounds {
     assert(world_from_body.size() == of_.bodies.size());
     ++rounds_;
     poses_ = world_from_body;
-    single_query_ = tracked_query();
+    query_after_ = tracked_query();
     judge_blocks();
     single_queries_ = unassigned_pairs_ + changed_.size();
     query_unassigned();
@@ -116,11 +117,16 @@ class DistanceBatch::Rounds {
     changed_.push_back({pair, feature_pair(state), start});
   }
 
-  void query(std::uint32_t pair, WalkStart start = {}) noexcept {
+  // The results are made in their places, not copied there.
+  void query(std::uint32_t pair) noexcept {
     const auto [a, b] = of_.pairs[pair];
-    // In its place, not copied there.
+    new (&results_[pair])
+        DistanceResult(distance(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair]));
+  }
+  void query_after(std::uint32_t pair, WalkStart start) noexcept {
+    const auto [a, b] = of_.pairs[pair];
     new (&results_[pair]) DistanceResult(
-        single_query_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
+        query_after_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
   }
 
   // Sorted by where they are now: the processor foresees what it has just done.
@@ -175,7 +181,7 @@ class DistanceBatch::Rounds {
 
   void query_changed(const Changed& of) noexcept {
     const std::uint32_t pair = of.pair;
-    query(pair, of.start);
+    query_after(pair, of.start);
     Residence& residence = residences_[pair];
     residence.add(rounds_, true);
     // The lanes knew of no neighbour, and the query ended at the same features: what lanes cannot
@@ -198,7 +204,7 @@ class DistanceBatch::Rounds {
   std::vector<Changed> changed_;           // of this round
   std::vector<std::uint32_t> order_;       // of these, sorted
   std::span<const Pose> poses_;
-  TrackedQuery single_query_ = nullptr;
+  TrackedQuery query_after_ = nullptr;
   std::vector<std::uint64_t> unassigned_;  // a bit a pair: it is in no block
   std::vector<Residence> residences_;      // [pair]
   std::size_t unassigned_pairs_ = 0, single_queries_ = 0;

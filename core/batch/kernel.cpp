@@ -16,6 +16,7 @@
 #include "core/batch/parallel_steps-inl.hpp"
 #include "core/batch/steps-inl.hpp"
 #include "core/model/error_bounds.hpp"
+#include "core/model/result_numbers.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance {
@@ -89,9 +90,6 @@ HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
   return r;
 }
 
-// A result begins with twelve numbers, from `distance` to `point_on_b`.
-static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
-
 // Of all lanes, failed ones too: the query that such a pair is left to writes its result once more.
 // A lane without a pair writes to the spare result behind the last (BatchBlock::pair).
 HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
@@ -99,7 +97,7 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
   double* to[kWidth];
   for (std::size_t i = 0; i < kWidth; ++i) {
     DistanceResult& result = results[block.pair[first + i]];
-    to[i] = &result.distance;
+    to[i] = number_at(result, 0);
     result.status = DistanceStatus::kConverged;
     result.path = DistancePath::kWalk;
     result.iterations = 1;

@@ -249,6 +249,7 @@ inline constexpr int kMostParallel = 6;
 enum class Transition {
   kClosest,    // the KKT conditions are satisfied beyond rounding: these are the closest features
   kMoved,      // a neighbouring feature takes over
+  kDeferred,   // of a first transition: the features are parallel, which is not decided there
   kUndecided,  // rounding cannot tell, or this pair is none for straight-line code
 };
 

@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "core/feature_walk/parallel_steps-inl.hpp"
 #include "core/model/edge_scan-inl.hpp"
 #include "core/model/error_bounds.hpp"
+#include "core/model/result_numbers.hpp"
 #include "core/numerics/error_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -152,10 +152,7 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   const Edge& second = pair.b.edges[pair.on_b.feature];
   auto lines = lines_of(pair, first, second);
   if (!(lines.sine2 > kCrossingSine2)) {
-    if constexpr (kMode == Tracking::kFirst) {
-      --pair.transitions;  // it is done once more, with the pair in memory
-      return Transition::kMoved;
-    }
+    if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
     return lines.sine2 <= kParallelTilt * kParallelTilt
                ? parallel_edges(pair, lines.start_b, lines.f)
                : Transition::kUndecided;
@@ -199,7 +196,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
     default:
       break;
   }
-  // All that is_straight() leaves.
+  // is_straight() lets one pair more come to a first transition.
   if constexpr (kMode == Tracking::kFirst) return facet_vertex(Owner<false>(pair));
   switch (pair.features()) {
     case FeaturePair::kEdgeFacet:
@@ -265,19 +262,15 @@ HWY_INLINE WalkEnd walk(TrackedPair& pair) {
   return walk_on(pair);
 }
 
-// Of a walk that is not undecided. A result begins with twelve numbers; fours of them are stored
-// one over the other's end, and the status last.
+// The result of a walk that is not undecided. Each store of four numbers leaves one too many behind
+// it, which the next store overwrites; the last one is overwritten by the status.
 HWY_INLINE DistanceResult result_of(const TrackedPair& pair) {
-  static_assert(offsetof(DistanceResult, normal) == 3 * sizeof(double));
-  static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
-  static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
   DistanceResult r;
-  double* numbers = &r.distance;
   store4(vec4(pair.apart, pair.certified - pair.error_bound, pair.apart + pair.error_bound, 0.0),
-         numbers);
-  store4(pair.normal, numbers + 3);
-  store4(pair.point_a, numbers + 6);
-  store4(pair.point_b, numbers + 9);
+         number_at(r, 0));
+  store4(pair.normal, number_at(r, 3));
+  store4(pair.point_a, number_at(r, 6));
+  store4(pair.point_b, number_at(r, 9));
   r.status = DistanceStatus::kConverged;
   r.path = DistancePath::kWalk;
   r.iterations = static_cast<std::uint16_t>(pair.transitions);

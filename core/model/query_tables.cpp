@@ -95,7 +95,7 @@ double least_part(const RecessionCone& of, const Vec3& against_normals) {
   for (const Vec3& ray : of.rays) along += ray;
   double most = -kInfinity;
   for (const Vec3& sum : {against_normals, along}) {
-    const Vec3 way = of.across_lines(sum).stableNormalized();
+    const Vec3 way = of.across_lines(sum).normalized();
     double least = kInfinity;
     for (const Vec3& ray : of.rays) least = std::min(least, way.dot(ray));
     most = std::max(most, least);
@@ -106,7 +106,7 @@ double least_part(const RecessionCone& of, const Vec3& against_normals) {
 // Against the sum of all normals, if it leads away from each by more than rounding.
 Vec3 inwards(const ConvexBody& body, const Vec3& against_normals) {
   constexpr double kAway = 0x1p-20;
-  const Vec3 way = against_normals.stableNormalized();
+  const Vec3 way = against_normals.normalized();
   const bool away = std::all_of(body.facets.begin(), body.facets.end(),
                                 [&](const Facet& facet) { return facet.normal.dot(way) < -kAway; });
   return away ? way : Vec3(Vec3::Zero());

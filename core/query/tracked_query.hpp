@@ -1,5 +1,5 @@
-// distance() for a batch: it may have taken a pair's first transition itself, and makes so many
-// queries that finding the machine's vectors counts, which is done once for many queries.
+// distance() for a batch, which may have made the first transitions of a pair itself. A batch makes
+// so many queries in a row that it looks up the machine's vector width once for all of them.
 #pragma once
 
 #include "core/distance_result.hpp"
@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-// A query of a pair whose walk has this behind it.
+// A query of a pair that has made the transitions of `start`.
 using TrackedQuery = DistanceResult (*)(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, WalkStart start);

@@ -6,7 +6,7 @@
 #include "monitor/app/program.hpp"
 
 namespace clearance {
-// Each option about the robot is a key of a robot in a cell file.
+// Options of the robot are keys of the robot in a cell file.
 void CellArguments::add_to(CLI::App& app, bool from_ros) {
   auto* what = app.add_option_group("cell", "One of");
   auto* file = what->add_option("CELL", cell, "The cell file (YAML)");

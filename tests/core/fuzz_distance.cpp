@@ -4,7 +4,7 @@
 // tests/shared/distance_judge.hpp; of a batch, single queries, bit by bit; and the sanitizers. The
 // input picks a hard case by family and seed and then changes doubles of it: to neighbours, to
 // zero, to other doubles of the same case. It is asked with a state that the input makes up, with
-// the state that this leaves where B has moved, and with `far_away` at half the distance.
+// the state that this leaves where B has moved, and without the depth.
 //
 // To build, a quarter of an hour on one core, and to run it (Debian: apt-get install clang
 // libclang-rt-14-dev):
@@ -84,7 +84,7 @@ class Fuzzed {
     const auto faults = judge_.faults(result, truth, c_.pose_a, c_.pose_b);
     for (const std::string& fault : faults) std::fprintf(stderr, "%s\n", fault.c_str());
     if (!faults.empty()) fail();
-    if (!truth.cores_meet()) ask_whether_far(truth);
+    if (!truth.cores_meet()) ask_without_depth(truth);
   }
 
   void move(Random& random) {
@@ -118,12 +118,12 @@ class Fuzzed {
   }
 
  private:
-  void ask_whether_far(const oracle::ExactDistance& truth) {
+  void ask_without_depth(const oracle::ExactDistance& truth) {
     TrackingState state;
     const DistanceResult r = distance(judge_.a(), judge_.b(), relative_pose(c_.pose_a, c_.pose_b),
-                                      state, {.far_away = 0.5 * truth.lower, .depth = false});
+                                      state, {.depth = false});
     if (truth.compare(r.lower) >= 0 && truth.compare(r.upper) <= 0) return;
-    std::fprintf(stderr, "far away: [%.17g, %.17g]\n", r.lower, r.upper);
+    std::fprintf(stderr, "without depth: [%.17g, %.17g]\n", r.lower, r.upper);
     fail();
   }
 

@@ -81,7 +81,6 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
   const double gap = r.upper - r.lower;
   switch (r.status) {
     case DistanceStatus::kIterationLimit:
-    case DistanceStatus::kFarAway:
     case DistanceStatus::kDepthNotAsked:
     case DistanceStatus::kBadPose:
       faults.unless(false, text("status %s, truth %.17g in [%.17g, %.17g], tolerance %.3g", status,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/rows.hpp"

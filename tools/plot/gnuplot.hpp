@@ -1,4 +1,4 @@
-// Pictures by gnuplot, which Debian packages. A caller describes a plot and needs no code for SVG.
+// Pictures by gnuplot: callers say what to show, not how SVG is written.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@ namespace clearance {
 inline constexpr const char* kPlotColours[] = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
                                                "#E69F00", "#56B4E9", "#000000", "#999999"};
 
-// Runs a script that writes `svg` with this size, px. Returns an empty text or the fault: gnuplot
-// is missing, or its own message.
+// Runs a script after setting a terminal of this size (px) that writes `svg`. Returns an empty text
+// or the fault: gnuplot is missing, or its own words.
 [[nodiscard]] std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                                    const std::string& script);
 
-// A title or label in quotes, with gnuplot's markup escaped.
+// For titles and labels: escapes gnuplot's markup and adds quotes.
 [[nodiscard]] std::string plot_text(const std::string& text);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// Summarises a run of any length in a limited number of stretches of time, from which curves are
-// drawn. When all are in use, each becomes twice as long, and pairs of them are merged.
+// A run of any length in a bounded number of stretches of time, for curves. When all are in use,
+// each becomes twice as long, and those that fall together are joined.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,17 @@
 
 namespace clearance {
 
-// A stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells, which
-// begin as Cell{}. merge(later, into), found in their namespace, merges two Heads or two Cells.
+// Each stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells,
+// which begin as Cell{}. merge(later, into), found in their namespace, joins two Heads or Cells.
 template <class Head, class Cell>
 class Stretches {
  public:
-  // `most` stretches, at least 2, of `length_ns` > 0 at first, with `columns` cells each.
+  // Makes at most `most` (at least 2) stretches with `columns` cells each; the first ones are
+  // `length_ns` > 0 long.
   Stretches(std::size_t columns, std::size_t most, std::int64_t length_ns)
       : columns_(columns), most_(most), length_ns_(length_ns) {}
 
-  // Returns the cells of the stretch of a time. Times must not decrease.
+  // Adds an entry whose time is not before the last one, and returns the cells of its stretch.
   std::span<Cell> add(const Head& head) {
     for (;; halve()) {
       if (!heads_.empty() && number_of(head) <= number_of(heads_.back())) {

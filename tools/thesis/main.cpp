@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/rows.hpp"
 #include "tools/thesis/adjacency.hpp"

@@ -4,20 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "core/active_set/alpha_step_length.hpp"
+#include "tests/core/active_set/cube_features.hpp"
 #include "tests/shared/made.hpp"
 
 namespace clearance {
 namespace {
 
 using test::cube;
+using test::facet_towards;
 using test::half_space;
-
-std::int32_t facet_towards(const ConvexBody& body, const Vec3& normal) {
-  for (std::size_t i = 0; i < body.facets.size(); ++i) {
-    if (body.facets[i].normal == normal) return static_cast<std::int32_t>(i);
-  }
-  return kNone;
-}
 
 TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   const ConvexBody body = cube();

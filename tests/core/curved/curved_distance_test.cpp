@@ -283,16 +283,6 @@ TEST(CurvedBodies, KeepTheirBoundsWithStatesOfOtherPairs) {
   }
 }
 
-TEST(CurvedBodies, AreFarAwayBySpheresWhereNobodyAsksByHowMuch) {
-  const ConvexBody a = made(cylinder(0.3, 0.4)), b = made(ellipsoid({1, 2, 3}, 0.5));
-  TrackingState state;
-  const RelativePose pose = relative_pose(at(0, 0, 0), at(20, 0, 0));
-  const DistanceResult r = distance(a, b, pose, state, {.far_away = 10.0});
-  EXPECT_EQ(r.status, DistanceStatus::kFarAway);
-  EXPECT_NEAR(r.lower, 20.0 - 0.5 - 3.5, 1e-12);
-  EXPECT_LE(r.lower, distance(a, b, pose, state).lower);
-}
-
 TEST(CurvedBodies, AreNotAskedHowDeepTheyOverlapUnlessSomebodyAsks) {
   const ConvexBody a = made(cylinder(0.3, 0.4)), b = made(cone(0.5, 0.5));
   TrackingState state;

@@ -246,57 +246,21 @@ TEST(Distance, HoldsFarAway) {
   }
 }
 
-TEST(Distance, StopsAtTheSpheresWhereTheyProveWhatWasAskedFor) {
-  TrackingState state;
-  const RelativePose pose = relative_pose(Pose{}, at(100, 0, 0));
-  for (const ConvexBody& body : {cube(), ball(0.5)}) {
-    const DistanceResult r = distance(body, body, pose, state, {.far_away = 10.0});
-    EXPECT_EQ(r.status, DistanceStatus::kFarAway);
-    EXPECT_GE(r.lower, 10.0);
-    EXPECT_LE(r.lower, 99.0);
-    EXPECT_GE(r.upper, 99.0);
-  }
-  for (const double asked : {99.0 - 1e-9, 99.0, 99.0 + 1e-9}) {
-    const DistanceResult r = distance(ball(0.5), ball(0.5), pose, state, {.far_away = asked});
-    EXPECT_EQ(r.status == DistanceStatus::kFarAway, asked < 99.0);
-    if (r.status == DistanceStatus::kFarAway) {
-      EXPECT_GE(r.lower, asked);
-    }
-  }
-  const RelativePose same = relative_pose(Pose{}, Pose{});
-  EXPECT_EQ(distance(ball(0.5), ball(0.5), same, state, {.far_away = -2.0}).status,
-            DistanceStatus::kOverlapping);
-}
-
-TEST(Distance, HoldsBySpheresWhereSquaresUnderflow) {
-  TrackingState state;
-  for (double unit = 1e-163; unit < 1e-140; unit *= 1.7) {
-    const RelativePose pose = relative_pose(Pose{}, at(3.0 * unit, 0.0, 4.0 * unit));
-    const DistanceResult r = distance(ball(0.0), ball(0.0), pose, state, {.far_away = 1e-200});
-    EXPECT_LE(r.lower, 5.0 * unit * (1.0 + 1e-15)) << unit;
-    EXPECT_GE(r.upper, 5.0 * unit * (1.0 - 1e-15)) << unit;
-    EXPECT_EQ(r.path == DistancePath::kSpheres, 5.0 * unit > kUnderflow) << unit;
-  }
-}
-
-TEST(Distance, SaysWhichWayTheAnswerCame) {
+TEST(Distance, SaysWhichMethodHasAnswered) {
   const ConvexBody column = unbounded_prism({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
   TrackingState state;
-  const auto way = [&](const ConvexBody& body, const Pose& pose, double far_away) {
-    const RelativePose b = relative_pose(Pose{}, pose);
-    return distance(body, body, b, state, {.far_away = far_away}).path;
+  const auto path = [&](const ConvexBody& body, const Pose& pose) {
+    return distance(body, body, relative_pose(Pose{}, pose), state).path;
   };
-  EXPECT_EQ(way(cube(), at(1.5, 0.3, 0.2), kInfinity), DistancePath::kWalk);
-  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kActiveSet);
-  EXPECT_EQ(way(cube(), at(0.9, 0.3, 0.2), kInfinity), DistancePath::kPenetration);
-  EXPECT_EQ(way(cube(), at(9.0, 0.3, 0.2), 5.0), DistancePath::kSpheres);
+  EXPECT_EQ(path(cube(), at(1.5, 0.3, 0.2)), DistancePath::kWalk);
+  EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kActiveSet);
+  EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kPenetration);
   const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
-  EXPECT_EQ(way(column, leaning, kInfinity), DistancePath::kGjk);
+  EXPECT_EQ(path(column, leaning), DistancePath::kGjk);
 }
 
 TEST(Distance, NamesEveryStatus) {
   EXPECT_STREQ(name(DistanceStatus::kConverged), "converged");
-  EXPECT_STREQ(name(DistanceStatus::kFarAway), "far_away");
   EXPECT_STREQ(name(DistanceStatus::kTouching), "touching");
   EXPECT_STREQ(name(DistanceStatus::kOverlapping), "overlapping");
   EXPECT_STREQ(name(DistanceStatus::kIterationLimit), "iteration_limit");

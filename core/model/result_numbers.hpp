@@ -1,0 +1,25 @@
+// The twelve numbers that a DistanceResult begins with, as vector registers store them: several at
+// once, across the borders of its members.
+#pragma once
+
+#include <cstddef>
+
+#include "core/distance_result.hpp"
+
+namespace clearance {
+
+static_assert(offsetof(DistanceResult, distance) == 0);
+static_assert(offsetof(DistanceResult, normal) == 3 * sizeof(double));
+static_assert(offsetof(DistanceResult, point_on_b) == 9 * sizeof(double));
+static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
+// So that four numbers may be stored from point_on_b on, before the status is written.
+static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
+
+// Where number i lies in the storage of the whole result. A pointer to a member would end at the
+// end of that member; this one is made from the bytes of the result, all of which it may reach.
+[[nodiscard]] inline double* number_at(DistanceResult& result, std::size_t i) noexcept {
+  std::byte* const bytes = reinterpret_cast<std::byte*>(&result);
+  return static_cast<double*>(static_cast<void*>(bytes + i * sizeof(double)));
+}
+
+}  // namespace clearance
