@@ -220,7 +220,8 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       separations(the_scene, zone_levels),
       differentiation(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
-  for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    inputs.objects[i].reach = spheres[i].bounding_radius;
   displaced.changed.reserve(scene.objects.size());
   presence_changed.reserve(scene.objects.size());
   report.scene_revision = scene.revision;

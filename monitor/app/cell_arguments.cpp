@@ -18,7 +18,7 @@ std::string package_fault(const std::string& text) {
 
 }  // namespace
 
-// What is said of the robot is a key of the robot in a cell file.
+// Options of the robot are keys of the robot in a cell file.
 void CellArguments::add_to(CLI::App& app, bool from_ros) {
   auto* what = app.add_option_group("what", "One of");
   auto* file = what->add_option("CELL", cell, "The cell file (YAML)");

@@ -1,5 +1,5 @@
-// Wraps conditions in CLI11 validators whose messages read "found ...; expected ...", as those of
-// cell files do.
+// Wraps conditions in CLI11 validators. Their messages read "found ...; expected ...", like those
+// about cell files.
 #include "monitor/app/options.hpp"
 
 #include <fmt/format.h>
@@ -16,12 +16,16 @@ std::string unexpected(const std::string& found, const std::string& expected) {
   return fmt::format("found '{}'; expected {}", found, expected);
 }
 
-// CLI11 converts what it can ("1e3", "nan"); this adds the condition and one kind of message.
+// CLI11 would convert more ("0x10", " 7"); numbers are decimal here, such as "1e3".
 CLI::Validator number(bool (*accepts)(double), const char* expected) {
   const auto fault = [accepts, expected](const std::string& text) {
     double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && accepts(value)) return std::string();
-    return unexpected(text, expected);
+    const char* const begin =
+        text.data() + (text.starts_with("+") && !text.starts_with("+-") ? 1 : 0);
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(begin, end, value);
+    const bool whole = read.ec == std::errc{} && read.ptr == end;
+    return whole && accepts(value) ? std::string() : unexpected(text, expected);
   };
   return {fault, ""};
 }
@@ -40,7 +44,7 @@ CLI::Validator number_from_zero() {
                 "a number, 0 or more");
 }
 
-// Stricter than CLI11: "1e3", "0x10" and " 7" are no whole numbers here.
+// This is stricter than CLI11: "1e3", "0x10" and " 7" are no whole numbers here.
 CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
   const auto fault = [=](const std::string& text) {
     std::int64_t value = 0;

@@ -1,5 +1,4 @@
-// Values that options of the command line accept: each validator names what was found and what is
-// expected.
+// Validators for options of the command line: each names what it found and what it expected.
 #pragma once
 
 #include <CLI/CLI.hpp>

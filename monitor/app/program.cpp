@@ -10,12 +10,12 @@
 
 #include "config/text/printable.hpp"
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 
 namespace clearance {
 namespace {
 
-// What CLI11 has to say, through print().
+// Prints CLI11's message through print().
 int say(const CLI::App& app, const CLI::Error& error) {
   std::ostringstream out, err;
   const int status = app.exit(error, out, err);
@@ -38,7 +38,7 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body,
   }
 }
 
-// CLI11 has its own exit codes for mistakes; here they all are kUsage.
+// CLI11 has an exit code for each mistake; here all of them are kUsage.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", std::string("clearance ") + kBuild);
   try {

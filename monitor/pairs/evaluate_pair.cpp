@@ -91,8 +91,8 @@ struct PartPairs {
   double displacement;  // since they were last brought up to date, m
   bool is_new;          // that was in this tick, so nothing is known of the last one
   PairMotion motion;
-  // Over the part pairs that displacement alone did not rule out, m. All others are at least
-  // `smallest_upper` apart.
+  // Over the part pairs that displacement alone did not rule out, m. All others have
+  // a distance of at least `smallest_upper`.
   double smallest_upper = kInfinity, least_lower = kInfinity;
   double between = kInfinity;  // the distance was at least this since the last tick, m
   bool all_that_matter = true;

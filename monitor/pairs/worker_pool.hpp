@@ -1,9 +1,9 @@
 // Threads that share one loop with the thread of the tick.
 //
-// The work of each index is done once, by whoever takes it first, and must not depend on that: then
-// results are the same bits for any number of workers. No lock and no heap: indices are claimed by
-// one atomic word, and who has nothing to do spins for a while and then sleeps on a futex, so that
-// a processor fewer than workers costs time and never hangs.
+// The work of each index is done once, by the thread that claims it first, and must not depend on
+// the thread. Then results are the same bits for any number of workers. There are no locks and no
+// heap: indices are claimed by one atomic word. A thread without work spins for a while and then
+// sleeps on a futex, so that fewer processors than workers cost time and never hang.
 #pragma once
 
 #include <atomic>
@@ -23,14 +23,14 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  // How a loop is shared: so many indices are claimed at once, and fewer than `least` are left to
-  // the caller.
+  // How a loop is shared: `claim` indices are claimed at once; a loop of fewer than `least` is left
+  // to the caller.
   struct Share {
     std::uint32_t claim, least;
   };
 
-  // Calls work(i) once for each i < count, in no particular order and at the same time, and returns
-  // when all are done. `work` is noexcept. One caller at a time.
+  // Calls work(i) once for each i < count, in no particular order and concurrently, and returns
+  // when all are done. `work` is noexcept. There may be one caller at a time.
   template <class Work>
   void run(std::uint32_t count, Share share, const Work& work) noexcept {
     run(
@@ -49,8 +49,9 @@ class WorkerPool {
   [[nodiscard]] bool help() noexcept;
   void wait_until_done(std::uint32_t count) noexcept;
 
-  // Upper half: which loop; lower half: how many indices nobody has claimed. A claim that succeeds
-  // was made while that loop was running, so what was read of it before is its own.
+  // Upper half: number of the loop; lower half: how many of its indices are not claimed yet. A
+  // claim that succeeds was made while that loop was running, so the call read before belongs to
+  // it.
   std::atomic<std::uint64_t> unclaimed_{0};
   std::atomic<Call> call_{nullptr};
   std::atomic<const void*> context_{nullptr};

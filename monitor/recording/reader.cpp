@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/cdr.hpp"
 

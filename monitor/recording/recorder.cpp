@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

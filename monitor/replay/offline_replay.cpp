@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/replay/reference_check.hpp"
@@ -276,7 +276,7 @@ std::optional<std::string> Replay::difference(const TickInput& input, const Repo
   if (auto found = message_difference(scene_, *input.recorded, *replayed_, how)) return found;
   if (input.separation != nullptr) {
     to_wire(report, 0, *separation_);
-    if (input.separation->pairs._length == 0) separation_->pairs._length = 0;  // thinned out
+    if (some_without_pairs_ && input.separation->pairs._length == 0) separation_->pairs._length = 0;
     if (const auto found = message_difference(scene_, *input.separation, *separation_, how))
       return "separation." + *found;
   }

@@ -39,7 +39,7 @@ struct Schedule {
 
 // What the evaluations of a tick leave to the next one and to the report.
 struct Evaluated {
-  double smallest_upper = kInfinity;  // of any pair that the search for the minimum looked at, m
+  double smallest_upper = kInfinity;  // of any pair that the search for the minimum examined, m
   // The tick in which the stalest known pair was last refreshed. While pairs are met for the first
   // time, or come back, it may be too early, but no pair is older.
   std::uint64_t oldest_refresh = 0;

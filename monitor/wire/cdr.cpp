@@ -2,11 +2,11 @@
 // normalised, which checks every length, and only then read.
 #include "monitor/wire/cdr.hpp"
 
-#include <dds/ddsi/ddsi_cdrstream.h>
-
 #include <cstdint>
 #include <cstring>
 #include <limits>
+
+#include "monitor/wire/cyclone_private.hpp"
 
 namespace clearance {
 namespace {

@@ -21,9 +21,9 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
              double threshold) noexcept {
   if (!a.known() || !b.known()) return false;
-  const double unseen = a.unseen_since + b.unseen_since;
-  if (report.clearance + unseen < threshold) return true;
-  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unseen < threshold;
+  const double unobserved = a.unseen_since + b.unseen_since;
+  if (report.clearance + unobserved < threshold) return true;
+  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unobserved < threshold;
 }
 
 }  // namespace

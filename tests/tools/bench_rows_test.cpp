@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

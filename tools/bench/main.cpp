@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tools/bench/adjacency.hpp"
 #include "tools/bench/batches.hpp"
 #include "tools/bench/cells.hpp"

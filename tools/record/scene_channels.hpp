@@ -8,6 +8,7 @@
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/visual/ros_types.hpp"
+#include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
@@ -25,7 +26,7 @@ class SceneChannels {
   }
 
   // Belongs into every file.
-  void write_bodies(std::int64_t now_ns) { writer_.write(bodies_, now_ns, bodies_message(scene_)); }
+  void write_bodies(std::int64_t now_ns) { write(bodies_, now_ns, bodies_message(scene_)); }
 
   void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
   void take(const clearance_msg_JointStates& states) { poses_.take(states); }
@@ -36,14 +37,20 @@ class SceneChannels {
     poses_.use(report);
     if (now_ns - written_ns_ < kPeriodNs) return;
     written_ns_ = now_ns;
-    writer_.write(transforms_, now_ns, transforms_message(scene_, poses_, now_ns));
-    writer_.write(closest_, now_ns, closest_message(scene_, report, now_ns));
+    write(transforms_, now_ns, transforms_message(scene_, poses_, now_ns));
+    write(closest_, now_ns, closest_message(scene_, report, now_ns));
   }
 
  private:
+  template <class T>
+  void write(std::uint16_t channel, std::int64_t now_ns, const Sample<T>& message) {
+    writer_.write(channel, now_ns, encoder_.encode(*message));
+  }
+
   const Scene& scene_;
   RecordingWriter& writer_;
   ObjectPoses poses_;
+  CdrEncoder encoder_;
   std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/files/file_error.hpp"
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/pair_name.hpp"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 #include "monitor/replay/offline_replay.hpp"

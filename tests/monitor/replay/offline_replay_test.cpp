@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"

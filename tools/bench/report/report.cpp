@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tools/plot/gnuplot.hpp"
 
 namespace clearance::bench {

@@ -1,4 +1,4 @@
-# Run by every build: writes what this build is to OUT, where that is not in it already.
+# Run by every build: writes the name of this build to OUT, if it is not there already.
 #   cmake -D SOURCE=... -D IN=... -D OUT=... -D VERSION=... -D COMPILED=... -P build_info.cmake
 # The state of the sources as git names it; nothing when they are no git checkout of their own.
 execute_process(COMMAND git rev-parse --show-prefix WORKING_DIRECTORY ${SOURCE}
