@@ -31,15 +31,4 @@ struct EnclosingOptions {
 [[nodiscard]] std::optional<ConvexBody> enclosing_polyhedron(std::span<const PlacedShape> bodies,
                                                              const EnclosingOptions& options = {});
 
-// How far a model that holds all bodies reaches beyond them, at most: no point of `model` is
-// farther from the nearest of the bodies, m. So no distance from the model is smaller by more than
-// this than the distance from the bodies. Of one body to a rounding: the farthest point is a
-// vertex then. Of several within 2 %, unless that takes too long: tetrahedra are split where the
-// vertices leave the most open. `model`: bounded and solid; `bodies`: at least one.
-[[nodiscard]] double excess(const ConvexBody& model, std::span<const PlacedShape> bodies);
-
-// The same of a sphere, from the body that reaches deepest around its centre; exact for one body.
-[[nodiscard]] double excess_of_sphere(const Vec3& centre, double radius,
-                                      std::span<const PlacedShape> bodies);
-
 }  // namespace clearance

@@ -30,7 +30,6 @@
 #include "monitor/objects/ingest.hpp"
 #include "monitor/objects/presence.hpp"
 #include "monitor/pairs/pair_table.hpp"
-#include "monitor/pairs/worker_pool.hpp"
 #include "monitor/schedule/scheduler.hpp"
 #include "monitor/separation/separations.hpp"
 #include "monitor/stage_borders.hpp"
@@ -60,7 +59,6 @@ struct Monitor::State {
   const std::vector<std::uint32_t> moving;      // objects that are not fixed
   const std::vector<std::uint32_t> first_part;  // by object
   const Published published;
-  WorkerPool pool;
 
   Inputs inputs;                                // ingest and displace
   std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
@@ -77,7 +75,7 @@ struct Monitor::State {
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
-  State(const Scene& the_scene, const MonitorOptions& options);
+  explicit State(const Scene& the_scene);
 
   [[nodiscard]] TickView view() const noexcept {
     return {inputs.objects, parts, inputs.cycle, table};
@@ -90,8 +88,7 @@ struct Monitor::State {
   [[nodiscard]] PairReport pair_report(std::uint32_t pair) const noexcept;
 };
 
-Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
-    : state_(std::make_unique<State>(scene, options)) {}
+Monitor::Monitor(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
 Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples,
@@ -201,18 +198,17 @@ std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].stamp_ns;
 }
 
-Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
+Monitor::State::State(const Scene& the_scene)
     : scene(the_scene),
       zone_levels(the_scene),
       share(refresh_share(the_scene)),
       moving(moving_objects(the_scene)),
       first_part(first_parts(the_scene)),
       published(published_pairs(the_scene)),
-      pool(options.workers, options.on_worker_start),
       inputs(initial_inputs(the_scene)),
       parts(parts_of(the_scene)),
       table(the_scene, parts),
-      scheduler(the_scene, share, parts, table, zone_levels, pool),
+      scheduler(the_scene, share, parts, table, zone_levels),
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
               scheduler.left_out(), share),
       crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),

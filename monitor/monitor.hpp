@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 
@@ -27,15 +26,10 @@ struct InputAge {
   std::uint32_t source = kNoSource, other_source = kNoSource;
 };
 
-struct MonitorOptions {
-  unsigned workers = 1;  // threads that evaluate pairs, the one that calls tick() included
-  std::function<void()> on_worker_start = {};  // runs first in each of the other threads
-};
-
 class Monitor {
  public:
   // Allocates all it will ever need. The scene must outlive the monitor.
-  explicit Monitor(const Scene& scene, const MonitorOptions& options = {});
+  explicit Monitor(const Scene& scene);
   ~Monitor();
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
@@ -43,7 +37,7 @@ class Monitor {
   // One cycle: takes in the samples in the given order, those of joints first (refused ones are
   // counted, never used), moves the objects, carries bounds forward, evaluates pairs within the
   // budget, updates zones. The report stays valid until the next tick. Allocates, throws and locks
-  // nothing; the same inputs give the same bits, with one worker or several.
+  // nothing; the same inputs give the same bits.
   const Report& tick(std::span<const PoseSample> samples, std::span<const JointSample> joints,
                      const TickTime& time) noexcept;
   // For a cell without robots.

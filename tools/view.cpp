@@ -17,7 +17,7 @@
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/loop/ports.hpp"
-#include "tools/replay/progress_bar.hpp"
+#include "tools/shared/progress_bar.hpp"
 #include "tools/view/browser.hpp"
 #include "tools/view/live_source.hpp"
 #include "tools/view/offline_recording.hpp"

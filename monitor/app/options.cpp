@@ -57,6 +57,26 @@ CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
   return {fault, ""};
 }
 
+CLI::Option* add_packages(CLI::App& app,
+                          std::vector<std::pair<std::string, std::filesystem::path>>& packages) {
+  const auto fault = [](const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const bool is_complete = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
+    return is_complete ? std::string() : unexpected(text, "NAME=DIRECTORY");
+  };
+  const auto add = [&packages](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::size_t equals = text.find('=');
+      packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    }
+  };
+  return app
+      .add_option_function<std::vector<std::string>>(
+          "--package", add, "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
+      ->allow_extra_args(false)
+      ->check(fault);
+}
+
 // One wording for all programs.
 void add_force(CLI::App& app, bool& force) {
   app.add_flag("--force", force, "Overwrite files that exist");

@@ -35,15 +35,6 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
   return options.dds;
 }
 
-// The tick waits for its workers, so they have its priority. They may run on any processor.
-MonitorOptions monitor_options(const DaemonOptions& options) {
-  const auto start = [priority = options.fifo_priority] {
-    name_thread("worker");
-    if (priority > 0) log_refusal(use_fifo_scheduling(priority));
-  };
-  return {.workers = options.workers, .on_worker_start = start};
-}
-
 std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions& options,
                                           const PoseReader& poses, RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
@@ -80,8 +71,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
       .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
-                                      PoseReader::joints_a_batch(cell.scene)),
-      .monitor = monitor_options(options)};
+                                      PoseReader::joints_a_batch(cell.scene))};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
   if (ros_) sinks.push_back(ros_.get());

@@ -28,7 +28,6 @@ struct DaemonOptions {
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
   std::optional<int> cpu;  // processor that the tick thread is pinned to
-  unsigned workers = 1;    // threads that evaluate pairs, the tick thread included; same scheduling
 };
 
 // The order of the members matters: ports and queues outlive the loop that uses them.

@@ -93,10 +93,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 99));
   app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
       ->check(whole_number(0, 1023));
-  app.add_option(
-         "--workers", arguments.daemon.workers,
-         "Threads that evaluate pairs, the tick thread included; results do not depend on it")
-      ->check(CLI::Range(1, 64));
   add_log_level(app, arguments.log_level);
   app.footer(kFooter);
 }

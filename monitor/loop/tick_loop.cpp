@@ -11,7 +11,7 @@ namespace clearance {
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
     : scene_(scene),
-      monitor_(scene, options.monitor),
+      monitor_(scene),
       sources_(scene),
       source_(source),
       sinks_(std::move(sinks)),

@@ -19,7 +19,6 @@ struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
       4096;  // samples that one tick can use; the rest waits for the next tick
-  MonitorOptions monitor = {};
 };
 
 // Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an

@@ -198,4 +198,13 @@ void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noe
   budget.spend();
 }
 
+std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, const OpenTick& tick,
+                           Budget& budget) noexcept {
+  std::size_t done = 0;
+  for (; done < pairs.size() && budget.left() > 0; ++done) {
+    evaluate_pair(pairs[done], tick, budget);
+  }
+  return done;
+}
+
 }  // namespace clearance

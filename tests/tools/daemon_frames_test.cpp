@@ -134,7 +134,7 @@ TEST_F(DaemonFrames, OfARecordingReplayToTheBit) {
       [&] { return t > 1.0; }));
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
-  ChildProcess replay(kReplay, {"--offline", "--cell", cell, recording, "--compare"});
+  ChildProcess replay(kReplay, {"check", "--cell", cell, recording, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
 }
 

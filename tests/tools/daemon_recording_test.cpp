@@ -78,7 +78,7 @@ class RecordingDaemon : public testing::Test {
     return missing ? 0 : bytes;
   }
   int replay(const std::string& name, std::string& output) const {
-    ChildProcess child(kReplay, {"--offline", path(name)});
+    ChildProcess child(kReplay, {"check", path(name)});
     const int status = child.wait();
     output = child.output();
     return status;
@@ -100,7 +100,7 @@ TEST_F(RecordingDaemon, RecordsWhatAnOfflineReplayGivesAgain) {
                                  dds_arguments(dds)));
   EXPECT_EQ(0, run.wait()) << run.output();
   EXPECT_TRUE(run.wrote("recorded ")) << run.output();
-  ChildProcess compared(kReplay, {"--offline", path("run.mcap"), "--compare"});
+  ChildProcess compared(kReplay, {"check", path("run.mcap"), "--compare"});
   EXPECT_EQ(0, compared.wait()) << compared.output();
   EXPECT_TRUE(compared.wrote("150 reports compared")) << compared.output();
 }

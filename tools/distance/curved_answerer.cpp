@@ -14,15 +14,15 @@ using Clock = std::chrono::steady_clock;
 
 OrderedJson json_of(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
-// One pose, all pairs of parts.
+// The answer for one pose over all pairs of parts.
 struct UnionAnswer {
   DistanceResult nearest;
   double lower = kInfinity, upper = kInfinity;
   Vec3 normal, on_a, on_b;  // of the nearest parts; where they overlap, both points are the same
 };
 
-// The point of B is placed by B's own pose: through A's frame it would have a rounding error that
-// grows with the distance.
+// B's pose places the point of B, because through A's frame its rounding error would grow with the
+// distance.
 void add(UnionAnswer& answer, const DistanceResult& r, const Pose& world_from_a,
          const Pose& world_from_b, double radius_b, const CurvedTrackingState& state) {
   answer.lower = std::min(answer.lower, r.lower);

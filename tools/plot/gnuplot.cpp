@@ -18,7 +18,7 @@ namespace bp = boost::process;
 std::string plot_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    // A backslash for the string, and one for the markup.
+    // One backslash is for the string, one for the markup.
     if (c == '_' || c == '^' || c == '@' || c == '&' || c == '{' || c == '}' || c == '~') {
       out += "\\\\";
     }

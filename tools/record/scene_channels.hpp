@@ -1,4 +1,4 @@
-// The channels of a recording that 3D viewers draw: bodies once a file, transforms and closest
+// The channels of a recording that 3D viewers draw: bodies once per file, transforms and closest
 // pairs of some reports.
 #pragma once
 
@@ -25,13 +25,13 @@ class SceneChannels {
     write_bodies(now_ns);
   }
 
-  // Belongs into every file.
+  // Every file needs this.
   void write_bodies(std::int64_t now_ns) { write(bodies_, now_ns, bodies_message(scene_)); }
 
   void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
   void take(const clearance_msg_JointStates& states) { poses_.take(states); }
 
-  // Written 60 times a second: more is not seen.
+  // Written 60 times a second, as fast as a screen shows it.
   void take(const clearance_msg_Distances& report, std::int64_t now_ns) {
     constexpr std::int64_t kPeriodNs = 1'000'000'000 / 60;
     poses_.use(report);
