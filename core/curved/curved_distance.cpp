@@ -44,16 +44,6 @@ void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& stat
                         : Vec3(0.5 * (points.a + points.b));
 }
 
-DistanceResult of_unknown() noexcept {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  DistanceResult r;
-  r.distance = kNaN;
-  r.lower = -kInfinity;
-  r.upper = kInfinity;
-  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kNaN);
-  return r;
-}
-
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
   CurvedPair pair(a, b, a_from_b);
@@ -85,12 +75,13 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
   return r;
 }
 
-// What Newton's method has left open.
-DistanceResult otherwise(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                         CurvedTrackingState& state, bool depth) noexcept {
-  if (!a.bounded() && !b.bounded()) return of_unknown();
-  if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
-  return searched(a, b, a_from_b, state, depth);
+DistanceResult thorough(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        CurvedTrackingState& state, bool depth) noexcept {
+  DistanceResult r = a.is_half_space() || b.is_half_space()
+                         ? distance_of_half_space(a, b, a_from_b, state)
+                         : searched(a, b, a_from_b, state, depth);
+  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
+  return r;
 }
 
 }  // namespace
@@ -100,7 +91,7 @@ DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                bool depth) noexcept {
   forget_nonsense(state, a, b);
   DistanceResult r;
-  if (!newton_distance(a, b, a_from_b, state, r)) r = otherwise(a, b, a_from_b, state, depth);
+  if (!newton_distance(a, b, a_from_b, state, r)) return thorough(a, b, a_from_b, state, depth);
   if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
   return r;
 }
@@ -110,6 +101,14 @@ DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                bool depth) noexcept {
   CurvedTrackingState tracked = read(state, a, b);
   const DistanceResult r = curved_distance(a, b, a_from_b, tracked, depth);
+  write(tracked, a, b, state);
+  return r;
+}
+
+DistanceResult open_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                             TrackingState& state) noexcept {
+  CurvedTrackingState tracked = read(state, a, b);
+  const DistanceResult r = thorough(a, b, a_from_b, tracked, true);
   write(tracked, a, b, state);
   return r;
 }

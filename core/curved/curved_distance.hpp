@@ -12,8 +12,7 @@ namespace clearance {
 
 // noexcept, no heap, deterministic. Any state is accepted. See DistanceResult for what the answer
 // says; the pose has to be a good one. `depth`: as DistanceOptions has it. Both bodies may be
-// polyhedra, but distance() answers these faster and with closer bounds. If both bodies are
-// unbounded, the bounds are infinite and the rest is NaN.
+// polyhedra, one of them bounded, but distance() answers these faster and with closer bounds.
 [[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth = true) noexcept;
@@ -22,5 +21,9 @@ namespace clearance {
                                              const RelativePose& a_from_b,
                                              CurvedTrackingState& state,
                                              bool depth = true) noexcept;
+// The rest of a query by poses that newton_distance() (newton.hpp) has left open, depth included.
+[[nodiscard]] DistanceResult open_distance(const ConvexBody& a, const ConvexBody& b,
+                                           const RelativePose& a_from_b,
+                                           TrackingState& state) noexcept;
 
 }  // namespace clearance

@@ -6,6 +6,13 @@
 namespace clearance {
 namespace {
 
+// Where two or three functions are equal: of two, where they are highest so. The weights have sum
+// 1; where one is below 0, fewer functions are active at the greatest of the least.
+struct MeetingPoint {
+  Vec2 step = Vec2::Zero();
+  std::array<double, 3> weights{};
+};
+
 // The step is not summed up from the weighted slopes, which may be long and cancel: along the
 // difference of both it is where they are equal, and across they agree.
 MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g) noexcept {
@@ -109,15 +116,6 @@ PlaneStep highest_least(const std::array<PlaneFunction, 5>& functions, std::size
   std::array<PlaneFunction, 5> scaled{};
   for (std::size_t i = 0; i < count; ++i) scaled[i] = scaling(functions[i]);
   PlaneStep found = Dual(scaled, count).solve();
-  found.step = scaling.back(found.step);
-  return found;
-}
-
-MeetingPoint meeting_point(const std::array<PlaneFunction, 3>& functions, std::size_t count,
-                           const PlaneMatrix& q) noexcept {
-  const Scaling scaling(q);
-  const PlaneFunction f = scaling(functions[0]), g = scaling(functions[1]);
-  MeetingPoint found = count == 2 ? meeting_of(f, g) : meeting_of(f, g, scaling(functions[2]));
   found.step = scaling.back(found.step);
   return found;
 }

@@ -25,13 +25,4 @@ struct PlaneStep {
 [[nodiscard]] PlaneStep highest_least(const std::array<PlaneFunction, 5>& functions,
                                       std::size_t count, const PlaneMatrix& q) noexcept;
 
-// Where two or three functions are equal: of two, where they are highest so. The weights have sum
-// 1; where one is below 0, fewer functions are active at the greatest of the least.
-struct MeetingPoint {
-  Vec2 step = Vec2::Zero();
-  std::array<double, 3> weights{};
-};
-[[nodiscard]] MeetingPoint meeting_point(const std::array<PlaneFunction, 3>& functions,
-                                         std::size_t count, const PlaneMatrix& q) noexcept;
-
 }  // namespace clearance

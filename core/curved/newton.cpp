@@ -90,17 +90,15 @@ bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const Relative
   return newton(a, b, pose4_of(a_from_b), state, r);
 }
 
-DistanceResult newton_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state,
-                               OtherDistance otherwise) {
+bool newton_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                     const Pose& world_from_b, TrackingState& state, DistanceResult& r,
+                     RelativePose& open) {
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   CurvedTrackingState tracked = read(state, a, b);
-  DistanceResult r;
-  if (HWY_UNLIKELY(!newton(a, b, a_from_b, tracked, r))) {
-    return otherwise(a, b, pose_of(a_from_b), state, true);
-  }
+  const bool found = newton(a, b, a_from_b, tracked, r);
+  if (HWY_UNLIKELY(!found)) open = pose_of(a_from_b);
   write(tracked, a, b, state);
-  return r;
+  return found;
 }
 
 }  // namespace clearance::HWY_NAMESPACE
@@ -116,10 +114,11 @@ bool newton_distance(const ConvexBody& a, const ConvexBody& b, const RelativePos
                      CurvedTrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_relative)(a, b, a_from_b, state, result);
 }
-DistanceResult newton_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state,
-                               OtherDistance otherwise) noexcept {
-  return HWY_DYNAMIC_DISPATCH(newton_of_poses)(a, b, world_from_a, world_from_b, state, otherwise);
+bool newton_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                     const Pose& world_from_b, TrackingState& state, DistanceResult& result,
+                     RelativePose& a_from_b) noexcept {
+  return HWY_DYNAMIC_DISPATCH(newton_of_poses)(a, b, world_from_a, world_from_b, state, result,
+                                               a_from_b);
 }
 
 }  // namespace clearance

@@ -174,7 +174,11 @@ DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const Rela
 
 DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                             const Pose& world_from_b, TrackingState& state) noexcept {
-  return newton_distance(a, b, world_from_a, world_from_b, state, &by_direction);
+  DistanceResult result;
+  RelativePose a_from_b;
+  if (newton_distance(a, b, world_from_a, world_from_b, state, result, a_from_b)) return result;
+  if (!is_good(a_from_b)) return of_bad_pose(state);
+  return open_distance(a, b, a_from_b, state);
 }
 
 DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
