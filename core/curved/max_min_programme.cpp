@@ -1,4 +1,4 @@
-#include "core/curved/direction_programme.hpp"
+#include "core/curved/max_min_programme.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,15 +6,16 @@
 namespace clearance {
 namespace {
 
-// Where two or three functions are equal: of two, where they are highest so. The weights have sum
-// 1; where one is below 0, fewer functions are active at the greatest of the least.
+// The step at which two or three functions are equal, for two functions with the greatest value.
+// The weights have sum 1. If one is negative, fewer functions are active at the optimum.
 struct MeetingPoint {
   Vec2 step = Vec2::Zero();
   std::array<double, 3> weights{};
 };
 
-// The step is not summed up from the weighted slopes, which may be long and cancel: along the
-// difference of both it is where they are equal, and across they agree.
+// The step is not the sum of the weighted slopes, which may be long and cancel. Along the
+// difference of both slopes, the step is where the functions are equal; across it, both slopes
+// agree.
 MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g) noexcept {
   const Vec2 slope = g.slope - f.slope, across(-slope.y(), slope.x());
   const double square = slope.squaredNorm(), value = g.value - f.value;
@@ -53,10 +54,10 @@ struct Scaling {
   }
 };
 
-// In the plane's coordinates after the change of variables that makes Q the identity: the dual
-// problem is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of sum 1. It
-// is tried on all subsets of one to three functions. Each is a bound of the dual from above, so the
-// least is the optimum, whatever rounding does to the others.
+// After the change of variables that makes Q the identity, the dual problem (P. Wolfe, Q. Appl.
+// Math. 19, 1961) is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of
+// sum 1. It is tried on all subsets of one to three functions. Each bounds the dual from above, so
+// the least one is the optimum, whatever rounding does to the others.
 class Dual {
  public:
   Dual(const std::array<PlaneFunction, 5>& functions, std::size_t count) noexcept
@@ -110,8 +111,8 @@ class Dual {
 
 }  // namespace
 
-PlaneStep highest_least(const std::array<PlaneFunction, 5>& functions, std::size_t count,
-                        const PlaneMatrix& q) noexcept {
+PlaneStep max_min(const std::array<PlaneFunction, 5>& functions, std::size_t count,
+                  const PlaneMatrix& q) noexcept {
   const Scaling scaling(q);
   std::array<PlaneFunction, 5> scaled{};
   for (std::size_t i = 0; i < count; ++i) scaled[i] = scaling(functions[i]);
