@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
 #include "core/curved/curved_distance.hpp"
-#include "core/curved/newton.hpp"
 #include "core/feature_walk/feature_walk.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
@@ -142,22 +140,6 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
 
 }  // namespace
 
-bool is_good(const RelativePose& pose) noexcept {
-  return pose.rotation.allFinite() && pose.translation.norm() <= kLargestCoordinate;
-}
-
-DistanceResult of_bad_pose(TrackingState& state) noexcept {
-  state = {};
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  DistanceResult r;
-  r.distance = kUnknown;
-  r.lower = -kInfinity;
-  r.upper = kInfinity;
-  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kUnknown);
-  r.status = DistanceStatus::kBadPose;
-  return r;
-}
-
 DistanceResult by_search(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                          TrackingState& state, bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
@@ -168,13 +150,12 @@ DistanceResult by_search(const ConvexBody& a, const ConvexBody& b, const Relativ
 
 DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                             TrackingState& state, bool depth) noexcept {
-  if (!is_good(a_from_b)) return of_bad_pose(state);
   return curved_distance(a, b, a_from_b, state, depth);
 }
 
 DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                             const Pose& world_from_b, TrackingState& state) noexcept {
-  return newton_distance(a, b, world_from_a, world_from_b, state, &by_direction);
+  return curved_distance(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,

@@ -3,15 +3,10 @@
 #pragma once
 
 #include "core/distance_result.hpp"
+#include "core/model/bad_pose.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
-
-// Is it finite, and are the frames no more than kLargestCoordinate apart?
-[[nodiscard]] bool is_good(const RelativePose& pose) noexcept;
-// The answer of one that is not. The pair's next query is cold: what a walk with such a pose leaves
-// in the state depends on the way that it took.
-[[nodiscard]] DistanceResult of_bad_pose(TrackingState& state) noexcept;
 
 // distance() by the active-set iteration from the features of the state on, and where that
 // certifies too little by GJK; if `depth`, of bodies that penetrate each other by the penetration

@@ -1,4 +1,4 @@
-#include "core/curved/direction_programme.hpp"
+#include "core/curved/max_min_programme.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,8 +6,16 @@
 namespace clearance {
 namespace {
 
-// The step is not summed up from the weighted slopes, which may be long and cancel: along the
-// difference of both it is where they are equal, and across they agree.
+// The step at which two or three functions are equal, for two functions with the greatest value.
+// The weights have sum 1. If one is negative, fewer functions are active at the optimum.
+struct MeetingPoint {
+  Vec2 step = Vec2::Zero();
+  std::array<double, 3> weights{};
+};
+
+// The step is not the sum of the weighted slopes, which may be long and cancel. Along the
+// difference of both slopes, the step is where the functions are equal; across it, both slopes
+// agree.
 MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g) noexcept {
   const Vec2 slope = g.slope - f.slope, across(-slope.y(), slope.x());
   const double square = slope.squaredNorm(), value = g.value - f.value;
@@ -46,10 +54,10 @@ struct Scaling {
   }
 };
 
-// In the plane's coordinates after the change of variables that makes Q the identity: the dual
-// problem is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of sum 1. It
-// is tried on all subsets of one to three functions. Each is a bound of the dual from above, so the
-// least is the optimum, whatever rounding does to the others.
+// After the change of variables that makes Q the identity, the dual problem (P. Wolfe, Q. Appl.
+// Math. 19, 1961) is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of
+// sum 1. It is tried on all subsets of one to three functions. Each bounds the dual from above, so
+// the least one is the optimum, whatever rounding does to the others.
 class Dual {
  public:
   Dual(const std::array<PlaneFunction, 5>& functions, std::size_t count) noexcept
@@ -103,21 +111,12 @@ class Dual {
 
 }  // namespace
 
-PlaneStep highest_least(const std::array<PlaneFunction, 5>& functions, std::size_t count,
-                        const PlaneMatrix& q) noexcept {
+PlaneStep max_min(const std::array<PlaneFunction, 5>& functions, std::size_t count,
+                  const PlaneMatrix& q) noexcept {
   const Scaling scaling(q);
   std::array<PlaneFunction, 5> scaled{};
   for (std::size_t i = 0; i < count; ++i) scaled[i] = scaling(functions[i]);
   PlaneStep found = Dual(scaled, count).solve();
-  found.step = scaling.back(found.step);
-  return found;
-}
-
-MeetingPoint meeting_point(const std::array<PlaneFunction, 3>& functions, std::size_t count,
-                           const PlaneMatrix& q) noexcept {
-  const Scaling scaling(q);
-  const PlaneFunction f = scaling(functions[0]), g = scaling(functions[1]);
-  MeetingPoint found = count == 2 ? meeting_of(f, g) : meeting_of(f, g, scaling(functions[2]));
   found.step = scaling.back(found.step);
   return found;
 }
