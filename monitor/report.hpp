@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/vec.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 
@@ -28,7 +28,6 @@ enum class PairStatus : std::uint8_t {
   // NaN, lower = -infinity, upper = +infinity.
   kUnknown = 6,
 };
-inline constexpr std::size_t kPairStatuses = 7;
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
 // One object pair. All in world coordinates, m, m/s, s, ns.

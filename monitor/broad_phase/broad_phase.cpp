@@ -72,7 +72,7 @@ void BroadPhase::begin(const std::vector<TrackedObject>& objects,
     usual = usual > kStandstill ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : changed) {
     const TrackedObject& object = objects[i];
-    if (!object.seen) continue;
+    if (!object.input.has_value) continue;
     Body& body = bodies_[i];
     if (!(object.displacement < kInfinity)) jump(i, table);
     if (body.idle) continue;

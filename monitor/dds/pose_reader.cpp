@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/source_numbers.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

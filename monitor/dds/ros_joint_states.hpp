@@ -15,8 +15,8 @@
 #include "config/scene/scene.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_stamps.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/pose_batch.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {

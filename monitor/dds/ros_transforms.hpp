@@ -17,8 +17,8 @@
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/dds/ros_stamps.hpp"
 #include "monitor/frames/tracked_frames.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/pose_batch.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -3,7 +3,7 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/dds/slow_inputs.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

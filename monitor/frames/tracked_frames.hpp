@@ -13,7 +13,7 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/frames/tf_tree.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

@@ -134,7 +134,7 @@ void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
     bounds.swept_lower = rounded_down(bounds.swept_lower - rounded_up(unseen_since));
     bounds.swept_upper = rounded_up(bounds.swept_upper + rounded_up(unseen_since));
   }
-  if (!a.late && !b.late) return;
+  if (!a.input.late && !b.input.late) return;
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   bounds.lower = rounded_down(bounds.lower - may_have_moved);
   bounds.upper = rounded_up(bounds.upper + may_have_moved);
@@ -197,8 +197,8 @@ void report_on(std::uint32_t pair, const PairBounds& bounds,
   const TrackedObject& b = objects[table.entries[pair].object_b];
   if (bounds.status == PairStatus::kUnknown) report = unknown_report();
   report.pair = pair;
-  report.age_a_ns = a.age_ns;
-  report.age_b_ns = b.age_ns;
+  report.age_a_ns = a.input.age_ns;
+  report.age_b_ns = b.input.age_ns;
   if (bounds.status == PairStatus::kUnknown) return;
 
   report.status = bounds.status;

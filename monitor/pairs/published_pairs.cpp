@@ -68,7 +68,8 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
 void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
     const PosedPart& part = evaluation.parts[body_parts_[i]];
-    world_from_body_[i] = evaluation.objects[part.object].seen ? part.world_from_part : kNowhere;
+    world_from_body_[i] =
+        evaluation.objects[part.object].input.has_value ? part.world_from_part : kNowhere;
   }
   const auto one = [this, &evaluation](std::uint32_t i) noexcept {
     evaluate_group(groups_[i], evaluation);

@@ -21,11 +21,11 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/bags/input_log.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/tick_time.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
-#include "monitor/source_numbers.hpp"
-#include "monitor/tick_time.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/joint_names.hpp"
 

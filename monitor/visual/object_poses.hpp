@@ -18,9 +18,9 @@
 
 #include "clearance.h"
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/objects/ingest.hpp"
-#include "monitor/pose_batch.hpp"
-#include "monitor/source_numbers.hpp"
 #include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
@@ -42,7 +42,7 @@ class ObjectPoses {
   // World from object; null until the first pose.
   [[nodiscard]] const Pose* pose(std::size_t object) const {
     const TrackedObject& state = inputs_->objects[object];
-    return state.seen ? &state.pose : nullptr;
+    return state.input.has_value ? &state.pose : nullptr;
   }
   void forget();  // all but the fixed ones
 

@@ -9,9 +9,9 @@ namespace {
 
 // What an object contributes to a pair that is inside a zone.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
-  if (!object.seen) return ZoneCause::kUnknown;
+  if (!object.input.has_value) return ZoneCause::kUnknown;
   if (object.unseen_since > 0.0)
-    return object.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
+    return object.input.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 

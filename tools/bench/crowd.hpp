@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance::bench {
 

@@ -1,4 +1,4 @@
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 
@@ -24,6 +24,8 @@ const char* name(Reject cause) noexcept {
       return "frozen, but with a twist";
     case Reject::kOtherWay:
       return "elsewhere than its twist leads";
+    case Reject::kCount:
+      break;
   }
   return "";
 }

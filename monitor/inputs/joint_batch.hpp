@@ -1,5 +1,5 @@
 // What joints say of themselves: positions as one source sent them, in the order in which they were
-// taken. The stamps are as those of poses (monitor/pose_batch.hpp).
+// taken. The stamps are as those of poses (monitor/inputs/pose_batch.hpp).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-#include "monitor/objects/source_clock.hpp"
+#include "monitor/inputs/source_clock.hpp"
 
-#include "monitor/motion/elapsed.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 

@@ -5,16 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "monitor/motion/elapsed.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
-
-// The time of a tick and what it allows.
-struct SampleLimits {
-  std::int64_t now_ns = 0;
-  std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
-};
 
 // A stamp that nobody can tell the age of is as old as any: a hundred years.
 inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;

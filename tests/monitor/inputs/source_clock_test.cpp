@@ -1,4 +1,4 @@
-#include "monitor/objects/source_clock.hpp"
+#include "monitor/inputs/source_clock.hpp"
 
 #include <gtest/gtest.h>
 

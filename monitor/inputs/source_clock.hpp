@@ -13,7 +13,7 @@
 
 #include <cstdint>
 
-#include "monitor/tick_time.hpp"
+#include "monitor/inputs/tick_time.hpp"
 
 namespace clearance {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
-#include "monitor/joint_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
 
@@ -43,8 +43,9 @@ enum class Reject : std::uint8_t {
   kTooFast,        // farther from the pose in use, or with a faster twist, than the object moves
   kFrozen,         // the same pose again and again, with a twist that says that it moves
   kOtherWay,       // elsewhere than the twists lead
+  kCount
 };
-inline constexpr std::size_t kRejects = 10;
+inline constexpr auto kRejects = static_cast<std::size_t>(Reject::kCount);
 [[nodiscard]] const char* name(Reject cause) noexcept;
 
 // Who sent a batch. Fixed size: copied in the tick thread.

@@ -1,4 +1,4 @@
-#include "monitor/source_numbers.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 
 #include <algorithm>
 #include <iterator>
