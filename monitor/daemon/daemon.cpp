@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "monitor/frames/tracked_frames.hpp"
+#include "monitor/intake/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
 

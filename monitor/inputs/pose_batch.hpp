@@ -72,6 +72,12 @@ struct PoseBatch {
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints = {};
 
+  // Keeps the memory.
+  void clear() noexcept {
+    scene_revision = 0;
+    samples.clear();
+    joints.clear();
+  }
   [[nodiscard]] bool empty() const noexcept { return samples.empty() && joints.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return samples.size() + joints.size(); }
 };

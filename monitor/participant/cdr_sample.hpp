@@ -1,4 +1,5 @@
-// Samples as they came, without decoding them: for what passes them on or records them.
+// Samples as they came, without decoding them: for what passes them on, records or decodes them
+// elsewhere.
 #pragma once
 
 #include <dds/dds.h>
@@ -6,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 struct ddsi_serdata;
@@ -16,25 +18,30 @@ namespace clearance {
 class CdrSample {
  public:
   // Takes the reference over.
-  CdrSample(ddsi_serdata* sample, std::int64_t source_ns)
-      : source_ns_(source_ns), sample_(sample) {}
+  CdrSample(ddsi_serdata* sample, const dds_sample_info_t& info)
+      : source_ns_(info.source_timestamp), writer_(info.publication_handle), sample_(sample) {}
 
   // When it was written, CLOCK_REALTIME of its writer.
   [[nodiscard]] std::int64_t source_ns() const noexcept { return source_ns_; }
-  // The bytes with their header of four.
-  void copy_to(std::vector<std::byte>& bytes) const;
+  // The publication handle of its writer.
+  [[nodiscard]] std::uint64_t writer() const noexcept { return writer_; }
+  // The bytes with their header of four, valid as long as this is.
+  [[nodiscard]] std::span<const std::byte> bytes() const;
 
  private:
   struct Release {
     void operator()(ddsi_serdata* sample) const noexcept;
   };
   std::int64_t source_ns_;
+  std::uint64_t writer_;
   std::unique_ptr<ddsi_serdata, Release> sample_;
 };
 
 // Appends what waits in the reader, and no more than kMostAtOnce; samples without content are
-// passed over. How many were taken, with those: 0, none waits. Throws DdsError.
+// passed over. How many were taken, with those: 0, none waits. `ended`, unless null, gets the
+// handles of keys that no writer has any more. Throws DdsError.
 inline constexpr std::size_t kMostAtOnce = 64;
-std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken);
+std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken,
+                     std::vector<std::uint64_t>* ended = nullptr);
 
 }  // namespace clearance

@@ -24,10 +24,10 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/tick_time.hpp"
+#include "monitor/intake/intake.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/wire/cdr.hpp"
-#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -91,8 +91,8 @@ class TickFeed {
 
   [[nodiscard]] bool read_one();
   void read_message(const RecordedMessage& message);
-  void read_batch(const RecordedMessage& message);
-  void read_joints(const RecordedMessage& message);
+  void read_inputs(const RecordedMessage& message);
+  void wait(PoseBatch batch);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] const clearance_msg_Separation* separation_of(std::int64_t now_ns);
   [[nodiscard]] bool next_by_time(TickInput& tick);
@@ -108,7 +108,7 @@ class TickFeed {
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
   ObjectMap objects_;
-  JointNames joint_names_;
+  Intake intake_;
   SourceNumbers sources_;
   bool by_report_;
   double tick_hz_;             // 0: at log times
@@ -116,8 +116,6 @@ class TickFeed {
   std::int64_t last_batch_ns_ = 0;
   std::uint64_t at_rate_ = 0;  // ticks since then
   CdrDecoder decoder_;
-  Sample<clearance_msg_PoseBatch> wire_batch_;
-  Sample<clearance_msg_JointStates> wire_joints_;
 
   std::deque<Waiting> batches_waiting_;        // in file order
   std::deque<WaitingReport> reports_waiting_;  // in file order

@@ -2,8 +2,11 @@
 // pairs of some reports.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "monitor/intake/intake.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -18,6 +21,11 @@ class SceneChannels {
       : scene_(scene),
         writer_(writer),
         poses_(scene),
+        intake_(scene, {},
+                [this](PoseBatch& batch) {
+                  poses_.take(batch, ObjectPoses::Numbers::kOfSender);
+                  return true;
+                }),
         transforms_(writer.add_channel(ros::transforms_schema(), kTransformsTopic)),
         closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)),
         bodies_(writer.add_channel(ros::markers_schema(), kBodiesTopic)) {
@@ -27,8 +35,12 @@ class SceneChannels {
   // Belongs into every file.
   void write_bodies(std::int64_t now_ns) { writer_.write(bodies_, now_ns, bodies_message(scene_)); }
 
-  void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
-  void take(const clearance_msg_JointStates& states) { poses_.take(states); }
+  // Poses and joints as they came; `kind`: of which topic.
+  void take(TopicKind kind, std::span<const std::byte> cdr) {
+    if (const auto topic = intake_.topic(kind)) {
+      intake_.take({.topic = topic->number, .cdr = cdr}, {});
+    }
+  }
 
   // Written 60 times a second: more is not seen.
   void take(const clearance_msg_Distances& report, std::int64_t now_ns) {
@@ -44,6 +56,7 @@ class SceneChannels {
   const Scene& scene_;
   RecordingWriter& writer_;
   ObjectPoses poses_;
+  Intake intake_;
   std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };

@@ -14,6 +14,20 @@ Bytes shared(std::vector<std::byte> bytes) {
 
 }  // namespace
 
+Frame::Frame(const Scene& scene)
+    : scene_(scene),
+      poses_(scene),
+      own_(scene, {},
+           [this](PoseBatch& batch) {
+             source_ = batch.source.view();
+             poses_.take(batch, ObjectPoses::Numbers::kOfSender);
+             return true;
+           }),
+      ros_(scene, {}, [this](PoseBatch& batch) {
+        poses_.take(batch, ObjectPoses::Numbers::kUnnumbered);
+        return true;
+      }) {}
+
 void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr) {
   keep(channel(kind), key_of(kind, cdr), time_ns, cdr);
   if (kind == TopicKind::kCatalogue && decoder_.decode(cdr, catalogue_)) {
@@ -24,20 +38,12 @@ void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte
 // What must not replace each other: zones by id, batches by source. Poses and joints are taken
 // along the way.
 std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
-  const auto of_source = [this,
-                          next = static_cast<std::uint32_t>(sources_.size())](const char* source) {
-    return sources_.try_emplace(source, next).first->second;
-  };
   if (kind == TopicKind::kZones && decoder_.decode(cdr, zone_)) return zone_->zone;
-  if (kind == TopicKind::kPoses && decoder_.decode(cdr, batch_)) {
-    poses_.take(*batch_);
-    return of_source(batch_->source);
-  }
-  if (kind == TopicKind::kJointStates && decoder_.decode(cdr, joints_)) {
-    poses_.take(*joints_);
-    return of_source(joints_->source);
-  }
-  return 0;
+  if (kind != TopicKind::kPoses && kind != TopicKind::kJointStates) return 0;
+  const auto topic = own_.topic(kind);
+  if (!topic || !own_.take({.topic = topic->number, .cdr = cdr}, {})) return 0;
+  const auto next = static_cast<std::uint32_t>(sources_.size());
+  return sources_.try_emplace(source_, next).first->second;
 }
 
 void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,

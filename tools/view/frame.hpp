@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "monitor/intake/intake.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/view/server.hpp"
@@ -19,13 +20,13 @@ namespace clearance::view {
 
 class Frame {
  public:
-  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene) {}
+  explicit Frame(const Scene& scene);
 
   // Takes one message of our topics. Of a report nothing more is done than to keep its bytes, of
   // poses and joints their numbers are kept: what is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
-  // Joints from elsewhere than our own topic.
-  void take_joints(PoseBatch batch) { poses_.take_joints(std::move(batch)); }
+  // Poses and joints of ROS 2's topics.
+  [[nodiscard]] Intake& of_ros() noexcept { return ros_; }
 
   // Sends what has come since the last call.
   void publish(Server& server);
@@ -47,9 +48,9 @@ class Frame {
 
   const Scene& scene_;
   ObjectPoses poses_;
+  Intake own_, ros_;
+  std::string source_;  // of the batch of ours that was taken last
   CdrDecoder decoder_;
-  Sample<clearance_msg_PoseBatch> batch_;
-  Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;

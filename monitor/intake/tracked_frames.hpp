@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/frames/tf_tree.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/intake/tf_tree.hpp"
 
 namespace clearance {
 

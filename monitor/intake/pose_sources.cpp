@@ -1,4 +1,4 @@
-#include "monitor/dds/pose_sources.hpp"
+#include "monitor/intake/pose_sources.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "monitor/dds/slow_inputs.hpp"
+#include "monitor/intake/slow_inputs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "monitor/frames/tf_tree.hpp"
+#include "monitor/intake/tf_tree.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "monitor/frames/tracked_frames.hpp"
+#include "monitor/intake/tracked_frames.hpp"
 
 #include <array>
 #include <set>

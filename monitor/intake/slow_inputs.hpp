@@ -9,22 +9,21 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/intake/decoder.hpp"
 
 namespace clearance {
 
-class SlowInputs {
+// Inputs of one kind, by their numbers.
+class SlowIntervals {
  public:
   // In a row, all longer than the age limit: a pause or lost batches are no rate.
   static constexpr std::size_t kIntervals = 8;
 
   // Age limits in ns; 0: an input that never comes, as the pose of a fixed object.
-  explicit SlowInputs(const std::vector<std::int64_t>& limits_ns);
-  // Of a scene's objects, and of its joints' variables.
-  [[nodiscard]] static SlowInputs poses(const Scene& scene);
-  [[nodiscard]] static SlowInputs joints(const Scene& scene);
+  explicit SlowIntervals(const std::vector<std::int64_t>& limits_ns);
 
-  // To be called with every sample, its stamp in ns. The median interval, once an input: when it is
-  // found that it comes too seldom.
+  // Returns the median interval once per input, ns, when the input first proves too slow.
   [[nodiscard]] std::optional<std::int64_t> note(std::uint32_t input, std::int64_t stamp_ns);
 
  private:
@@ -37,7 +36,23 @@ class SlowInputs {
   std::vector<Rate> rates_;  // by input
 };
 
-// An age limit that fits inputs at this interval: two of them, to the next 10 ms.
+// All inputs of a scene.
+class SlowInputs {
+ public:
+  // The scene must outlive this.
+  explicit SlowInputs(const Scene& scene);
+  // To be called with every batch; tells each input that proves too slow once.
+  void note(const PoseBatch& batch, Outlet& out);
+
+ private:
+  void note_poses(const PoseBatch& batch, Outlet& out);
+  void note_joints(const PoseBatch& batch, Outlet& out);
+
+  const Scene& scene_;
+  SlowIntervals poses_, joints_;
+};
+
+// An age limit that fits inputs at this interval: two intervals, to the next 10 ms.
 [[nodiscard]] std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept;
 
 }  // namespace clearance

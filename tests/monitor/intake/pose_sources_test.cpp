@@ -1,5 +1,5 @@
 // Whose a source name is, and who has a place: without DDS.
-#include "monitor/dds/pose_sources.hpp"
+#include "monitor/intake/pose_sources.hpp"
 
 #include <gtest/gtest.h>
 
