@@ -2,34 +2,32 @@
 
 #include <algorithm>
 
+#include "monitor/invariant.hpp"
+
 namespace clearance {
 
-void write_pair(std::uint32_t pair, const PairBounds& bounds, const Scheduler& scheduler,
-                const Culling& culling, const Evaluation& evaluation, PairReport& report) noexcept {
-  report_on(pair, bounds, evaluation.objects, evaluation.parts, evaluation.table, report);
-  report.refresh_age_cycles =
-      evaluation.cycle - scheduler.refreshed_cycle(pair, culling, evaluation.table);
-}
-
 PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
-                          const ZoneCrossings& crossings, const Evaluation& evaluation) noexcept {
-  PairBounds bounds = bounds_of(pair, evaluation.objects, evaluation.parts, evaluation.cycle,
-                                evaluation.table, precision);
-  if (!crossings.any()) return bounds;
-  const SweptBounds swept = crossings.of(pair);
-  bounds.swept_lower = std::min(bounds.lower, std::max(bounds.swept_lower, swept.lower));
-  bounds.swept_upper = std::min(bounds.swept_upper, swept.upper);
+                          const ZoneCrossings& crossings, const TickView& view) noexcept {
+  PairBounds bounds = bounds_of(pair, view, precision);
+  if (crossings.any()) {
+    const SweptBounds swept = crossings.of(pair);
+    bounds.swept_lower = std::min(bounds.lower, std::max(bounds.swept_lower, swept.lower));
+    bounds.swept_upper = std::min(bounds.swept_upper, swept.upper);
+  }
+  CLEARANCE_INVARIANT(bounds.lower <= bounds.upper);
+  CLEARANCE_INVARIANT(bounds.swept_lower <= bounds.lower);
   return bounds;
 }
 
-// The bounds of every pair that was looked at are put together once, and all that needs them has
-// them at once: a second pass over the published pairs costs a small tick a twentieth of its time.
-void conclude(const Published& published, const Displacements& displaced, const Culling& culling,
-              const Scheduler& scheduler, const ZoneLevels& levels, const ZoneCrossings& crossings,
-              const Evaluation& evaluation, Zones& zones, Conclusion& conclusion,
-              std::span<PairReport> reports) noexcept {
-  conclusion = {};
+// Puts the bounds of every updated pair together once, and hands them at once to all that need
+// them: a second pass over the published pairs costs a small tick a twentieth of its time.
+Conclusion conclude(const Published& published, const Displacements& displaced,
+                    const Culling& culling, const ZoneCrossings& crossings, const TickView& view,
+                    Zones& zones, std::span<PairReport> reports) noexcept {
+  Conclusion conclusion;
+  std::size_t updated = 0;
   const auto add = [&](std::uint32_t pair, const PairBounds& bounds) {
+    ++updated;
     conclusion.minimum.add(pair, bounds);
     zones.add(pair, bounds);
     conclusion.evaluated += is_evaluated(bounds.status);
@@ -37,23 +35,27 @@ void conclude(const Published& published, const Displacements& displaced, const 
   for (std::size_t i = 0; i < published.pairs.size(); ++i) {
     const std::uint32_t pair = published.pairs[i];
     const PairBounds bounds =
-        bounds_in_tick(pair, SweptPrecision::kByRelativeDisplacement, crossings, evaluation);
-    write_pair(pair, bounds, scheduler, culling, evaluation, reports[i]);
-    if (evaluation.table.entries[pair].carried_cycle == evaluation.cycle) add(pair, bounds);
+        bounds_in_tick(pair, SweptPrecision::kByRelativeDisplacement, crossings, view);
+    write_pair(pair, bounds, view, reports[i]);
+    if (is_carried(pair, view)) add(pair, bounds);
   }
-  for (const std::uint32_t pair : culling.seen()) {
+  for (const std::uint32_t pair : culling.updated()) {
+    CLEARANCE_INVARIANT(is_carried(pair, view));
     if (published.is_published[pair]) continue;
-    // How near a pair in no zone came matters to the least of all only: a coarse bound will do.
-    const auto precision = levels.has(pair) ? SweptPrecision::kByRelativeDisplacement
-                                            : SweptPrecision::kByDisplacement;
-    add(pair, bounds_in_tick(pair, precision, crossings, evaluation));
+    // The swept bound of a pair in no zone matters only to the least of all: a coarse one will do.
+    const auto precision = zones.watch(pair) ? SweptPrecision::kByRelativeDisplacement
+                                             : SweptPrecision::kByDisplacement;
+    add(pair, bounds_in_tick(pair, precision, crossings, view));
   }
+  // Every pair whose bounds are of this tick is in the culling's list, and no other.
+  CLEARANCE_INVARIANT(updated == culling.updated().size());
 
-  const UnseenPairs unseen = culling.unseen(displaced);
-  if (unseen.any) conclusion.minimum.add_rest(unseen.all().now, unseen.all().since);
-  const std::span<const TrackedObject> objects(evaluation.objects);
-  zones.finish(displaced.any_lost ? objects : objects.first(0), unseen.waiting(), evaluation.cycle);
+  const UntouchedPairs untouched = culling.untouched(displaced);
+  if (untouched.any) conclusion.minimum.add_rest(untouched.all().now, untouched.all().since);
+  const std::span<const TrackedObject> objects(view.objects);
+  zones.finish(displaced.any_lost ? objects : objects.first(0), untouched.waiting(), view.cycle);
   zones.explain(objects);
+  return conclusion;
 }
 
 }  // namespace clearance

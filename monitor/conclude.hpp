@@ -1,5 +1,5 @@
-// Stage 7 of a tick: zones, minimum and the reports of published pairs, from the pairs that it has
-// looked at and what holds of the rest.
+// Stage 'conclude' of a tick: zones, minimum and the reports of published pairs, from the pairs
+// that the tick has updated and what holds of all others.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 
 #include "monitor/broad_phase/culling.hpp"
 #include "monitor/pairs/global_minimum.hpp"
-#include "monitor/schedule/scheduler.hpp"
 #include "monitor/swept/zone_crossings.hpp"
 #include "monitor/zones/zones.hpp"
 
@@ -25,20 +24,16 @@ struct Published {
   std::vector<std::uint8_t> is_published;  // by pair
 };
 
-// One pair as of this tick, seen or not, with what the sweep has told about it. `precision`: how
-// closely the time since the last tick is looked at.
+// One pair as of this tick, updated or not, with what the sweep has found. `precision`: how closely
+// the time since the last tick is examined.
 [[nodiscard]] PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
                                         const ZoneCrossings& crossings,
-                                        const Evaluation& evaluation) noexcept;
-
-// Writes all of a pair's report.
-void write_pair(std::uint32_t pair, const PairBounds& bounds, const Scheduler& scheduler,
-                const Culling& culling, const Evaluation& evaluation, PairReport& report) noexcept;
+                                        const TickView& view) noexcept;
 
 // Also takes the zones to this tick. `reports`: of the published pairs, in their order.
-void conclude(const Published& published, const Displacements& displaced, const Culling& culling,
-              const Scheduler& scheduler, const ZoneLevels& levels, const ZoneCrossings& crossings,
-              const Evaluation& evaluation, Zones& zones, Conclusion& conclusion,
-              std::span<PairReport> reports) noexcept;
+[[nodiscard]] Conclusion conclude(const Published& published, const Displacements& displaced,
+                                  const Culling& culling, const ZoneCrossings& crossings,
+                                  const TickView& view, Zones& zones,
+                                  std::span<PairReport> reports) noexcept;
 
 }  // namespace clearance

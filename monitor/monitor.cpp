@@ -1,15 +1,19 @@
-// A tick as its stages, each of which reads what those before it have written:
+// A tick is a sequence of stages. Each reads what those before it have written:
 //
-//   ingest      samples of poses and joints    -> Inputs: what is in use of each object and joint
-//   displace    Inputs                         -> Displacements, parts posed in the world
-//   cull        Displacements                  -> Culling: pairs seen, with bounds of this tick
-//   schedule    pairs seen, budget             -> Schedule: what is evaluated at once, what is kept
-//   evaluate    Schedule                       -> PairTable: tight bounds; zone crossings found
-//   sweep       zone crossings                 -> ZoneCrossings: bounds since the last tick
-//   conclude    PairTable, ZoneCrossings       -> Zones, minimum, published pairs of the Report
-//   separate    published pairs                -> zones with `separation` of the Report
+//   ingest         samples of poses and joints -> Inputs: what is in use of each object and joint
+//   displace       Inputs                      -> Displacements: how far each object has come
+//   pose           moved objects               -> parts placed in the world
+//   cull           Displacements               -> Culling: updated pairs, what holds of the others
+//   schedule       updated pairs, budget       -> Schedule: what is evaluated at once, what is kept
+//   evaluate       Schedule                    -> PairTable: tight bounds of the urgent pairs
+//   cross          updated pairs               -> ZoneCrossings: what the sweep has to decide
+//   refresh        Schedule, kept budget       -> PairTable, Evaluated: round-robin
+//   sweep          ZoneCrossings, kept budget  -> ZoneCrossings: bounds since the last tick
+//   cull again     PairTable                   -> Culling: active pairs that are far now
+//   conclude       PairTable, ZoneCrossings    -> Zones, minimum, published pairs of the Report
+//   separate       published pairs             -> zones with `separation` of the Report
 //   differentiate  published pairs, links      -> gradients of the Report
-//   report      all of these                   -> the rest of the Report, which nothing reads
+//   report         all of these                -> the rest of the Report, which no stage reads
 #include "monitor/monitor.hpp"
 
 #include <algorithm>
@@ -27,13 +31,12 @@
 #include "monitor/pairs/worker_pool.hpp"
 #include "monitor/schedule/scheduler.hpp"
 #include "monitor/separation/separations.hpp"
+#include "monitor/swept/zone_crossings.hpp"
 #include "monitor/zones/zone_levels.hpp"
 #include "monitor/zones/zones.hpp"
 
 namespace clearance {
 namespace {
-
-constexpr Budget kNoLimit(std::numeric_limits<std::uint32_t>::max());
 
 Published published_pairs(const Scene& scene) {
   Published published;
@@ -46,7 +49,7 @@ Published published_pairs(const Scene& scene) {
 
 }  // namespace
 
-// Everything that one tick leaves to the next stands in one of these; each is changed by one stage.
+// Everything that one tick leaves to the next, with the stages that change it.
 struct Monitor::State {
   const Scene& scene;
   const ZoneLevels zone_levels;
@@ -56,30 +59,30 @@ struct Monitor::State {
   const Published published;
   WorkerPool pool;
 
-  Inputs inputs;            // ingest, and displace
-  Displacements displaced;  // displace
-  std::vector<PosedPart> parts;
-  PairTable table;          // cull and evaluate
-  Scheduler scheduler;      // schedule and evaluate
-  Culling culling;          // cull and evaluate
-  Schedule schedule;        // schedule
-  ZoneCrossings crossings;  // evaluate and sweep
-  Zones zones;              // conclude
-  Conclusion conclusion;    // conclude
+  Inputs inputs;                 // ingest and displace
+  Displacements displaced;       // displace
+  std::vector<PosedPart> parts;  // pose
+  PairTable table;               // cull, evaluate and refresh
+  Scheduler scheduler;           // schedule, evaluate and refresh
+  Culling culling;               // cull, evaluate, refresh and cull again
+  Evaluated evaluated;           // refresh
+  ZoneCrossings crossings;       // cross and sweep
+  Zones zones;                   // conclude
+  Conclusion conclusion;         // conclude
   const Separations separations;
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
   State(const Scene& the_scene, const MonitorOptions& options);
 
-  [[nodiscard]] Evaluation evaluation(Budget budget) noexcept {
-    return {inputs.objects, parts, inputs.cycle, table, budget};
+  [[nodiscard]] TickView view() const noexcept {
+    return {inputs.objects, parts, inputs.cycle, table};
   }
-  void displace() noexcept;
-  void write_report(std::uint32_t queries) noexcept;
+  void count_pairs() noexcept;
+  void finish_report(std::uint32_t queries) noexcept;
   void write_minimum() noexcept;
-  [[nodiscard]] PairBounds bounds(std::uint32_t pair) noexcept;
-  [[nodiscard]] PairReport pair_report(std::uint32_t pair) noexcept;
+  [[nodiscard]] PairBounds bounds(std::uint32_t pair) const noexcept;
+  [[nodiscard]] PairReport pair_report(std::uint32_t pair) const noexcept;
 };
 
 Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
@@ -90,17 +93,28 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
                             std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
   ingest(samples, joints, time, s.scene, s.inputs);
-  s.displace();
-  Evaluation tick = s.evaluation(Budget(s.scene.budget));
-  s.culling.cull(s.displaced.changed, s.scheduler.minimum_upper(), tick);
-  s.schedule = s.scheduler.schedule(s.culling, tick);
-  s.scheduler.evaluate(s.schedule, s.zones, s.culling, s.crossings, tick);
-  s.crossings.sweep(s.culling.seen(), s.zones, tick);
-  conclude(s.published, s.displaced, s.culling, s.scheduler, s.zone_levels, s.crossings, tick,
-           s.zones, s.conclusion, s.report.pairs);
+  displace(s.scene, s.moving, s.inputs, s.displaced);
+  pose_parts(s.inputs.objects, s.displaced.changed, s.first_part, s.parts);
+
+  const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table);
+  Budget budget(s.scene.budget);
+  s.culling.cull(s.displaced.changed, s.evaluated.smallest_upper, tick, budget);
+  const Schedule schedule = s.scheduler.schedule(s.culling, tick, budget);
+  const std::uint32_t kept_for_refresh = budget.reserve(schedule.kept);
+  const bool urgent_done = s.scheduler.evaluate_urgent(schedule, s.culling, tick, budget);
+  s.crossings.find(s.culling.updated(), s.zones, tick);
+  const std::uint32_t kept_for_sweep = budget.reserve(s.crossings.queries());
+  budget.release(kept_for_refresh);
+  s.evaluated = s.scheduler.refresh(schedule, urgent_done, s.culling, tick, budget);
+  budget.release(kept_for_sweep);
+  s.crossings.sweep(s.culling.updated(), s.zones, tick, budget);
+  s.culling.cull_active(tick);
+
+  s.conclusion =
+      conclude(s.published, s.displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
   s.differentiation.differentiate(s.report.pairs, s.inputs.robots, s.report.gradients);
-  s.write_report(s.scene.budget - tick.budget.left());
+  s.finish_report(s.scene.budget - budget.left());
   return s.report;
 }
 
@@ -111,12 +125,12 @@ void Monitor::refuse(std::uint32_t object, Reject cause) noexcept {
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
 
 SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
-  State& s = *state_;
+  const State& s = *state_;
   const PairBounds known = s.bounds(pair);
   SweptBounds bounds{known.swept_lower, known.swept_upper};
   if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
-  Evaluation evaluation = s.evaluation(kNoLimit);
-  const SweptBounds found = swept_bounds_of(pair, level, evaluation);
+  Budget unlimited(std::numeric_limits<std::uint32_t>::max());
+  const SweptBounds found = swept_bounds_of(pair, level, s.view(), unlimited);
   bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
   bounds.upper = std::min(bounds.upper, found.upper);
   return bounds;
@@ -132,7 +146,7 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
           .other_source = state.input.owner.other_source()};
 }
 
-// Of a robot of which nothing was heard no joint is advanced.
+// Joints of a robot that was never heard are not advanced, so that they are stale here.
 InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
   const TrackedVariable& state = state_->inputs.robots.variables()[variable];
   return {.age_ns = state.input.age_ns,
@@ -188,12 +202,7 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
   report.gradients = unknown_gradients(differentiation.rows());
 }
 
-void Monitor::State::displace() noexcept {
-  clearance::displace(scene, moving, inputs, displaced);
-  pose_parts(inputs.objects, displaced.changed, first_part, parts);
-}
-
-void Monitor::State::write_report(std::uint32_t queries) noexcept {
+void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.cycle = inputs.cycle;
   report.now_ns = inputs.time.now_ns;
   report.clock_offset_ns = inputs.time.clock_offset_ns;
@@ -202,16 +211,19 @@ void Monitor::State::write_report(std::uint32_t queries) noexcept {
   report.rejected = inputs.rejected;
   std::ranges::copy(zones.reports(), report.zones.begin());
 
+  report.queries = queries;
+  report.oldest_evaluation_cycles = inputs.cycle - evaluated.oldest_refresh;
+  count_pairs();
+  write_minimum();
+}
+
+void Monitor::State::count_pairs() noexcept {
   const auto known = static_cast<std::uint32_t>(culling.known_pairs().known());
   const auto fresh = static_cast<std::uint32_t>(culling.known_pairs().fresh());
   report.evaluated = conclusion.evaluated;
   report.carried = fresh - conclusion.evaluated;
   report.stale = known - fresh;
   report.unknown = report.pairs_total - known;
-  report.queries = queries;
-  report.oldest_evaluation_cycles =
-      inputs.cycle - scheduler.oldest_refresh(schedule, culling, evaluation(Budget(0)));
-  write_minimum();
 }
 
 void Monitor::State::write_minimum() noexcept {
@@ -221,23 +233,22 @@ void Monitor::State::write_minimum() noexcept {
   report.minimum_known = minimum.known();
   report.minimum_certified = minimum.certified() && report.stale == 0 && report.unknown == 0;
   if (minimum.known()) {
-    write_pair(minimum.pair(), minimum.bounds(), scheduler, culling, evaluation(Budget(0)),
-               report.minimum);
+    write_pair(minimum.pair(), minimum.bounds(), view(), report.minimum);
   } else {
     report.minimum = unknown_report();
   }
 }
 
-PairBounds Monitor::State::bounds(std::uint32_t pair) noexcept {
+PairBounds Monitor::State::bounds(std::uint32_t pair) const noexcept {
   const bool closely = published.is_published[pair] || zone_levels.has(pair);
   const auto precision =
       closely ? SweptPrecision::kByRelativeDisplacement : SweptPrecision::kByDisplacement;
-  return bounds_in_tick(pair, precision, crossings, evaluation(Budget(0)));
+  return bounds_in_tick(pair, precision, crossings, view());
 }
 
-PairReport Monitor::State::pair_report(std::uint32_t pair) noexcept {
+PairReport Monitor::State::pair_report(std::uint32_t pair) const noexcept {
   PairReport written;
-  write_pair(pair, bounds(pair), scheduler, culling, evaluation(Budget(0)), written);
+  write_pair(pair, bounds(pair), view(), written);
   return written;
 }
 

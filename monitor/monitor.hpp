@@ -12,7 +12,7 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/report.hpp"
-#include "monitor/swept/swept_search.hpp"
+#include "monitor/swept/swept_bounds.hpp"
 
 namespace clearance {
 

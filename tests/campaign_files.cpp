@@ -107,7 +107,7 @@ std::string pose_log() {
 }
 
 bool is_cell(const std::filesystem::path& file) {
-  return std::holds_alternative<Scene>(read_cell(file));
+  return std::holds_alternative<Cell>(read_cell(file));
 }
 
 bool is_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf) {
@@ -132,11 +132,11 @@ bool is_case(const std::filesystem::path& file) {
 }
 
 std::vector<Kind> kinds(const test::ScratchFolder& folder) {
-  const Scene scene = std::get<Scene>(parse_cell(kCell, "cell.yaml"));
+  const Cell cell = std::get<Cell>(parse_cell(kCell, "cell.yaml"));
   write_text(folder / "good.urdf", kUrdf);
   write_text(folder / "good.srdf", kSrdf);
   write_text(folder / "good.csv", pose_log());
-  static_cast<void>(record_csv(folder / "good.csv", folder / "good.mcap", &scene));
+  static_cast<void>(record_csv(folder / "good.csv", folder / "good.mcap", &cell));
   const std::string cells = std::string(CLEARANCE_SOURCE) + "/config/cells/";
   std::vector<Kind> all = {
       {"cell", "cell.yaml", read_text(cells + "mcintyre.yaml"), is_cell},
@@ -147,18 +147,18 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
        [&](const auto& file) { return is_robot(folder / "good.urdf", file); }},
       {"urdf of a cell", "robot.urdf", kUrdf,
        [&folder](const auto&) {
-         return std::holds_alternative<Scene>(parse_cell(kRobotCell, folder / "cell.yaml"));
+         return std::holds_alternative<Cell>(parse_cell(kRobotCell, folder / "cell.yaml"));
        }},
       {"planning scene", "shelf.scene", kScene,
        [](const auto& file) {
          return std::holds_alternative<PlanningScene>(read_planning_scene(read_text(file)));
        }},
       {"pose log", "log.csv", pose_log(),
-       [&folder, scene](const auto& file) {
-         return record_csv(file, folder / "out.mcap", &scene).error.empty();
+       [&folder, cell](const auto& file) {
+         return record_csv(file, folder / "out.mcap", &cell).error.empty();
        }},
       {"recording", "run.mcap", read_text(folder / "good.mcap"),
-       [scene](const auto& file) { return replay_offline(scene, file).error.empty(); }},
+       [cell](const auto& file) { return replay_offline(cell, file).error.empty(); }},
       {"case", "case.json", kCase, is_case}};
   for (const BoxMesh& mesh : box_meshes()) {
     const std::string file = "mesh." + mesh.extension;
@@ -169,7 +169,7 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
         ", max_parts: 1}}\n  - {name: b, sphere: {radius: 1}}\n"
         "pairs: [{between: [a, b]}]\n";
     all.push_back({mesh.name, file, mesh.bytes, [cell](const auto& at) {
-                     return std::holds_alternative<Scene>(parse_cell(cell, at));
+                     return std::holds_alternative<Cell>(parse_cell(cell, at));
                    }});
   }
   return all;

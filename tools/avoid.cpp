@@ -55,15 +55,15 @@ void print_row(const char* name, const avoid::RunResult& result) {
   std::fflush(stdout);
 }
 
-int run_both(const Scene& scene, Arguments& arguments, StopSignal& signal) {
+int run_both(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   route_dds_log();
-  client::Connection connection(arguments.dds.resolve(scene), scene.topics);
+  client::Connection connection(arguments.dds.resolve(cell), cell.topics);
   print(stdout, "{:<18} {:>9}  {:>21} {:>7}\n", "", "nearest m", "task error m, mean / max",
         "steps");
   for (const bool avoids : {false, true}) {
     arguments.run.controller.avoids = avoids;
     const avoid::RunResult result =
-        avoid::run(scene, connection, arguments.run, [&signal] { return !signal.wait(0); });
+        avoid::run(cell, connection, arguments.run, [&signal] { return !signal.wait(0); });
     if (!result.heard) {
       print(stderr,
             "clearance-avoid: stopped, or no gradients came on {}; does clearanced run there, with "
@@ -83,9 +83,9 @@ int run(int argc, char** argv, StopSignal& signal) {
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-avoid", "error");
-  const auto scene = scene_or_errors(arguments.cell.read());
-  if (!scene) return kBadCell;
-  return run_both(*scene, arguments, signal);
+  const auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return kBadCell;
+  return run_both(*cell, arguments, signal);
 }
 
 }  // namespace

@@ -94,13 +94,13 @@ int run(int argc, char** argv, StopSignal& stop) {
           log);
     return kUsage;
   }
-  std::optional<Scene> scene;
+  std::optional<Cell> read;
   if (!arguments.cell.empty()) {
-    scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
-    if (!scene) return kBadCell;
+    read = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+    if (!read) return kBadCell;
   }
-  const Scene* const known = scene ? &*scene : nullptr;
-  if (!log.empty()) return record_from_log(arguments, log, *scene, stop);
+  const Cell* const known = read ? &*read : nullptr;
+  if (!log.empty()) return record_from_log(arguments, log, *read, stop);
   return arguments.from_csv.empty() ? record_from_dds(arguments, known, stop)
                                     : record_from_csv(arguments, known, stop);
 }

@@ -117,7 +117,7 @@ Histogram send_all(SimulatedRobot& robot, const Arguments& arguments,
   return lateness;
 }
 
-int run_robot(const Scene& scene, const Arguments& arguments, JointMotion motion,
+int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
               StopSignal& signal) {
   use_precise_timers();
   // Inherited by every thread made from here on, Cyclone's as well.
@@ -127,8 +127,8 @@ int run_robot(const Scene& scene, const Arguments& arguments, JointMotion motion
     }
   }
   route_dds_log();
-  client::Connection connection(arguments.dds.resolve(scene), scene.topics);
-  SimulatedRobot robot(scene, connection, arguments.robot, std::move(motion));
+  client::Connection connection(arguments.dds.resolve(cell), cell.topics);
+  SimulatedRobot robot(cell, connection, arguments.robot, std::move(motion));
   std::optional<LatencyMeter> latency;
   if (arguments.latency) latency.emplace(connection);
   spdlog::info("source '{}' moves {} objects and {} joints at {} Hz on {}", arguments.robot.source,
@@ -157,9 +157,9 @@ int run(int argc, char** argv, StopSignal& signal) {
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-robot", arguments.log_level);
-  const auto scene = scene_or_errors(arguments.cell.read());
-  if (!scene) return kBadCell;
-  if (scene->simulation.empty() && scene->variables.empty()) {
+  const auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return kBadCell;
+  if (cell->simulation.empty() && cell->scene.variables.empty()) {
     print(stderr,
           "{} has no `simulation:` section and no robot with joints: nothing says how its objects "
           "move\n",
@@ -168,10 +168,11 @@ int run(int argc, char** argv, StopSignal& signal) {
   }
   if (arguments.joints.empty()) {
     return run_robot(
-        *scene, arguments,
-        [sweep = JointSweep(*scene)](double t_s, auto& joints) { sweep.at(t_s, joints); }, signal);
+        *cell, arguments,
+        [sweep = JointSweep(cell->scene)](double t_s, auto& joints) { sweep.at(t_s, joints); },
+        signal);
   }
-  JointLogMotion log(arguments.joints, *scene);
+  JointLogMotion log(arguments.joints, cell->scene);
   if (!log.error().empty()) {
     print(stderr, "clearance-robot: {}\n", log.error());
     return kBadCell;
@@ -181,7 +182,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);
   }
   return run_robot(
-      *scene, arguments, [&log](double t_s, auto& joints) { log.at(t_s, joints); }, signal);
+      *cell, arguments, [&log](double t_s, auto& joints) { log.at(t_s, joints); }, signal);
 }
 
 }  // namespace

@@ -66,9 +66,9 @@ int write(const std::string& yaml, const std::string& output) {
     print(stderr, "{}: cannot be written: {}\n", output, std::strerror(errno));
     return kFailed;
   }
-  const auto scene = scene_or_errors(read_cell(output, told_on_stderr()));
-  if (!scene) return kBadCell;
-  print(stdout, "{}: {}\n", output, summary(*scene));
+  const auto cell = cell_or_errors(read_cell(output, told_on_stderr()));
+  if (!cell) return kBadCell;
+  print(stdout, "{}: {}\n", output, summary(cell->scene));
   return kOk;
 }
 
@@ -87,14 +87,15 @@ int make_robot_cell(RobotCellOptions options, const std::string& output) {
 // Beside the SRDF that there is, if there is one: what both say.
 int propose_allowed(const Arguments& arguments) {
   const RobotCellOptions& robot = arguments.robot;
-  const auto scene =
-      scene_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
-  if (!scene) return kBadCell;
+  const auto cell =
+      cell_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
+  if (!cell) return kBadCell;
+  const Scene& scene = cell->scene;
   ProgressBar bar(false);
   SamplingOptions options = arguments.sampling;
   options.seed = arguments.seed;
   options.progress = [&bar](double share) { bar.show(share, "positions of the joints"); };
-  const std::vector<SampledPair> pairs = sample_contacts(*scene, options);
+  const std::vector<SampledPair> pairs = sample_contacts(scene, options);
   bar.finish();
   if (!robot.srdf.empty()) {
     const auto srdf = read_srdf(robot.srdf);
@@ -102,10 +103,10 @@ int propose_allowed(const Arguments& arguments) {
       for (const UrdfFault& fault : *faults) print(stderr, "{}\n", fault.text);
       return kFailed;
     }
-    print(stderr, "{}", agreement(*scene, pairs, options.samples, std::get<Srdf>(srdf)));
+    print(stderr, "{}", agreement(scene, pairs, options.samples, std::get<Srdf>(srdf)));
   }
-  const std::string text = arguments.form == "srdf" ? as_srdf(*scene, pairs, options.samples)
-                                                    : as_cell(*scene, pairs, options.samples);
+  const std::string text = arguments.form == "srdf" ? as_srdf(scene, pairs, options.samples)
+                                                    : as_cell(scene, pairs, options.samples);
   if (arguments.output.empty()) {
     print(stdout, "{}", text);
     return kOk;
@@ -122,9 +123,10 @@ int report(const std::string& cell, bool json) {
   MeshErrors mesh_errors;
   CellOptions options = told_on_stderr();
   options.mesh_errors = &mesh_errors;
-  const auto scene = scene_or_errors(read_cell(cell, options));
-  if (!scene) return kBadCell;
-  print(stdout, "{}", json ? model_json(*scene, mesh_errors) : model_table(*scene, mesh_errors));
+  const auto read = cell_or_errors(read_cell(cell, options));
+  if (!read) return kBadCell;
+  const Scene& scene = read->scene;
+  print(stdout, "{}", json ? model_json(scene, mesh_errors) : model_table(scene, mesh_errors));
   return kOk;
 }
 

@@ -109,7 +109,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 // Null, after saying why, when the recording cannot be shown.
-std::unique_ptr<Source> recording_source(const Scene& scene, const Arguments& arguments,
+std::unique_ptr<Source> recording_source(const Cell& cell, const Arguments& arguments,
                                          std::optional<TemporaryFolder>& scratch,
                                          StopSignal& stop) {
   std::filesystem::path file = arguments.recording;
@@ -119,7 +119,7 @@ std::unique_ptr<Source> recording_source(const Scene& scene, const Arguments& ar
     if (!scratch->error().empty()) throw std::runtime_error(scratch->error());
     const std::filesystem::path computed = *scratch / "replay.mcap";
     const std::string error = view::replay_into(
-        scene, file, computed, [&bar](double share) { bar.show(share, "replayed"); },
+        cell, file, computed, [&bar](double share) { bar.show(share, "replayed"); },
         [&stop] { return stop.wait(0); });
     bar.finish();
     if (!error.empty()) {
@@ -128,12 +128,12 @@ std::unique_ptr<Source> recording_source(const Scene& scene, const Arguments& ar
     }
     file = computed;
   }
-  view::Timeline timeline = view::read_timeline(scene, file);
+  view::Timeline timeline = view::read_timeline(cell.scene, file);
   if (!timeline.error.empty()) {
     print(stderr, "clearance-view: {}\n", timeline.error);
     return nullptr;
   }
-  return std::make_unique<view::RecordingSource>(scene, file, std::move(timeline));
+  return std::make_unique<view::RecordingSource>(cell.scene, file, std::move(timeline));
 }
 
 view::Resource resource(std::string type, std::string body) {
@@ -141,14 +141,14 @@ view::Resource resource(std::string type, std::string body) {
 }
 
 // The page's files, the cell and the time line, each made once.
-std::map<std::string, view::Resource> resources(const Scene& scene, const Source& source) {
+std::map<std::string, view::Resource> resources(const Cell& cell, const Source& source) {
   std::map<std::string, view::Resource> all;
   for (const view::PageFile& file : view::page_files()) {
     all[std::string(file.path)] =
         resource(std::string(view::content_type(file.path)), std::string(file.text));
   }
   all["/"] = all["/index.html"];
-  all["/scene.json"] = resource("application/json", view::scene_json(scene));
+  all["/scene.json"] = resource("application/json", view::scene_json(cell));
   all["/timeline.json"] = resource("application/json", source.timeline());
   return all;
 }
@@ -170,12 +170,12 @@ view::Resource history(const Source& source, const std::string& query) {
   return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
 }
 
-view::Content content_of(const Scene& scene, Source& source) {
-  return {.name = scene.name,
-          .channels = view::channels_of(scene.topics),
+view::Content content_of(const Cell& cell, Source& source) {
+  return {.name = cell.scene.name,
+          .channels = view::channels_of(cell.topics),
           .get =
-              [found = resources(scene, source), &source](const std::string& path,
-                                                          const std::string& query) {
+              [found = resources(cell, source), &source](const std::string& path,
+                                                         const std::string& query) {
                 if (path == "/history.json") return history(source, query);
                 const auto entry = found.find(path);
                 return entry == found.end() ? view::Resource{} : entry->second;
@@ -234,20 +234,20 @@ int serve(const Arguments& arguments, Server& server, Source& source, StopSignal
   return kOk;
 }
 
-int run_view(const Scene& scene, const Arguments& arguments, StopSignal& stop) {
+int run_view(const Cell& cell, const Arguments& arguments, StopSignal& stop) {
   std::optional<TemporaryFolder> scratch;
   std::unique_ptr<Source> source;
   if (arguments.recording.empty()) {
     route_dds_log();
-    source = std::make_unique<view::LiveSource>(scene, arguments.dds.resolve(scene));
+    source = std::make_unique<view::LiveSource>(cell, arguments.dds.resolve(cell));
   } else {
-    source = recording_source(scene, arguments, scratch, stop);
+    source = recording_source(cell, arguments, scratch, stop);
     if (!source) return kFailed;
     if (stop.wait(0)) return kIncomplete;
   }
   const bool pictures = !arguments.screenshots.empty();
   Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port,
-                content_of(scene, *source));
+                content_of(cell, *source));
   return pictures ? take_screenshots(arguments, server, *source)
                   : serve(arguments, server, *source, stop);
 }
@@ -263,9 +263,9 @@ int run(int argc, char** argv, StopSignal& stop) {
     if (!can_create("clearance-view", picture, arguments.force)) return kFailed;
   }
   start_log("clearance-view", "error");
-  const auto scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
-  if (!scene) return kBadCell;
-  return run_view(*scene, arguments, stop);
+  const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+  if (!cell) return kBadCell;
+  return run_view(*cell, arguments, stop);
 }
 
 }  // namespace

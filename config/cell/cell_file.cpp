@@ -1,6 +1,6 @@
-// Parses the YAML into a tree that knows its lines, then reads it section by section into a Scene.
+// Parses the YAML into a tree that knows its lines, then reads it section by section into a Cell.
 // Each reader reports a mistake and goes on with a default, so that one run finds every mistake; a
-// Scene is returned only if there was none.
+// Cell is returned only if there was none.
 #include "config/cell/cell_file.hpp"
 
 #include <fmt/format.h>
@@ -47,15 +47,15 @@ class CellReader {
              Diagnostics& diagnostics, Revision& revision)
       : file_(file), options_(options), diagnostics_(diagnostics), revision_(revision) {}
 
-  void read(const YamlNode& root, Scene& scene);
+  void read(const YamlNode& root, Cell& cell);
 
  private:
   std::optional<Units> read_units(const YamlNode& node);
   void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
-  void read_dds(const YamlNode& node, Scene& scene);
+  void read_dds(const YamlNode& node, Cell& cell);
   void read_topics(const YamlNode& node, Topics& topics);
-  void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Scene& scene);
-  void refuse_frames_without_a_world(const YamlNode& root, const Scene& scene);
+  void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
+  void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
   // Has to be last: it needs every pair with its parts.
   void refuse_small_budget(const YamlNode& root, const Scene& scene);
 
@@ -148,15 +148,15 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
 }
 
 // Where the daemon is on DDS. The command line overrides the domain and the partition.
-void CellReader::read_dds(const YamlNode& node, Scene& scene) {
+void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   MapReader map(node, "the dds settings", diagnostics_);
   if (const YamlNode* domain = map.optional("domain")) {
     const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics_);
-    scene.domain = static_cast<std::uint32_t>(id.value_or(0));
+    cell.domain = static_cast<std::uint32_t>(id.value_or(0));
   }
   if (const YamlNode* partition = map.optional("partition")) {
-    scene.partition = read_text(*partition, "a DDS partition", diagnostics_).value_or("");
-    if (!is_partition(scene.partition)) {
+    cell.partition = read_text(*partition, "a DDS partition", diagnostics_).value_or("");
+    if (!is_partition(cell.partition)) {
       diagnostics_.add(
           *partition,
           fmt::format(
@@ -165,18 +165,17 @@ void CellReader::read_dds(const YamlNode& node, Scene& scene) {
     }
   }
   if (const YamlNode* interface = map.optional("interface")) {
-    scene.interface =
+    cell.interface =
         read_text(*interface, "lo, default or the name of a network card", diagnostics_)
             .value_or("lo");
   }
-  if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, scene.topics);
+  if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, cell.topics);
   map.refuse_unknown_keys();
 }
 
 // Objects, robots, then pairs, then zones: each list names what the one before defines, and is
 // checked as far as that could be read.
-void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities,
-                                        Scene& scene) {
+void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
   const YamlNode* robots_node = map.optional("robots");
@@ -211,43 +210,44 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     pairs =
         read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
   if (zones_node != nullptr)
-    scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
+    cell.scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
   if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
-    scene.simulation = read_simulation(*simulation_node, list, quantities);
-  scene.pairs = std::move(pairs.pairs);
-  scene.objects = std::move(list.objects);
-  scene.robots = std::move(robots.robots);
-  scene.variables = std::move(robots.variables);
+    cell.simulation = read_simulation(*simulation_node, list, quantities);
+  cell.scene.pairs = std::move(pairs.pairs);
+  cell.scene.objects = std::move(list.objects);
+  cell.scene.robots = std::move(robots.robots);
+  cell.scene.variables = std::move(robots.variables);
 }
 
 // The top level. Units come first, since every other section needs them; without them the rest is
 // not read.
-void CellReader::read(const YamlNode& root, Scene& scene) {
+void CellReader::read(const YamlNode& root, Cell& cell) {
   MapReader map(root, "a cell", diagnostics_);
   if (const YamlNode* name = map.required("name")) {
-    scene.name = read_name(*name, "the cell's name", diagnostics_).value_or("");
+    cell.scene.name = read_name(*name, "the cell's name", diagnostics_).value_or("");
   }
   std::optional<Units> units;
   if (const YamlNode* node = map.required("units")) units = read_units(*node);
   // Without units the rest is still read, for what else is wrong with it.
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
-  read_timing(map, quantities, scene);
-  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, scene);
-  if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, scene.ros, diagnostics_);
-  read_objects_and_pairs(map, quantities, scene);
+  read_timing(map, quantities, cell.scene);
+  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
+  if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, cell.ros, diagnostics_);
+  read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
-  refuse_frames_without_a_world(root, scene);
-  if (diagnostics_.empty()) refuse_small_budget(root, scene);
+  refuse_frames_without_a_world(root, cell);
+  if (diagnostics_.empty()) refuse_small_budget(root, cell.scene);
 }
 
 // Where the frames begin cannot be guessed: as long as transforms are missing, any may be the root.
-void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Scene& scene) {
+void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell& cell) {
+  const Scene& scene = cell.scene;
   const auto object =
       std::ranges::find_if(scene.objects, [](const Object& each) { return !each.frame.empty(); });
   const auto robot = std::ranges::find_if(
       scene.robots, [](const Robot& each) { return !each.base.frame.empty(); });
-  if (!scene.ros.world_frame.empty()) return;
+  if (!cell.ros.world_frame.empty()) return;
   if (object == scene.objects.end() && robot == scene.robots.end()) return;
   diagnostics_.add(root,
                    fmt::format("found that '{}' follows the frame '{}', and no world_frame; "
@@ -279,16 +279,16 @@ CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file
     diagnostics.add(fault->line, fault->column, fault->reason);
     return diagnostics.sorted();
   }
-  Scene scene;
+  Cell cell;
   Revision revision(options.root);
   revision.add(yaml);
-  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), scene);
+  CellReader(file, options, diagnostics, revision).read(std::get<YamlNode>(document), cell);
   if (!diagnostics.empty()) return diagnostics.sorted();
-  scene.revision = revision.value();
-  scene.yaml = yaml;
-  scene.file = std::filesystem::absolute(file).lexically_normal();
-  scene.files = revision.files();
-  return scene;
+  cell.scene.revision = revision.value();
+  cell.yaml = yaml;
+  cell.file = std::filesystem::absolute(file).lexically_normal();
+  cell.files = revision.files();
+  return cell;
 }
 
 CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {

@@ -1,4 +1,4 @@
-// Reads a cell: a YAML file (config/README.md lists its keys) into a checked Scene.
+// Reads a cell: a YAML file (config/README.md lists its keys) into a checked Cell.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 #include <variant>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "config/yaml/cell_error.hpp"
 
 namespace clearance {
 
 // Every error that can be found in one pass, never just the first. Mesh paths are relative to the
 // file.
-using CellResult = std::variant<Scene, std::vector<CellError>>;
+using CellResult = std::variant<Cell, std::vector<CellError>>;
 
 struct CellOptions {
   // Gets lines, without their ends, for the person who waits: which mesh is being split into convex

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "config/scene/ros_settings.hpp"
+#include "config/cell/ros_settings.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/yaml_node.hpp"
 

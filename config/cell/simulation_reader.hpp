@@ -2,7 +2,7 @@
 #pragma once
 
 #include "config/cell/object_reader.hpp"
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "config/yaml/quantities.hpp"
 
 namespace clearance {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/ros_settings.hpp"
+#include "config/scene/ros_stamps.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {

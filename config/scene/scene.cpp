@@ -16,13 +16,6 @@ std::string counted(std::size_t count, const std::string& singular) {
 
 }  // namespace
 
-// Partition names are matched as POSIX fnmatch patterns (DDS 1.4, section 2.2.3.13), hence no *, ?
-// and [.
-bool is_partition(const std::string& name) noexcept {
-  constexpr std::size_t kLongest = 255;
-  return name.find_first_of("*?[") == std::string::npos && name.size() <= kLongest;
-}
-
 SeparatedCount separated_count(const Scene& scene) noexcept {
   SeparatedCount count;
   for (const Zone& zone : scene.zones) {

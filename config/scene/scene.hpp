@@ -1,20 +1,16 @@
-// A robot cell as the monitor needs it: plain structs, already checked. Read from YAML by
-// config/cell/cell_file.hpp.
+// A robot cell as the tick needs it: plain structs, already checked. config/cell/cell.hpp has the
+// rest of a cell, and config/cell/cell_file.hpp reads both from YAML.
 //
 // Ids are indices: object i is scene.objects[i], in the order of the file. SI units; stamps in ns.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/scene/robot.hpp"
-#include "config/scene/ros_settings.hpp"
 #include "config/scene/separation.hpp"
-#include "config/scene/simulation.hpp"
-#include "config/scene/topics.hpp"
 #include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
@@ -67,17 +63,12 @@ struct Zone {
   std::optional<Separation> separation = {};  // of people and a robot; its pairs are published
 };
 
-// All that a cell file says. Indices are valid, names unique, pairs sorted by (first, second), and
+// All that the tick reads. Indices are valid, names unique, pairs sorted by (first, second), and
 // the budget covers the refreshing: whoever has a Scene checks none of this again.
 struct Scene {
   std::string name;
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
                                // scenes that differ have different revisions; never 0
-  std::string yaml;            // the text it was read from, for recordings
-  // Where that text stood, and the files that it names, directly or not: meshes, URDF, SRDF,
-  // planning scenes. Absolute; each once, in the order in which they were read.
-  std::filesystem::path file;
-  std::vector<std::filesystem::path> files;
   double rate_hz = 1000.0;
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
@@ -85,23 +76,13 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  bool gradients = false;        // of published pairs by the joints of robots: in every report
-  std::uint32_t domain = 0;      // DDS
-  std::string partition;         // DDS; empty: the default partition
-  std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
-  Topics topics;
-  RosSettings ros;
+  bool gradients = false;  // of published pairs by the joints of robots: in every report
   std::vector<Object> objects;
   std::vector<Robot> robots;  // each stands on the world, an object, or a robot before it
   std::vector<JointVariable> variables;  // of all robots: what joint states can give
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;
-  Simulation simulation;  // may be empty; the monitor never looks at it
 };
-
-// Whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
-// default partition, and without wildcards, which would join cells that were to be kept apart.
-[[nodiscard]] bool is_partition(const std::string& name) noexcept;
 
 // How many zones have `separation`, and how many pairs these have, each counted once a zone.
 struct SeparatedCount {

@@ -60,9 +60,9 @@ CellOptions told_on_stderr() {
 }
 
 // The number of errors stands last, where a person looks first.
-std::optional<Scene> scene_or_errors(CellResult cell) {
-  if (Scene* const scene = std::get_if<Scene>(&cell)) return std::move(*scene);
-  const auto& errors = std::get<std::vector<CellError>>(cell);
+std::optional<Cell> cell_or_errors(CellResult result) {
+  if (Cell* const cell = std::get_if<Cell>(&result)) return std::move(*cell);
+  const auto& errors = std::get<std::vector<CellError>>(result);
   for (const CellError& error : errors) print(stderr, "{}\n", printable(error.text));
   print(stderr, "{} error{}\n", errors.size(), errors.size() == 1 ? "" : "s");
   return std::nullopt;

@@ -36,7 +36,7 @@ using ExitCodeOf = std::function<ExitCode(const std::exception&)>;
 // What reading a cell tells the person who waits for it goes to stderr.
 [[nodiscard]] CellOptions told_on_stderr();
 
-// The scene, or nothing after every error in the cell has gone to stderr, a line each.
-[[nodiscard]] std::optional<Scene> scene_or_errors(CellResult cell);
+// The cell, or nothing after every error in the cell has gone to stderr, a line each.
+[[nodiscard]] std::optional<Cell> cell_or_errors(CellResult result);
 
 }  // namespace clearance

@@ -22,19 +22,18 @@ constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 
 }  // namespace
 
-BagLog::BagLog(const std::filesystem::path& path, const Scene& scene,
-               const InputLogOptions& options)
-    : scene_(scene),
+BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options)
+    : scene_(cell.scene),
       options_(options),
       path_(path),
       bag_(open_bag(path)),
-      intake_(scene, {.is_log = true, .joint_topics = options.joint_topics},
+      intake_(cell, {.is_log = true, .joint_topics = options.joint_topics},
               [this](PoseBatch& batch) {
                 use(std::move(batch));
                 return true;
               }),
-      heard_(scene.variables.size()),
-      given_(scene, options.joints) {
+      heard_(cell.scene.variables.size()),
+      given_(cell.scene, options.joints) {
   error_ = given_.error();
   ended_ = !error_.empty();
 }

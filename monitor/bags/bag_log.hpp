@@ -25,7 +25,7 @@ namespace clearance {
 // when a position held: then the time is used at which it was recorded.
 class BagLog final : public InputLog {
  public:
-  BagLog(const std::filesystem::path& path, const Scene& scene, const InputLogOptions& options);
+  BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options);
 
   [[nodiscard]] bool next(LoggedBatch& batch) override;
   [[nodiscard]] const std::string& error() const noexcept override;

@@ -51,12 +51,12 @@ bool is_input_log(const std::filesystem::path& path) {
   return is_joint_table(path);
 }
 
-std::unique_ptr<InputLog> open_input_log(const std::filesystem::path& path, const Scene& scene,
+std::unique_ptr<InputLog> open_input_log(const std::filesystem::path& path, const Cell& cell,
                                          const InputLogOptions& options) {
   if (bag_format(path) == BagFormat::kOther) {
-    return std::make_unique<JointCsvLog>(path, scene, options);
+    return std::make_unique<JointCsvLog>(path, cell.scene, options);
   }
-  return std::make_unique<BagLog>(path, scene, options);
+  return std::make_unique<BagLog>(path, cell, options);
 }
 
 }  // namespace clearance

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
@@ -48,9 +48,9 @@ class InputLog {
 // other columns than a pose log. Files that cannot be read are none.
 [[nodiscard]] bool is_input_log(const std::filesystem::path& path);
 
-// The scene must outlive the log. Never null.
+// The cell must outlive the log. Never null.
 [[nodiscard]] std::unique_ptr<InputLog> open_input_log(const std::filesystem::path& path,
-                                                       const Scene& scene,
+                                                       const Cell& cell,
                                                        const InputLogOptions& options = {});
 
 }  // namespace clearance

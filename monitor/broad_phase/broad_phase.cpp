@@ -9,12 +9,12 @@
 namespace clearance {
 namespace {
 
-// Sums of a few doubles of a cell's size are off by far less, m; beyond 1e4 km from the origin the
-// spheres' own rounding takes over.
+// The rounding of a sum of a few lengths of a cell's size is far less, m; beyond 1e4 km from the
+// origin the rounding of the spheres themselves is larger.
 constexpr double kSumError = 1e-9;
-constexpr double kSmoothing = 0.125;   // of usual displacement: eight ticks
-constexpr double kStandstill = 1e-12;  // m a tick: none
-// The slower object's part of the allowance is no less than this, in case it darts.
+constexpr double kSmoothing = 0.125;   // of the usual displacement: over eight ticks
+constexpr double kStandstill = 1e-12;  // m a tick: less counts as no motion
+// The slower object's share of the allowance is at least this, in case it darts.
 constexpr double kLeastShare = 0.125;
 
 double share_of_a(double usual_a, double usual_b) noexcept {
@@ -22,8 +22,8 @@ double share_of_a(double usual_a, double usual_b) noexcept {
   return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
 }
 
-// How far from where it is now the object may have been since the last tick, m. After a
-// discontinuity every zone of it says so itself.
+// How far the object may have been, at any instant since the last tick, from where it is now, m.
+// A discontinuity does not count here: it makes every zone of the object active by itself.
 double displacement_since_last_tick(const TrackedObject& object) noexcept {
   return object.unseen_since + (object.discontinuous ? 0.0 : object.known_displacement());
 }
@@ -63,21 +63,20 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts,
   arrived_.reserve(bodies_.size());
 }
 
-void BroadPhase::begin(const std::vector<TrackedObject>& objects,
-                       std::span<const std::uint32_t> changed, PairTable& table) noexcept {
+void BroadPhase::begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept {
   largest_advance_ = 0.0;
   advanced_.clear();
   const std::size_t arrived_before = arrived_.size();
   for (double& usual : usual_displacement_)
     usual = usual > kStandstill ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : changed) {
-    const TrackedObject& object = objects[i];
+    const TrackedObject& object = tick.objects[i];
     if (!object.input.has_value) continue;
     Body& body = bodies_[i];
-    if (!(object.displacement < kInfinity)) jump(i, table);
+    if (!(object.displacement < kInfinity)) jump(i, tick.table);
     if (body.idle) continue;
     if (object.moved) body.placed = false;
-    if (!body.arrival.here()) arrive(i, object);
+    if (!body.arrival.has_arrived()) arrive(i, object);
     double by = object.displacement < kInfinity ? object.displacement : 0.0;
     usual_displacement_[i] += kSmoothing * by;
     if (object.may_have_moved < kInfinity) {
@@ -90,7 +89,7 @@ void BroadPhase::begin(const std::vector<TrackedObject>& objects,
     largest_advance_ = std::max(largest_advance_, rounded_up(by));
   }
   take_due(overdue_ ? busy_ : advanced_);
-  // To take in an object that arrives costs as much as to meet a pair.
+  // To take in an arriving object costs as much as to meet a pair.
   const std::size_t arrived = std::min(arrived_.size() - arrived_before, most_met_);
   meet_arrivals(most_met_ - arrived);
 }
@@ -114,19 +113,19 @@ void BroadPhase::activate(std::uint32_t pair) noexcept {
   activated_.push_back(pair);
 }
 
-// Every pair is met once: in the turn of the first of its objects, if the other is there by then;
-// so that pairs are met in the order in which they lie in memory when all objects come at once.
+// Every pair is met once: in the turn of the first of its objects, if the other has arrived by
+// then. So pairs are met in the order in which they lie in memory when all objects arrive at once.
 void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
-    Arrival& own = bodies_[object].arrival;
-    if (met_pairs_ == 0) own.met = static_cast<std::uint32_t>(arrived_.size());
+    Arrival& arrival = bodies_[object].arrival;
+    if (met_pairs_ == 0) arrival.met = static_cast<std::uint32_t>(arrived_.size());
     const auto pairs = by_object_.pairs_of(object), others = by_object_.others_of(object);
     for (; met_pairs_ < pairs.size(); ++met_pairs_) {
       if (activated_.size() >= most) return;
       const Arrival& other = bodies_[others[met_pairs_]].arrival;
-      const bool met_before = other.rank < own.rank && own.rank < other.met;
-      if (met_before || other.rank >= own.met) continue;
+      const bool met_before = other.rank < arrival.rank && arrival.rank < other.met;
+      if (met_before || other.rank >= arrival.met) continue;
       if (!left_out_[pairs[met_pairs_]]) activated_.push_back(pairs[met_pairs_]);
     }
     met_pairs_ = 0;
@@ -134,12 +133,13 @@ void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   }
 }
 
-// Of these objects, and there are none due of others.
+// Takes the pairs that are due by these objects; no other object has timers that are due.
 void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
     return wheels_.take_due(object, most_activated_, activated_);
   });
-  // A timer that is due has been so for no longer than its pair has been overdue.
+  // A timer that is left on its wheel became due in this tick, or its pair waits since an earlier
+  // one, so this tick's advances of both objects are all that W loses.
   const double overtaken = rounded_up(2.0 * largest_advance_);
   const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
   if (!all) overdue_lower_ = rounded_down(lower - overtaken);
@@ -151,9 +151,9 @@ double BroadPhase::waiting_lower() const noexcept {
   return overdue_ ? overdue_lower_ : kInfinity;
 }
 
-// How far two objects are apart that are out of question, m: max(H, Z + U), where Z + U counts the
-// way since the last tick as well, and each with as much more as the pair needs to be looked at
-// well before it is urgent.
+// From this distance on, m, a pair is neither the minimum nor in a zone: max(H, Z + U). Z + U also
+// counts the displacement since the last tick, and each of the two has as much added as the pair
+// needs to be active well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const double urgent = urgent_[a] + urgent_[b];
@@ -176,7 +176,7 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   const double usual = usual_displacement_[a] + usual_displacement_[b];
   if (!(allowance >= kLeastAllowance + kLeastTicks * usual)) return false;
   CLEARANCE_INVARIANT(lower - allowance >= std::max(horizon_, zone_level(pair)));
-  // A fixed object uses nothing of the allowance.
+  // A fixed object needs no part of the allowance.
   if (body_b.fixed) return wheels_.set(2 * pair, a, allowance);
   if (body_a.fixed) return wheels_.set(2 * pair + 1, b, allowance);
   const double share = share_of_a(usual_displacement_[a], usual_displacement_[b]);
@@ -199,7 +199,7 @@ bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
   return wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1);
 }
 
-// D >= H and D - U >= Z, and of pairs whose timers are due D >= W.
+// D >= H and D - U >= Z; only D >= W while some pairs' timers are overdue.
 bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
   if (!is_culled(pair)) return true;
   const TrackedObject& a = *bodies_[object_a_[pair]].state;
@@ -229,7 +229,7 @@ DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 
-// Raising the horizon counts as if every object had moved that far at once.
+// Raising the horizon by d counts as if every object had moved by d.
 void BroadPhase::move_horizon(double to) noexcept {
   if (to > horizon_ && horizon_ > -kInfinity) {
     const double by = rounded_up(to - horizon_);

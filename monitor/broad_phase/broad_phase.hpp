@@ -1,11 +1,11 @@
-// Which pairs need no look this tick, provably? README.md here says why it is done like this.
+// Which pairs can a tick leave alone, provably? README.md here has the proof and the reasons.
 //
-// A pair is culled while its lower bound L, less what its two objects have really moved since,
-// cannot be below the horizon H (no smaller than the minimum over all pairs, if that is certified),
-// and, counting what late ones may have moved unseen (U), neither is nor since the last tick has
-// been below what a zone watches it for (Z). It has a timer on the motion wheels of both objects;
-// the allowance s above those levels is divided between the two. All other pairs are active: looked
-// at in every tick.
+// A pair is culled while its lower bound L, less the displacement of its two objects since then, is
+// not below two levels. The first is the horizon H, which is no smaller than a certified minimum
+// over all pairs. The second is Z + U: the level that the pair's zones watch for, and the
+// unobserved motion of late objects, now and since the last tick. The pair has a timer on the
+// motion wheels of both objects, and the allowance s above those levels is divided between the two.
+// All other pairs are active: they are updated in every tick.
 #pragma once
 
 #include <cstdint>
@@ -14,74 +14,73 @@
 
 #include "monitor/broad_phase/motion_wheel.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
-#include "monitor/pairs/pair_table.hpp"
 #include "monitor/pairs/pairs_by_object.hpp"
+#include "monitor/pairs/tick_view.hpp"
 #include "monitor/zones/zone_levels.hpp"
 
 namespace clearance {
 
 class BroadPhase {
  public:
-  // A pair with a smaller allowance than this, m, and so many ticks of both objects' usual
-  // displacement is cheaper active: it would be back within a few ticks.
+  // A pair is cheaper active when its allowance is less than kLeastAllowance, m, plus kLeastTicks
+  // ticks of both objects' usual displacement: it would be back within a few ticks.
   static constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
   static constexpr double kLeastTicks = 4.0;
 
-  // `urgent`: by object, m: a pair nearer than that of both together, or that near to its zone
-  // level, is active. `left_out`: pairs that are looked at anyway, in ascending order.
-  // `most_activated`: pairs that may be activated a tick, half as many by meeting for the first
-  // time; the others wait, and waiting_lower() is all that is known of them.
+  // `urgent`: by object, m: a pair is active when its distance, to zero or to its zone level, is
+  // less than that of both its objects together. `left_out`: pairs that every tick updates anyway,
+  // in ascending order. `most_activated`: how many pairs a tick may activate, half of them by
+  // meeting for the first time. The others wait, and only waiting_lower() is known of them.
   BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, const ZoneLevels& zone_levels,
              std::vector<double> urgent, std::span<const std::uint32_t> left_out,
              std::size_t most_activated);
 
-  // Takes in how the objects have moved. Pairs whose allowance may be used up, whose objects were
-  // seen for the first time or have made a discontinuity, are in activated() afterwards. `objects`
-  // stay where they are until the next tick. Bounds of pairs whose objects have made a
-  // discontinuity are forgotten.
-  // `changed`: at least the objects that have moved, or may have moved farther unseen, or less.
-  void begin(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
-             PairTable& table) noexcept;
+  // Takes in how the objects have moved. Afterwards activated() has the pairs whose allowance may
+  // be used up, whose objects are new, or whose objects have made a discontinuity; the bounds of
+  // the last ones are forgotten. The tick's objects stay where they are until the next tick.
+  // `changed`: at least the objects that have moved, or whose unobserved motion is not what it was.
+  void begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept;
 
-  // Activated and not decided about; in this tick's order.
+  // Pairs that are activated and not decided about, in this tick's order.
   [[nodiscard]] std::span<const std::uint32_t> activated() const noexcept { return activated_; }
   void clear_activated() noexcept { activated_.clear(); }
 
-  // Culls a pair whose lower bound L for the poses in use is `lower`, m. False: that is too near
-  // its levels, or no horizon has been set.
+  // Culls a pair whose lower bound L for the poses in use is `lower`, m. False: L is too near to
+  // the pair's levels, or no horizon has been set.
   bool cull(std::uint32_t pair, double lower) noexcept;
 
-  // Whether a pair that far apart, m, is out of question now: not the minimum, nor in a zone.
+  // Whether a pair with this lower bound, m, is neither the minimum nor in a zone now.
   [[nodiscard]] bool is_far(std::uint32_t pair, double lower) const noexcept;
 
-  // The pair's distance as far as the bounding spheres tell, for the poses in use, m.
+  // Bounds of the pair's distance by its objects' bounding spheres, for the poses in use, m.
   [[nodiscard]] DistanceBounds by_spheres(std::uint32_t pair) noexcept;
 
   [[nodiscard]] double horizon() const noexcept { return horizon_; }
-  // Lowering is free; raising activates the pairs that it overtakes. m; -infinity: not set.
+  // Lowering is free; raising activates the pairs that it overtakes. In m; -infinity: not set.
   void move_horizon(double to) noexcept;
 
-  // Some pairs had to wait: W, all that is known of these, m, for the poses in use. Infinity: none.
+  // W: the lower bound of all pairs that wait, for the poses in use, m. Infinity: no pair waits.
   [[nodiscard]] double waiting_lower() const noexcept;
   [[nodiscard]] bool any_waits() const noexcept { return overdue_ || !everyone_met(); }
-  // No pair waits to be looked at for the first time.
+  // No pair waits to be met for the first time.
   [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
 
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
   [[nodiscard]] const PairsByObject& by_object() const noexcept { return by_object_; }
 
-  // The invariant does not forbid that this pair, no farther apart than `upper`, m, is culled if it
-  // is. And a look at a few of the culled pairs, others in each tick, by the spheres around their
-  // objects.
+  // Whether the invariant holds for this pair, whose distance is at most `upper`, m: it is not
+  // culled, or it may be.
   [[nodiscard]] bool may_be_culled(std::uint32_t pair, double upper) const noexcept;
+  // Checks a few pairs, others in each tick, by the spheres around their objects.
   void check_some() noexcept;
 
  private:
-  // An object whose pairs have to be looked at for the first time: with those that came before.
+  // When an object was first known, among all objects: its pairs with those that came before it
+  // are to be met.
   struct Arrival {
     std::uint32_t rank = ~0u;
-    std::uint32_t met = 0;  // in its turn it met those of lower rank than this
-    bool here() const noexcept { return rank != ~0u; }
+    std::uint32_t met = 0;  // in its turn it met the objects of a lower rank than this
+    [[nodiscard]] bool has_arrived() const noexcept { return rank != ~0u; }
   };
   static constexpr std::uint32_t kCheckedPerTick = 4;
   struct Body {
@@ -91,7 +90,7 @@ class BroadPhase {
     bool placed = false;
     bool fixed = false;
     bool idle = true;             // all its pairs are left out
-    double may_have_moved = 0.0;  // as of the last tick in which that was known, m
+    double may_have_moved = 0.0;  // as of the last tick in which it was finite, m
     Arrival arrival;
   };
 
@@ -107,7 +106,7 @@ class BroadPhase {
 
   const std::size_t most_activated_, most_met_;  // a tick
   std::vector<Body> bodies_;
-  // By object, m a tick, smoothed: divides allowances, proves nothing.
+  // By object, m a tick, smoothed. It divides allowances and proves nothing.
   std::vector<double> usual_displacement_;
   std::vector<std::uint32_t> object_a_, object_b_;  // by pair
   std::vector<std::uint8_t> left_out_;              // by pair
@@ -118,8 +117,8 @@ class BroadPhase {
   double horizon_ = -kInfinity;  // H, m
   std::vector<std::uint32_t> activated_;
   std::vector<std::uint32_t> busy_;      // objects with pairs that are not left out
-  std::vector<std::uint32_t> advanced_;  // those whose wheels have turned in this tick
-  std::vector<std::uint32_t> arrived_;   // objects, in order; those before met_ had their turn
+  std::vector<std::uint32_t> advanced_;  // objects whose wheels have advanced in this tick
+  std::vector<std::uint32_t> arrived_;   // objects in their order; met_ of them had their turn
   std::size_t met_ = 0, met_pairs_ = 0;
   double largest_advance_ = 0.0;  // of any wheel this tick, m
   bool overdue_ = false;          // timers that are due are still on the wheels

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/scene/topics.hpp"
+#include "config/cell/topics.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"

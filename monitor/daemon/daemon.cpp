@@ -45,22 +45,22 @@ MonitorOptions monitor_options(const DaemonOptions& options) {
   return {.workers = options.workers, .on_worker_start = start};
 }
 
-std::unique_ptr<Recording> open_recording(const Scene& scene, const DaemonOptions& options,
+std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions& options,
                                           const PoseReader& poses, RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
-  return std::make_unique<Recording>(options.record_file, options.recording, scene, poses, health);
+  return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
 }
 
-std::unique_ptr<RosWriter> open_ros(const Scene& scene, Participant& participant,
+std::unique_ptr<RosWriter> open_ros(const Cell& cell, Participant& participant,
                                     const PoseReader& poses, const ReportQueue& published,
                                     const RecordingHealth& health) {
-  if (!writes_ros(scene)) return nullptr;
-  return std::make_unique<RosWriter>(scene, participant, poses, published, health);
+  if (!writes_ros(cell)) return nullptr;
+  return std::make_unique<RosWriter>(cell, participant, poses, published, health);
 }
 
 // ROS 2 knows the default partition only.
-void warn_of_partition(const Scene& scene, const DdsOptions& options) {
-  const bool wants_ros = writes_ros(scene) || TrackedFrames(scene).any();
+void warn_of_partition(const Cell& cell, const DdsOptions& options) {
+  const bool wants_ros = writes_ros(cell) || TrackedFrames(cell).any();
   if (options.partition.empty() || !wants_ros) return;
   spdlog::warn("in partition {} neither tf nor what is written for ROS 2 reaches a node of ROS 2",
                options.partition);
@@ -69,23 +69,25 @@ void warn_of_partition(const Scene& scene, const DdsOptions& options) {
 }  // namespace
 
 // Members are made in the order of their dependencies: ports before the loop that uses them.
-Daemon::Daemon(const Scene& scene, const DaemonOptions& options)
-    : scene_(scene),
+Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
+    : cell_(cell),
+      scene_(cell.scene),
       options_(options),
       participant_(prepare_threads(options)),
-      poses_(scene, participant_),
-      publish_queue_(scene, {.reports = kQueuedReports}),
-      reports_(scene, participant_, publish_queue_, poses_, recording_health_),
-      recording_(open_recording(scene, options, poses_, recording_health_)),
-      ros_(open_ros(scene, participant_, poses_, publish_queue_, recording_health_)) {
-  const TickLoopOptions loop{.max_ticks = options.max_ticks,
-                             .max_samples = kBatchesATick * (PoseReader::samples_a_batch(scene) +
-                                                             PoseReader::joints_a_batch(scene)),
-                             .monitor = monitor_options(options)};
+      poses_(cell, participant_),
+      publish_queue_(cell.scene, {.reports = kQueuedReports}),
+      reports_(cell, participant_, publish_queue_, poses_, recording_health_),
+      recording_(open_recording(cell, options, poses_, recording_health_)),
+      ros_(open_ros(cell, participant_, poses_, publish_queue_, recording_health_)) {
+  const TickLoopOptions loop{
+      .max_ticks = options.max_ticks,
+      .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
+                                      PoseReader::joints_a_batch(cell.scene)),
+      .monitor = monitor_options(options)};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
   if (ros_) sinks.push_back(ros_.get());
-  loop_ = std::make_unique<TickLoop>(scene, poses_, std::move(sinks), clock_, loop);
+  loop_ = std::make_unique<TickLoop>(cell.scene, poses_, std::move(sinks), clock_, loop);
 }
 
 // The loop ticks in its own thread; this one waits for signals and watches the recording.
@@ -95,7 +97,7 @@ void Daemon::run(StopSignal& signal) {
   spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
                scene_.rate_hz, participant_.where());
   spdlog::info("{}", participant_.how_to_reach());
-  warn_of_partition(scene_, options_.dds);
+  warn_of_partition(cell_, options_.dds);
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/pose_reader.hpp"
@@ -36,7 +36,7 @@ class Daemon {
  public:
   // Joins DDS and announces the catalogue. Throws DdsError, and RecordError when the
   // recording cannot be made.
-  Daemon(const Scene& scene, const DaemonOptions& options);
+  Daemon(const Cell& cell, const DaemonOptions& options);
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
@@ -57,6 +57,7 @@ class Daemon {
  private:
   void tick_thread(std::atomic<bool>& done);
 
+  const Cell& cell_;
   const Scene& scene_;
   DaemonOptions options_;
   Participant participant_;

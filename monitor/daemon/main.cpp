@@ -104,17 +104,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
 
 // --check: the same reader as for a run, so what passes here starts.
 int check_only(const CellArguments& cell) {
-  const auto scene = scene_or_errors(cell.read());
-  if (!scene) return kBadCell;
-  print(stdout, "{}\n", summary(*scene));
+  const auto read = cell_or_errors(cell.read());
+  if (!read) return kBadCell;
+  print(stdout, "{}\n", summary(read->scene));
   return kOk;
 }
 
 // The summary goes to stdout at the end, the log to stderr all the time.
-int run_daemon(const Scene& scene, Arguments& arguments, StopSignal& signal) {
-  arguments.daemon.dds = arguments.dds.resolve(scene);
+int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
+  arguments.daemon.dds = arguments.dds.resolve(cell);
   route_dds_log();
-  Daemon daemon(scene, arguments.daemon);
+  Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
   write_text(stdout, daemon.summary(), Patience::kBrief);
   if (daemon.recording_hangs()) {
@@ -155,12 +155,12 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!arguments.cell.description_topic.empty()) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }
-  auto scene = scene_or_errors(arguments.cell.read());
-  if (!scene) return kBadCell;
-  scene->gradients = scene->gradients || arguments.gradients;
-  add_ros_outputs(arguments.ros, scene->ros.outputs);
+  auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return kBadCell;
+  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
+  add_ros_outputs(arguments.ros, cell->ros.outputs);
   if (arguments.check) {
-    print(stdout, "{}\n", summary(*scene));
+    print(stdout, "{}\n", summary(cell->scene));
     return kOk;
   }
   for (const std::filesystem::path& file : arguments.cell.files()) {
@@ -175,7 +175,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     arguments.daemon.record_file = *record_file;
   }
   arguments.daemon.recording = arguments.recording.options(arguments.record_over);
-  return run_daemon(*scene, arguments, signal);
+  return run_daemon(*cell, arguments, signal);
 }
 
 // As kFooter says.

@@ -43,13 +43,13 @@ ReportQueueOptions queue_options(const Scene& scene) {
 
 // The file and its catalogue are written before the first tick, so that errors come at the start.
 Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
-                     const Scene& scene, const PoseReader& poses, RecordingHealth& health)
-    : scene_(scene),
+                     const Cell& cell, const PoseReader& poses, RecordingHealth& health)
+    : scene_(cell.scene),
       file_(file.string()),
       poses_(poses),
       health_(health),
-      queue_(scene, queue_options(scene)),
-      recorder_(file, scene, SystemClock().realtime_ns(), options) {
+      queue_(cell.scene, queue_options(cell.scene)),
+      recorder_(file, cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   if (!recorder_.without_files().empty()) {
     spdlog::warn(

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/report_queue.hpp"
@@ -28,7 +28,7 @@ class Recording {
  public:
   // Throws RecordError when the file cannot be made, is no regular file, or is there already and
   // not to be written over.
-  Recording(const std::filesystem::path& file, const RecordingOptions& options, const Scene& scene,
+  Recording(const std::filesystem::path& file, const RecordingOptions& options, const Cell& cell,
             const PoseReader& poses, RecordingHealth& health);
   ~Recording();
   Recording(const Recording&) = delete;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/participant/participant.hpp"
 
@@ -55,13 +55,13 @@ struct DdsArguments {
   }
 
   // The options with the command line before the cell, or without one.
-  [[nodiscard]] DdsOptions resolve(const Scene& scene) const {
-    return {.domain = domain.value_or(scene.domain),
-            .partition = partition.value_or(scene.partition),
-            .interface = interface.value_or(scene.interface),
+  [[nodiscard]] DdsOptions resolve(const Cell& cell) const {
+    return {.domain = domain.value_or(cell.domain),
+            .partition = partition.value_or(cell.partition),
+            .interface = interface.value_or(cell.interface),
             .peers = peers};
   }
-  [[nodiscard]] DdsOptions resolve() const { return resolve(Scene{}); }
+  [[nodiscard]] DdsOptions resolve() const { return resolve(Cell{}); }
 };
 
 // The exit code of a program that uses DDS and was ended by this exception.

@@ -68,25 +68,25 @@ std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
 
 // All memory is reserved before the thread starts; only what is heard for the first time allocates
 // later.
-PoseReader::PoseReader(const Scene& scene, Participant& participant)
-    : scene_(scene),
+PoseReader::PoseReader(const Cell& cell, Participant& participant)
+    : topics_(cell.topics),
       undecodable_before_(undecodable_samples()),
       where_(participant.where()),
-      intake_(scene,
+      intake_(cell,
               {.admits_sources = true,
-               .most_samples = samples_a_batch(scene),
-               .most_joints = joints_a_batch(scene),
+               .most_samples = samples_a_batch(cell.scene),
+               .most_joints = joints_a_batch(cell.scene),
                .writer_name = [this](std::uint64_t writer) { return guid_of(writer); }},
               [this](PoseBatch& batch) { return hand_over(batch); }),
       ros_(participant, intake_),
       wait_(participant, {}),
       ring_(kBatches) {
   open(participant, TopicKind::kPoses);
-  if (!scene.robots.empty()) open(participant, TopicKind::kJointStates);
+  if (!cell.scene.robots.empty()) open(participant, TopicKind::kJointStates);
   wait_.add(ros_.present().reader());
   ring_.prepare([&](PoseBatch& slot) {
-    slot.samples.resize(samples_a_batch(scene));
-    slot.joints.resize(joints_a_batch(scene));
+    slot.samples.resize(samples_a_batch(cell.scene));
+    slot.joints.resize(joints_a_batch(cell.scene));
   });
   thread_ = std::thread([this] { run(); });
 }
@@ -101,7 +101,7 @@ void PoseReader::open(Participant& participant, TopicKind kind) {
   const dds_topic_filter filter{
       .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
   const dds_entity_t reader =
-      participant.reader(kind, scene_.topics.*topic(kind).name, kDepth, listener, &filter);
+      participant.reader(kind, topics_.*topic(kind).name, kDepth, listener, &filter);
   dds_delete_listener(listener);
   own_.push_back({reader, intake_.topic(kind)->number});
   wait_.add(reader);
@@ -166,7 +166,7 @@ std::string PoseReader::senders_of_joints() const {
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
       "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
       "(rmw_zenoh)",
-      scene_.topics.joint_states, where_, ros_.present().listed(), ros_domain());
+      topics_.joint_states, where_, ros_.present().listed(), ros_domain());
 }
 
 // Waits for data, for the time at which the intake wants to settle, or for the destructor.

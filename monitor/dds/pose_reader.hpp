@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/intake/intake.hpp"
@@ -31,8 +31,8 @@ class PoseReader final : public PoseSource {
   // Samples of a source that may arrive while the taking thread is held up.
   static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
-  // Starts the thread. Scene and participant must outlive this.
-  PoseReader(const Scene& scene, Participant& participant);
+  // Starts the thread. Cell and participant must outlive this.
+  PoseReader(const Cell& cell, Participant& participant);
   ~PoseReader() override;
 
   const PoseBatch* next() noexcept override;
@@ -67,7 +67,7 @@ class PoseReader final : public PoseSource {
   void log_news();
   [[nodiscard]] std::string guid_of(std::uint64_t writer) const;
 
-  const Scene& scene_;
+  const Topics& topics_;
   std::uint64_t undecodable_before_;
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};

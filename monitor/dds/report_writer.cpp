@@ -61,12 +61,12 @@ std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint
 }
 
 // The name of the topic is the cell's, which the table points to.
-dds_entity_t make_writer(Participant& participant, const Scene& scene, TopicKind kind,
+dds_entity_t make_writer(Participant& participant, const Topics& topics, TopicKind kind,
                          WriterOptions options = {}) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_offered_incompatible_qos(listener, log_incompatible);
   options.listener = listener;
-  const dds_entity_t writer = participant.writer(kind, scene.topics.*topic(kind).name, options);
+  const dds_entity_t writer = participant.writer(kind, topics.*topic(kind).name, options);
   dds_delete_listener(listener);
   return writer;
 }
@@ -78,31 +78,32 @@ std::int64_t lease_ns(double rate_hz) noexcept {
 }
 
 // The catalogue is latched: clients that come later get it as well.
-ReportWriter::ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
+ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording)
-    : scene_(scene),
+    : cell_(cell),
+      scene_(cell.scene),
       queue_(queue),
       poses_(poses),
       recording_(recording),
       identity_(make_identity()),
-      distances_(
-          make_writer(participant, scene, TopicKind::kDistances,
-                      {.lease_ns = lease_ns(scene.rate_hz), .user_data = to_user_data(identity_)})),
-      catalogue_(make_writer(participant, scene, TopicKind::kCatalogue)),
-      zones_(make_writer(participant, scene, TopicKind::kZones)),
-      health_(make_writer(participant, scene, TopicKind::kHealth)),
-      separation_(separated_count(scene).zones == 0
+      distances_(make_writer(
+          participant, cell.topics, TopicKind::kDistances,
+          {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
+      catalogue_(make_writer(participant, cell.topics, TopicKind::kCatalogue)),
+      zones_(make_writer(participant, cell.topics, TopicKind::kZones)),
+      health_(make_writer(participant, cell.topics, TopicKind::kHealth)),
+      separation_(separated_count(cell.scene).zones == 0
                       ? 0
-                      : make_writer(participant, scene, TopicKind::kSeparation)),
-      gradients_(scene.gradients ? make_writer(participant, scene, TopicKind::kGradients,
-                                               {.lease_ns = lease_ns(scene.rate_hz)})
-                                 : 0),
-      others_(participant, scene.topics.distances, identity_),
-      distances_sample_(make_distances(scene)),
-      separation_sample_(make_separation(scene)),
-      gradient_message_(scene),
-      written_zones_(scene.zones.size()),
-      health_log_(scene) {
+                      : make_writer(participant, cell.topics, TopicKind::kSeparation)),
+      gradients_(cell.scene.gradients ? make_writer(participant, cell.topics, TopicKind::kGradients,
+                                                    {.lease_ns = lease_ns(cell.scene.rate_hz)})
+                                      : 0),
+      others_(participant, cell.topics.distances, identity_),
+      distances_sample_(make_distances(cell.scene)),
+      separation_sample_(make_separation(cell.scene)),
+      gradient_message_(cell.scene),
+      written_zones_(cell.scene.zones.size()),
+      health_log_(cell.scene) {
   distances_sample_->daemon = separation_sample_->daemon = identity_.id;
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
@@ -126,7 +127,7 @@ std::uint32_t ReportWriter::distance_readers() const {
 }
 
 Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
-  auto catalogue = make_catalogue(scene_);
+  auto catalogue = make_catalogue(cell_);
   catalogue->daemon = identity_.id;
   return catalogue;
 }

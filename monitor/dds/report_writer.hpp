@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"
@@ -28,7 +28,7 @@ namespace clearance {
 class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.
-  ReportWriter(const Scene& scene, Participant& participant, ReportQueue& queue,
+  ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
@@ -51,6 +51,7 @@ class ReportWriter {
   void write_health(const LoopStatistics& statistics);
   void write(dds_entity_t writer, const void* sample, const char* what);
 
+  const Cell& cell_;
   const Scene& scene_;
   ReportQueue& queue_;
   const PoseReader& poses_;

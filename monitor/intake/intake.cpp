@@ -10,28 +10,31 @@
 
 namespace clearance {
 
-// A row for every kind of input.
-Intake::Intake(const Scene& scene, IntakeOptions options, Use use)
-    : scene_(scene),
+Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
+    : scene_(cell.scene),
+      topics_(cell.topics),
       options_(std::move(options)),
       use_(std::move(use)),
-      sources_(named_sources(scene)),
-      slow_(scene) {
-  const OtherClock other = options_.is_log ? OtherClock::kReplaced : OtherClock::kTold;
-  const TransformsFrom from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
-  auto joint_states =
-      std::make_unique<RosJointStates>(scene,
-                                       RosJointStatesOptions{.topics = options_.joint_topics,
-                                                             .other_clock = other,
-                                                             .most_joints = options_.most_joints},
-                                       *this);
-  auto transforms = std::make_unique<RosTransforms>(scene, from, *this);
-  joint_states_ = joint_states.get();
-  transforms_ = transforms.get();
-  decoders_.push_back(std::make_unique<OwnPoses>(scene, options_.most_samples, *this));
-  decoders_.push_back(std::make_unique<OwnJointStates>(scene, options_.most_joints, *this));
-  decoders_.push_back(std::move(joint_states));
-  decoders_.push_back(std::move(transforms));
+      sources_(named_sources(cell.scene)),
+      slow_(cell.scene) {
+  const RosJointStatesOptions joint_states{
+      .topics = options_.joint_topics,
+      .other_clock = options_.is_log ? OtherClock::kReplaced : OtherClock::kTold,
+      .most_joints = options_.most_joints};
+  const auto from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
+  // A row for every kind of input.
+  add<OwnPoses>(topics_.poses, options_.most_samples, *this);
+  add<OwnJointStates>(scene_, topics_.joint_states, options_.most_joints, *this);
+  joint_states_ = add<RosJointStates>(scene_, joint_states, *this);
+  transforms_ = add<RosTransforms>(cell, from, *this);
+}
+
+template <class Kind, class... Arguments>
+const Kind* Intake::add(Arguments&&... arguments) {
+  auto decoder = std::make_unique<Kind>(std::forward<Arguments>(arguments)...);
+  const Kind* const added = decoder.get();
+  decoders_.push_back(std::move(decoder));
+  return added;
 }
 
 std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
@@ -52,7 +55,7 @@ std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
 
 std::optional<Intake::Topic> Intake::topic(TopicKind kind) {
   const clearance::Topic& row = clearance::topic(kind);
-  return topic({scene_.topics.*row.name, row.type->m_typename});
+  return topic({topics_.*row.name, row.type->m_typename});
 }
 
 bool Intake::take(const RawMessage& message, const Now& now) {

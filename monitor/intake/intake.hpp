@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
 #include "monitor/intake/pose_sources.hpp"
 #include "monitor/intake/ros_joint_states.hpp"
@@ -47,8 +47,8 @@ class Intake final : public Outlet {
   // no room for it, it is lost.
   using Use = std::function<bool(PoseBatch& batch)>;
 
-  // The scene must outlive this.
-  Intake(const Scene& scene, IntakeOptions options, Use use);
+  // The cell must outlive this.
+  Intake(const Cell& cell, IntakeOptions options, Use use);
 
   struct Topic {
     std::uint32_t number = 0;           // for RawMessage::topic
@@ -56,7 +56,7 @@ class Intake final : public Outlet {
   };
   // Nothing: the topic says nothing that the cell could use.
   [[nodiscard]] std::optional<Topic> topic(const TopicName& name);
-  // One of our own, as the scene names it.
+  // One of our own, as the cell names it.
   [[nodiscard]] std::optional<Topic> topic(TopicKind kind);
 
   // False: the bytes are no message of the topic's type.
@@ -84,6 +84,8 @@ class Intake final : public Outlet {
     TopicCounts counts;
   };
 
+  template <class Kind, class... Arguments>
+  const Kind* add(Arguments&&... arguments);
   void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) override;
   void tell(News news) override { news_.push_back(std::move(news)); }
   // Null: refused.
@@ -91,11 +93,12 @@ class Intake final : public Outlet {
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
   const Scene& scene_;
+  const Topics& topics_;
   IntakeOptions options_;
   Use use_;
   std::vector<std::unique_ptr<Decoder>> decoders_;
-  RosJointStates* joint_states_ = nullptr;                                // of decoders_
-  RosTransforms* transforms_ = nullptr;                                   // of decoders_
+  const RosJointStates* joint_states_ = nullptr;                          // of decoders_
+  const RosTransforms* transforms_ = nullptr;                             // of decoders_
   std::vector<Route> routes_;                                             // by number of the topic
   std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;  // by name and type
   PoseSources sources_;

@@ -3,21 +3,20 @@
 #include <algorithm>
 
 #include "monitor/wire/convert.hpp"
-#include "monitor/wire/topics.hpp"
 
 namespace clearance {
 namespace {
 
-std::optional<Decoder::Wanted> wanted(const TopicName& name, TopicKind kind, const Scene& scene) {
-  const bool is_it =
-      name.name == scene.topics.*topic(kind).name && name.type == topic(kind).type->m_typename;
+std::optional<Decoder::Wanted> wanted(const TopicName& name, const std::string& ours,
+                                      TopicKind kind) {
+  const bool is_it = name.name == ours && name.type == topic(kind).type->m_typename;
   return is_it ? std::optional(Decoder::Wanted{}) : std::nullopt;
 }
 
 }  // namespace
 
 std::optional<Decoder::Wanted> OwnPoses::wants(const TopicName& topic) {
-  return wanted(topic, TopicKind::kPoses, scene_);
+  return wanted(topic, topic_, TopicKind::kPoses);
 }
 
 bool OwnPoses::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
@@ -30,7 +29,7 @@ bool OwnPoses::decode(std::uint32_t, const RawMessage& message, const Now&, Topi
 }
 
 std::optional<Decoder::Wanted> OwnJointStates::wants(const TopicName& topic) {
-  return wanted(topic, TopicKind::kJointStates, scene_);
+  return wanted(topic, topic_, TopicKind::kJointStates);
 }
 
 bool OwnJointStates::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
@@ -41,6 +40,14 @@ bool OwnJointStates::decode(std::uint32_t, const RawMessage& message, const Now&
   batch_.joints.resize(used);
   out_.give(batch_, message.writer, cut);
   return true;
+}
+
+PoseBatch* OwnBatches::decode(TopicKind kind, std::span<const std::byte> cdr) {
+  given_ = nullptr;
+  TopicCounts counts;
+  Decoder& decoder = kind == TopicKind::kPoses ? static_cast<Decoder&>(poses_) : joint_states_;
+  static_cast<void>(decoder.decode(0, {.cdr = cdr}, {}, counts));
+  return given_;
 }
 
 }  // namespace clearance

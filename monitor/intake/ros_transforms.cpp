@@ -47,12 +47,12 @@ std::string circle_of(const TfTree& tree, const std::string& frame) {
 
 }  // namespace
 
-RosTransforms::RosTransforms(const Scene& scene, TransformsFrom from, Outlet& out)
-    : scene_(scene),
+RosTransforms::RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out)
+    : ros_(cell.ros),
       from_(from),
       out_(out),
-      frames_(scene, from == TransformsFrom::kLog ? TrackedFrames::ByName::kYes
-                                                  : TrackedFrames::ByName::kNo),
+      frames_(cell, from == TransformsFrom::kLog ? TrackedFrames::ByName::kYes
+                                                 : TrackedFrames::ByName::kNo),
       following_(frames_.followers().size(), Following{.state = State::kMissing}) {}
 
 // A topic of transforms is /tf or /tf_static; of a log, in any namespace. Both are one source.
@@ -109,7 +109,7 @@ void RosTransforms::take(const Transform& transform, const Topic& topic, const R
     const OtherClock other =
         from_ == TransformsFrom::kLog ? OtherClock::kReplaced : OtherClock::kTold;
     link.stamp_ns = stamps_[message.writer].time_of(
-        stamp_ns(transform.header), message.sent_ns, scene_.ros.stamps, other, counts, out_,
+        stamp_ns(transform.header), message.sent_ns, ros_.stamps, other, counts, out_,
         [&]() -> StampCheck::Whose {
           return {fmt::format("transforms of frame '{}'", child), "'stamps: sent' of 'ros2'"};
         });
@@ -272,7 +272,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
       std::string root;
       static_cast<void>(frames_.find(tree_, follower.frame, &root));
       return fmt::format("whose transforms lead to '{}' and not to the world_frame '{}'", root,
-                         scene_.ros.world_frame);
+                         ros_.world_frame);
     }
   }
   return "";
@@ -281,7 +281,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
 std::vector<std::string> RosTransforms::worlds() const {
   std::vector<std::string> worlds;
   for (const std::string& root : roots_) {
-    if (!frames_.is_root_link(root) && root != scene_.ros.world()) worlds.push_back(root);
+    if (!frames_.is_root_link(root) && root != ros_.world()) worlds.push_back(root);
   }
   return worlds;
 }

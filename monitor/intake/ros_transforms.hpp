@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
 #include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tracked_frames.hpp"
@@ -35,8 +35,8 @@ class RosTransforms final : public Decoder {
   // What is missing for this long is told.
   static constexpr std::int64_t kMissingNs = 5'000'000'000;
 
-  // The scene and the outlet must outlive this.
-  RosTransforms(const Scene& scene, TransformsFrom from, Outlet& out);
+  // The cell and the outlet must outlive this.
+  RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out);
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
@@ -85,7 +85,7 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::string what_is_wrong(const TrackedFrames::Follower& follower,
                                           State state) const;
 
-  const Scene& scene_;
+  const RosSettings& ros_;
   TransformsFrom from_;
   Outlet& out_;
   TrackedFrames frames_;

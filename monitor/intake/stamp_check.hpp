@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "config/scene/ros_settings.hpp"
+#include "config/scene/ros_stamps.hpp"
 #include "monitor/intake/decoder.hpp"
 
 namespace clearance {

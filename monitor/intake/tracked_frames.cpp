@@ -5,7 +5,9 @@
 
 namespace clearance {
 
-TrackedFrames::TrackedFrames(const Scene& scene, ByName by_name) : scene_(scene) {
+TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
+    : scene_(cell.scene), world_frame_(cell.ros.world_frame) {
+  const Scene& scene = cell.scene;
   std::set<std::uint32_t> links;
   for (const Robot& robot : scene.robots) {
     for (const RobotLink& link : robot.links) links.insert(link.object);
@@ -32,7 +34,7 @@ TrackedFrames::TrackedFrames(const Scene& scene, ByName by_name) : scene_(scene)
 
 std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::string& frame,
                                                  std::string* root) const {
-  auto place = tree.find(frame, scene_.ros.world_frame);
+  auto place = tree.find(frame, world_frame_);
   if (!place) return std::nullopt;
   if (root != nullptr) *root = place->root;
   if (const auto robot = world_from_root_link_.find(place->root);
@@ -40,7 +42,7 @@ std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::
     place->root_from_frame = compose(robot->second, place->root_from_frame);
     return place;
   }
-  const bool is_world = scene_.ros.world_frame.empty() || place->root == scene_.ros.world_frame;
+  const bool is_world = world_frame_.empty() || place->root == world_frame_;
   return is_world ? place : std::nullopt;
 }
 

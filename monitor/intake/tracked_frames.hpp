@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/tf_tree.hpp"
 
@@ -28,8 +28,8 @@ class TrackedFrames {
   // Whether moving objects that name no frame, and are no links, follow the frame of their name.
   enum class ByName : std::uint8_t { kNo, kYes };
 
-  // The scene must outlive this.
-  explicit TrackedFrames(const Scene& scene, ByName by_name = ByName::kNo);
+  // The cell must outlive this.
+  explicit TrackedFrames(const Cell& cell, ByName by_name = ByName::kNo);
 
   struct Follower {
     std::string frame;
@@ -58,6 +58,7 @@ class TrackedFrames {
 
  private:
   const Scene& scene_;
+  const std::string& world_frame_;  // RosSettings::world_frame
   std::vector<Follower> followers_;
   std::vector<Eigen::Quaterniond> last_;  // orientation that was added last, by follower
   std::map<std::string, Pose> world_from_root_link_;

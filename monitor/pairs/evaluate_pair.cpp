@@ -5,42 +5,45 @@
 #include "core/model/radii.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/motion/swept_bound.hpp"
+#include "monitor/pairs/carried_bounds.hpp"
 #include "monitor/pairs/carried_gap.hpp"
 
 namespace clearance {
 namespace {
 
-DistanceResult ask(std::uint32_t part_pair, const Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
-  const PosedPart& a = evaluation.parts[table.part_a[part_pair]];
-  const PosedPart& b = evaluation.parts[table.part_b[part_pair]];
+DistanceResult query_distance(std::uint32_t part_pair, const OpenTick& tick) noexcept {
+  PairTable& table = tick.table;
+  const PosedPart& a = tick.parts[table.part_a[part_pair]];
+  const PosedPart& b = tick.parts[table.part_b[part_pair]];
   return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part,
                   table.tracking[part_pair]);
 }
 
-// How far both objects have come since the last tick, added up.
+// The motion of both objects since the last tick, added up.
 struct PairMotion {
-  double displacement, bend;  // m; the latter a sum not rounded up
+  double displacement, bend;  // TrackedObject, m; the sum of the bends is not rounded up
 };
 
-inline PairMotion motion_since_last_tick(const PairEntry& entry,
-                                         const Evaluation& evaluation) noexcept {
-  const TrackedObject& a = evaluation.objects[entry.object_a];
-  const TrackedObject& b = evaluation.objects[entry.object_b];
+inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView& view) noexcept {
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
   return {rounded_up(a.displacement + b.displacement), a.bend + b.bend};
 }
 
-// Returns what the directions of this evaluation and of one in the last tick tell of the time
-// between them.
-// point_on_b: the witness point in B's own frame, before the radius. Through A's frame it would be
-// off by what rounding makes of how far the two are apart. `known`: bounds of the part pair before.
-inline double take_in(const DistanceResult& found, const Vec3& point_on_b,
-                      const DistanceBounds& known, std::uint32_t part_pair,
-                      const PairMotion& motion, const Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
-  const PosedPart& a = evaluation.parts[table.part_a[part_pair]];
-  const PosedPart& b = evaluation.parts[table.part_b[part_pair]];
-  // What was carried is true as well, and a query that was cut short may know less.
+// Writes a query's answer into the table. Returns a lower bound of the distance since the last
+// tick, from the directions of this evaluation and of one in the last tick; -infinity: they prove
+// none.
+//
+// `point_on_b` is the witness point in B's local frame, without B's radius: through A's frame it
+// would be rounded by the distance between the two. `known`: bounds of the part pair before the
+// query.
+inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
+                           const DistanceBounds& known, std::uint32_t part_pair,
+                           const PairMotion& motion, const OpenTick& tick) noexcept {
+  PairTable& table = tick.table;
+  const PosedPart& a = tick.parts[table.part_a[part_pair]];
+  const PosedPart& b = tick.parts[table.part_b[part_pair]];
+  // The carried bounds are true as well, and a query that was cut short may be looser.
   const DistanceBounds bounds = for_exact_poses(found, a, b);
   const double lower = std::max(known.lower, bounds.lower);
   const double upper = std::min(known.upper, bounds.upper);
@@ -59,46 +62,45 @@ inline double take_in(const DistanceResult& found, const Vec3& point_on_b,
   closest.witness_b = on_rounded_b(on_b, closest.normal, *b.shape);
   table.gap[part_pair] = kept_gap(bounds.lower, closest.normal, a, b);
   table.status[part_pair] = found.status;
-  const bool was_last_tick = table.part_pair_evaluated_cycle[part_pair] + 1 == evaluation.cycle;
-  table.part_pair_evaluated_cycle[part_pair] = evaluation.cycle;
+  const bool was_last_tick = table.part_pair_evaluated_cycle[part_pair] + 1 == tick.cycle;
+  table.part_pair_evaluated_cycle[part_pair] = tick.cycle;
   if (!was_last_tick) return -kInfinity;
   return lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
                              motion.displacement, motion.bend);
 }
 
-double query(std::uint32_t part_pair, const PairMotion& motion, Evaluation& evaluation) noexcept {
-  const DistanceResult found = ask(part_pair, evaluation);
-  const PairTable& table = evaluation.table;
+// Queries a part pair; returns what write_answer() does.
+double query_part_pair(std::uint32_t part_pair, const PairMotion& motion, const OpenTick& tick,
+                       Budget& budget) noexcept {
+  const DistanceResult found = query_distance(part_pair, tick);
+  const PairTable& table = tick.pairs;
   const DistanceBounds known{table.lower[part_pair], table.upper[part_pair]};
-  evaluation.budget.spend();
-  return take_in(found, table.tracking[part_pair].b.point, known, part_pair, motion, evaluation);
+  budget.spend();
+  return write_answer(found, table.tracking[part_pair].b.point, known, part_pair, motion, tick);
 }
 
-void carry(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  carry(pair, evaluation.objects, evaluation.parts, evaluation.cycle, evaluation.table);
-}
-
-// The part pair that was the closest, as far as is known, and mostly still is.
+// The part pair with the smallest upper bound: mostly the closest one.
 std::uint32_t likely_part_pair(std::uint32_t pair, const PairTable& table) noexcept {
   const auto first = table.upper.begin() + table.entries[pair].first_part_pair;
   const auto end = table.upper.begin() + table.entries[pair].end_part_pair;
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
-// A pair of several part pairs on its way through them.
+// What is known of a pair of several part pairs while these are brought up to date one by one.
 struct PartPairs {
   double displacement;  // since they were last brought up to date, m
-  bool is_new;          // that was in this tick: of the last one nothing is known
+  bool is_new;          // that was in this tick, so nothing is known of the last one
   PairMotion motion;
-  // Of those that did not stay out, m: the others are at least `smallest_upper` apart.
+  // Over the part pairs that displacement alone did not rule out, m. All others are at least
+  // `smallest_upper` apart.
   double smallest_upper = kInfinity, least_lower = kInfinity;
-  double between = kInfinity;  // at least so far apart since the last tick, m
+  double between = kInfinity;  // the distance was at least this since the last tick, m
   bool all_that_matter = true;
 };
 
-// A part pair among others that displacement alone proves not to be the closest: brought up to date
-// by that. What is carried so was no nearer on the way from where it was before.
-inline bool stays_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable& table) noexcept {
+// Brings a part pair up to date by displacement alone, if that proves that it is not the closest.
+// Bounds carried in this way hold at every instant since they were found.
+inline bool rule_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable& table) noexcept {
   const double lower = rounded_down(table.lower[part_pair] - part_pairs.displacement);
   if (!(lower >= part_pairs.smallest_upper)) return false;
   table.lower[part_pair] = lower;
@@ -109,24 +111,23 @@ inline bool stays_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable&
   return true;
 }
 
-// Any other part pair: brought up to date no more precisely than it takes to tell that it is not
-// the closest, else evaluated, as far as the budget goes.
-void update_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
-                      Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
+// Brings any other part pair up to date, and queries it if it may be the closest and the budget
+// has a query left.
+void update_part_pair(std::uint32_t part_pair, PartPairs& part_pairs, const OpenTick& tick,
+                      Budget& budget) noexcept {
+  PairTable& table = tick.table;
   const double displacement = part_pairs.motion.displacement;
   const double before =
       part_pairs.is_new
           ? -kInfinity
           : rounded_down(table.lower[part_pair] - part_pairs.displacement + displacement);
-  const DistanceBounds now =
-      bounds_now(part_pair, part_pairs.displacement, evaluation.parts, table);
+  const DistanceBounds now = bounds_now(part_pair, part_pairs.displacement, tick);
   table.lower[part_pair] = now.lower;
   table.upper[part_pair] = now.upper;
   double between = -kInfinity;
   const bool matters = now.lower < part_pairs.smallest_upper;
-  if (matters && evaluation.budget.left() > 0) {
-    between = query(part_pair, part_pairs.motion, evaluation);
+  if (matters && budget.left() > 0) {
+    between = query_part_pair(part_pair, part_pairs.motion, tick, budget);
   } else if (matters) {
     part_pairs.all_that_matter = false;
   }
@@ -136,25 +137,24 @@ void update_part_pair(std::uint32_t part_pair, PartPairs& part_pairs,
   part_pairs.between = std::min(part_pairs.between, between);
 }
 
-void evaluate_part_pairs(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
+void evaluate_part_pairs(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept {
+  PairTable& table = tick.table;
   PairEntry& entry = table.entries[pair];
-  const bool carried = entry.carried_cycle == evaluation.cycle;
-  PartPairs part_pairs{
-      .displacement = carried ? 0.0 : displacement_since(pair, evaluation.objects, table),
-      .is_new = carried || raised_this_tick(pair, evaluation.objects, table),
-      .motion = motion_since_last_tick(entry, evaluation)};
+  const bool carried = is_carried(pair, tick);
+  PartPairs part_pairs{.displacement = carried ? 0.0 : displacement_since(pair, tick),
+                       .is_new = carried || raised_this_tick(pair, tick),
+                       .motion = motion_since_last_tick(entry, tick)};
   const std::uint32_t likely = likely_part_pair(pair, table);
-  update_part_pair(likely, part_pairs, evaluation);
+  update_part_pair(likely, part_pairs, tick, budget);
   for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
        ++part_pair) {
-    if (part_pair != likely && !stays_out(part_pair, part_pairs, table))
-      update_part_pair(part_pair, part_pairs, evaluation);
+    if (part_pair != likely && !rule_out(part_pair, part_pairs, table))
+      update_part_pair(part_pair, part_pairs, tick, budget);
   }
-  note_carried(pair, evaluation.objects, evaluation.cycle, table);
+  note_carried(pair, tick);
   entry.least_lower = part_pairs.least_lower;
   table.lower_between[pair] = part_pairs.between;
-  if (part_pairs.all_that_matter) entry.evaluated_cycle = evaluation.cycle;
+  if (part_pairs.all_that_matter) entry.evaluated_cycle = tick.cycle;
 }
 
 }  // namespace
@@ -166,36 +166,36 @@ DistanceBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
   return {rounded_down(found.lower - error), rounded_up(found.upper + error)};
 }
 
-// What was known before adds nothing to a tight answer.
+// A converged answer is tight, so that carried bounds would add nothing to it.
 void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
-            const Evaluation& evaluation) noexcept {
-  PairTable& table = evaluation.table;
+            const OpenTick& tick) noexcept {
+  PairTable& table = tick.table;
   const std::uint32_t part_pair = table.entries[pair].first_part_pair;
   PairEntry& entry = table.entries[pair];
   DistanceBounds known;
   if (found.status == DistanceStatus::kConverged) {
-    note_carried(pair, evaluation.objects, evaluation.cycle, table);
+    note_carried(pair, tick);
   } else {
-    carry(pair, evaluation);
+    carry(pair, tick);
     known = {table.lower[part_pair], table.upper[part_pair]};
   }
-  table.lower_between[pair] = take_in(found, point_on_b, known, part_pair,
-                                      motion_since_last_tick(entry, evaluation), evaluation);
+  table.lower_between[pair] =
+      write_answer(found, point_on_b, known, part_pair, motion_since_last_tick(entry, tick), tick);
   entry.least_lower = table.lower[part_pair];
-  entry.evaluated_cycle = evaluation.cycle;
+  entry.evaluated_cycle = tick.cycle;
 }
 
-void evaluate(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  const PairTable& table = evaluation.table;
-  if (evaluation.budget.left() == 0) return;
+void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept {
+  const PairTable& table = tick.pairs;
+  if (budget.left() == 0) return;
   if (table.part_pairs_of(pair) > 1) {
-    evaluate_part_pairs(pair, evaluation);
+    evaluate_part_pairs(pair, tick, budget);
     return;
   }
   const std::uint32_t part_pair = table.entries[pair].first_part_pair;
-  const DistanceResult found = ask(part_pair, evaluation);
-  settle(pair, found, table.tracking[part_pair].b.point, evaluation);
-  evaluation.budget.spend();
+  const DistanceResult found = query_distance(part_pair, tick);
+  settle(pair, found, table.tracking[part_pair].b.point, tick);
+  budget.spend();
 }
 
 }  // namespace clearance

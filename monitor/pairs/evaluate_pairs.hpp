@@ -1,4 +1,4 @@
-// Many pairs at once, shared between workers.
+// Evaluates many pairs, shared between workers.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace clearance {
 
-// Evaluates different pairs, none of them evaluated in this tick yet, in their order as far as the
-// budget goes; returns how many that are. Which queries are made, and what comes out, is the same
-// for any number of workers.
-std::size_t evaluate(std::span<const std::uint32_t> pairs, WorkerPool& pool,
-                     Evaluation& evaluation) noexcept;
+// Evaluates different pairs in their order, as far as the budget goes; returns how many. None of
+// them was evaluated in this tick before. The queries and their results are the same for any number
+// of workers.
+std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, WorkerPool& pool,
+                           const OpenTick& tick, Budget& budget) noexcept;
 
 }  // namespace clearance

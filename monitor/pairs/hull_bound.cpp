@@ -5,7 +5,7 @@
 namespace clearance {
 namespace {
 
-// In its object's frame, so that it is where the object is, without rounding.
+// A hull is given in its object's frame, so it is placed without rounding.
 PosedPart around(const ConvexBody& hull) {
   PosedPart placed;
   placed.shape = &hull;
@@ -37,20 +37,20 @@ bool HullBound::possible(const PairEntry& pair) const noexcept {
          (has_hull(pair.object_a) || has_hull(pair.object_b));
 }
 
-double HullBound::lower(std::uint32_t pair, Evaluation& evaluation) noexcept {
-  const PosedPart& a = model(evaluation.table.entries[pair].object_a, evaluation);
-  const PosedPart& b = model(evaluation.table.entries[pair].object_b, evaluation);
+double HullBound::lower(std::uint32_t pair, const TickView& view, Budget& budget) noexcept {
+  const PosedPart& a = model(view.pairs.entries[pair].object_a, view);
+  const PosedPart& b = model(view.pairs.entries[pair].object_b, view);
   TrackingState cold;
-  evaluation.budget.spend();
+  budget.spend();
   const DistanceResult found =
       distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold,
                {.depth = false});
   return rounded_down(found.lower - placing_error(a, b));
 }
 
-const PosedPart& HullBound::model(std::uint32_t object, const Evaluation& evaluation) noexcept {
-  if (hulls_[object] == nullptr) return evaluation.parts[only_part_[object]];
-  placed_[object].world_from_part = evaluation.objects[object].pose;
+const PosedPart& HullBound::model(std::uint32_t object, const TickView& view) noexcept {
+  if (hulls_[object] == nullptr) return view.parts[only_part_[object]];
+  placed_[object].world_from_part = view.objects[object].pose;
   return placed_[object];
 }
 

@@ -7,14 +7,15 @@
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/motion/relative_displacement.hpp"
 #include "monitor/motion/swept_bound.hpp"
+#include "monitor/pairs/carried_bounds.hpp"
 
 namespace clearance {
 namespace {
 
-// Of the distance: what objects have moved by leaves less than half of this open, and how they
-// move as seen from each other is not looked at.
+// The relative motion of two objects is computed, which takes 25 ns, only where it may pay: their
+// displacement is more than this share of their distance, ...
 constexpr double kSmallDisplacement = 1.0 / 64.0;
-// Of the displacement: nor where directions leave less than this open.
+// ... and the directions of two evaluations leave more than this share of the displacement open.
 constexpr double kSmallShare = 1.0 / 4096.0;
 
 PairStatus status_of(DistanceStatus status) noexcept {
@@ -35,10 +36,9 @@ PairStatus status_of(DistanceStatus status) noexcept {
 }
 
 // The part pair with the smallest upper bound, evaluated ones before all others.
-std::uint32_t closest_part_pair(std::uint32_t first, std::uint32_t end,
-                                const PairTable& table) noexcept {
-  std::uint32_t closest = first;
-  for (std::uint32_t part_pair = first + 1; part_pair < end; ++part_pair) {
+std::uint32_t closest_part_pair(const PairEntry& entry, const PairTable& table) noexcept {
+  std::uint32_t closest = entry.first_part_pair;
+  for (std::uint32_t part_pair = closest + 1; part_pair < entry.end_part_pair; ++part_pair) {
     const bool evaluated = table.part_pair_evaluated_cycle[part_pair] > 0;
     const bool closest_evaluated = table.part_pair_evaluated_cycle[closest] > 0;
     if (evaluated != closest_evaluated ? evaluated
@@ -55,26 +55,29 @@ DistanceBounds bounds_as_carried(const PairEntry& entry, const PairTable& table)
   return {entry.least_lower, *std::min_element(first, end)};
 }
 
-DistanceBounds pair_bounds_now(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                               const std::vector<PosedPart>& parts,
-                               const PairTable& table) noexcept {
-  const double displacement = displacement_since(pair, objects, table);
+DistanceBounds pair_bounds_now(std::uint32_t pair, const TickView& view) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const double displacement = displacement_since(pair, view);
   DistanceBounds least{kInfinity, kInfinity};
-  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
-       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
-    const DistanceBounds now = bounds_now(part_pair, displacement, parts, table);
+  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
+       ++part_pair) {
+    const DistanceBounds now = bounds_now(part_pair, displacement, view);
     least.lower = std::min(least.lower, now.lower);
     least.upper = std::min(least.upper, now.upper);
   }
   return least;
 }
 
-// What this tick's evaluations say about the pair; kCarried when they do not decide it.
-PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_t closest,
-                            std::uint64_t cycle, const PairTable& table) noexcept {
+// The status that this tick's evaluations give the pair; kCarried where one that matters is
+// missing.
+PairStatus evaluated_status(const PairEntry& entry, std::uint32_t closest,
+                            const TickView& view) noexcept {
+  const PairTable& table = view.pairs;
+  const std::uint64_t cycle = view.cycle;
   if (table.part_pair_evaluated_cycle[closest] != cycle) return PairStatus::kCarried;
   PairStatus status = status_of(table.status[closest]);
-  for (std::uint32_t part_pair = first; part_pair < end; ++part_pair) {
+  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
+       ++part_pair) {
     if (part_pair == closest || table.lower[part_pair] >= table.upper[closest]) continue;
     if (table.part_pair_evaluated_cycle[part_pair] != cycle) return PairStatus::kCarried;
     if (status_of(table.status[part_pair]) == PairStatus::kIterationLimit)
@@ -83,14 +86,15 @@ PairStatus evaluated_status(std::uint32_t first, std::uint32_t end, std::uint32_
   return status;
 }
 
-// Of two objects that were known at the last tick and have made no discontinuity since. `along`:
-// what the directions of two evaluations tell, m.
-double lower_on_the_way(const TrackedObject& a, const TrackedObject& b, double before, double now,
-                        double along, SweptPrecision precision) noexcept {
+// A lower bound of the distance since the last tick, of two objects that were known then and have
+// made no discontinuity since: from bounds `before` and `now`, and `along` the directions of two
+// evaluations, m.
+double lower_between_ticks(const TrackedObject& a, const TrackedObject& b, double before,
+                           double now, double along, SweptPrecision precision) noexcept {
   const double displacement = rounded_up(a.displacement + b.displacement);
   if (displacement == 0.0) return now;
-  const bool told = along > -kInfinity;
-  if (told && along >= std::min(before, now) - kSmallShare * displacement)
+  const bool has_directions = along > -kInfinity;
+  if (has_directions && along >= std::min(before, now) - kSmallShare * displacement)
     return std::min(now, along);
   const double lower = std::max(along, lower_by_ends(before, now, displacement));
   const bool matters =
@@ -101,32 +105,33 @@ double lower_on_the_way(const TrackedObject& a, const TrackedObject& b, double b
   return std::min(now, std::max(lower, lower_by_ends(before, now, relative)));
 }
 
-double lower_along(std::uint32_t pair, std::uint64_t cycle, const PairTable& table) noexcept {
-  return table.entries[pair].evaluated_cycle == cycle ? table.lower_between[pair] : -kInfinity;
+double lower_by_evaluations(std::uint32_t pair, const TickView& view) noexcept {
+  return is_evaluated(pair, view) ? view.pairs.lower_between[pair] : -kInfinity;
 }
 
-// What bounds_of() tells of the usual pair, brought up to date in this tick, in a third of the
-// time.
+// The result of bounds_of() for the usual pair, which was brought up to date in this tick, in a
+// third of the time.
 PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
-                                   const TrackedObject& b, std::uint64_t cycle,
-                                   const PairTable& table, SweptPrecision precision) noexcept {
+                                   const TrackedObject& b, const TickView& view,
+                                   SweptPrecision precision) noexcept {
+  const PairTable& table = view.pairs;
   const PairEntry& entry = table.entries[pair];
   const std::uint32_t part_pair = entry.first_part_pair;
   const std::uint64_t evaluated = table.part_pair_evaluated_cycle[part_pair];
   const double upper = table.upper[part_pair];
   return {
-      .status = evaluated == cycle ? status_of(table.status[part_pair]) : PairStatus::kCarried,
+      .status = evaluated == view.cycle ? status_of(table.status[part_pair]) : PairStatus::kCarried,
       .lower = entry.least_lower,
       .upper = upper,
-      .swept_lower = lower_on_the_way(a, b, entry.lower_before, entry.least_lower,
-                                      lower_along(pair, cycle, table), precision),
+      .swept_lower = lower_between_ticks(a, b, entry.lower_before, entry.least_lower,
+                                         lower_by_evaluations(pair, view), precision),
       .swept_upper = upper,
       .part_pair = part_pair,
       .evaluated_cycle = evaluated,
   };
 }
 
-// What late objects may have moved unseen.
+// Widens the bounds by the unobserved motion of late objects.
 void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
                        PairBounds& bounds) noexcept {
   const double unseen_since = a.unseen_since + b.unseen_since;
@@ -154,51 +159,49 @@ PairReport unknown_report() noexcept {
   return report;
 }
 
-double lower_since_last_tick(std::uint32_t pair, double lower,
-                             const std::vector<TrackedObject>& objects, std::uint64_t cycle,
-                             const PairTable& table, SweptPrecision precision) noexcept {
-  const TrackedObject& a = objects[table.entries[pair].object_a];
-  const TrackedObject& b = objects[table.entries[pair].object_b];
+double lower_since_last_tick(std::uint32_t pair, double lower, const TickView& view,
+                             SweptPrecision precision) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
   if (a.first_seen || b.first_seen) return lower;
   if (a.discontinuous || b.discontinuous) return -kInfinity;
-  return lower_on_the_way(a, b, lower_last_tick(pair, objects, cycle, table), lower,
-                          lower_along(pair, cycle, table), precision);
+  return lower_between_ticks(a, b, lower_last_tick(pair, view), lower,
+                             lower_by_evaluations(pair, view), precision);
 }
 
-PairBounds bounds_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                     const std::vector<PosedPart>& parts, std::uint64_t cycle,
-                     const PairTable& table, SweptPrecision precision) noexcept {
-  const PairEntry& entry = table.entries[pair];
-  const TrackedObject& a = objects[entry.object_a];
-  const TrackedObject& b = objects[entry.object_b];
-  const bool carried = entry.carried_cycle == cycle;
+PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision precision) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
+  const bool carried = is_carried(pair, view);
   if (a.plain && b.plain && carried && entry.end_part_pair - entry.first_part_pair == 1) {
-    return bounds_of_one_part_pair(pair, a, b, cycle, table, precision);
+    return bounds_of_one_part_pair(pair, a, b, view, precision);
   }
   PairBounds bounds;
   if (!a.known() || !b.known()) return bounds;
   const DistanceBounds now =
-      carried ? bounds_as_carried(entry, table) : pair_bounds_now(pair, objects, parts, table);
+      carried ? bounds_as_carried(entry, view.pairs) : pair_bounds_now(pair, view);
   bounds.lower = now.lower;
   bounds.upper = bounds.swept_upper = now.upper;
-  bounds.swept_lower = lower_since_last_tick(pair, now.lower, objects, cycle, table, precision);
-  bounds.part_pair = closest_part_pair(entry.first_part_pair, entry.end_part_pair, table);
-  bounds.evaluated_cycle = table.part_pair_evaluated_cycle[bounds.part_pair];
-  bounds.status =
-      evaluated_status(entry.first_part_pair, entry.end_part_pair, bounds.part_pair, cycle, table);
+  bounds.swept_lower = lower_since_last_tick(pair, now.lower, view, precision);
+  bounds.part_pair = closest_part_pair(entry, view.pairs);
+  bounds.evaluated_cycle = view.pairs.part_pair_evaluated_cycle[bounds.part_pair];
+  bounds.status = evaluated_status(entry, bounds.part_pair, view);
   if (!a.plain || !b.plain) count_lateness_in(a, b, bounds);
   return bounds;
 }
 
-void report_on(std::uint32_t pair, const PairBounds& bounds,
-               const std::vector<TrackedObject>& objects, const std::vector<PosedPart>& parts,
-               const PairTable& table, PairReport& report) noexcept {
-  const TrackedObject& a = objects[table.entries[pair].object_a];
-  const TrackedObject& b = objects[table.entries[pair].object_b];
+void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& view,
+                PairReport& report) noexcept {
+  const PairTable& table = view.pairs;
+  const TrackedObject& a = view.objects[table.entries[pair].object_a];
+  const TrackedObject& b = view.objects[table.entries[pair].object_b];
   if (bounds.status == PairStatus::kUnknown) report = unknown_report();
   report.pair = pair;
   report.age_a_ns = a.input.age_ns;
   report.age_b_ns = b.input.age_ns;
+  report.refresh_age_cycles = view.cycle - table.refreshed_cycle[pair];
   if (bounds.status == PairStatus::kUnknown) return;
 
   report.status = bounds.status;
@@ -206,8 +209,8 @@ void report_on(std::uint32_t pair, const PairBounds& bounds,
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;
   const ClosestPoints& closest = table.closest[bounds.part_pair];
-  report.part_a = parts[table.part_a[bounds.part_pair]].index_in_object;
-  report.part_b = parts[table.part_b[bounds.part_pair]].index_in_object;
+  report.part_a = view.parts[table.part_a[bounds.part_pair]].index_in_object;
+  report.part_b = view.parts[table.part_b[bounds.part_pair]].index_in_object;
   report.distance = closest.distance;
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;

@@ -1,9 +1,9 @@
-// What is known about every pair: bounds for the poses in use, and the last evaluation.
+// What ticks remember of every pair: bounds, the last evaluation, the last refresh.
 //
-// An object pair owns consecutive part pairs, one for every part of the first with every part of
-// the second. A part pair's bounds are true for the poses at which the pair was last brought up to
-// date; how far both objects have moved since makes them true for those in use. So a pair
-// that is not looked at costs nothing.
+// An object pair owns consecutive part pairs, one for every part of the first object with every
+// part of the second. A part pair's bounds are true for the poses at which the pair was last
+// brought up to date. How far both objects have moved since then makes them true for the poses in
+// use (carried_bounds.hpp), so a pair that a tick does not touch costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,15 @@
 
 namespace clearance {
 
-// Of what is not known.
+// A figure that is not known.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Where two parts were found to be closest, in the world. NaN until evaluated.
 struct ClosestPoints {
   double distance;  // m
-  double lower;     // along the normal, for the exact poses of then, m; -infinity: nothing
+  // The distance along the normal at the exact poses of that tick is at least this, m; -infinity:
+  // the normal separated nothing.
+  double lower;
   Vec3 witness_a, witness_b;
   Vec3 normal;
   ClosestPoints() noexcept;
@@ -37,23 +39,27 @@ struct DistanceBounds {
   double lower = -kInfinity, upper = kInfinity;  // m
 };
 
-// Of an object pair, all that ticks ask of it whether it is evaluated or not: one cache line.
+// All that ticks ask of an object pair whether it is evaluated or not, in one cache line.
 struct alignas(64) PairEntry {
   std::uint32_t object_a = 0, object_b = 0;
   std::uint32_t first_part_pair = 0, end_part_pair = 0;  // its part pairs, the latter excluded
   AccumulatedDisplacement carried_at;                    // when they were last brought up to date
   std::uint64_t carried_cycle = 0;                       // the tick in which that was; 0: never
-  double least_lower = -kInfinity;                       // over its part pairs then, m
+  double least_lower = -kInfinity;                       // over its part pairs in that tick, m
   double lower_before = -kInfinity;                      // for the poses of the tick before that, m
-  std::uint64_t evaluated_cycle = 0;  // when all part pairs that matter last were; 0: never
+  // The tick in which all part pairs that matter were last evaluated; 0: never.
+  std::uint64_t evaluated_cycle = 0;
 };
 
 struct PairTable {
   std::vector<PairEntry> entries;  // as in Scene::pairs
 
-  // By pair: at least as far apart, m, from the tick before its last evaluation up to that, as the
-  // directions of two evaluations tell; -infinity: they do not.
+  // By pair. From the tick before its last evaluation up to that evaluation, the pair's distance
+  // was at least this, m, as the directions of two evaluations prove; -infinity: they do not.
   std::vector<double> lower_between;
+  // By pair. The tick in which its bound was last found afresh from poses: by an evaluation, or by
+  // models of its objects that proved it far; 0: never.
+  std::vector<std::uint64_t> refreshed_cycle;
 
   // By part pair.
   std::vector<std::uint32_t> part_a, part_b;             // indices into parts_of(scene)
@@ -76,8 +82,8 @@ struct PairTable {
   }
 };
 
-// The pair is no farther apart than this, m: the smallest upper bound of its part pairs, as they
-// were last brought up to date.
+// The pair's distance was at most this, m, when it was last brought up to date: the smallest upper
+// bound of its part pairs.
 [[nodiscard]] inline double upper_of(std::uint32_t pair, const PairTable& table) noexcept {
   const PairEntry& entry = table.entries[pair];
   double upper = table.upper[entry.first_part_pair];
@@ -87,43 +93,7 @@ struct PairTable {
   return upper;
 }
 
-// No point of the two objects has come farther, both together, since the pair was brought up to
-// date, m.
-[[nodiscard]] double displacement_since(std::uint32_t pair,
-                                        const std::vector<TrackedObject>& objects,
-                                        const PairTable& table) noexcept;
-
-// Something has moved since the last tick, and the pair's bounds are of this one (raise()).
-[[nodiscard]] bool raised_this_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                                    const PairTable& table) noexcept;
-
-// The pair's distance at the tick before `cycle` was at least this, m, if its objects were known
-// then.
-[[nodiscard]] double lower_last_tick(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                                     std::uint64_t cycle, const PairTable& table) noexcept;
-
-// A part pair's bounds for the poses in use, both objects having been seen: looser by what they
-// have moved by, but never looser than the parts' spheres tell.
-[[nodiscard]] DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,
-                                        const std::vector<PosedPart>& parts,
-                                        const PairTable& table) noexcept;
-
-// Brings a pair's part pairs up to date. Both objects have been seen.
-void carry(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-           const std::vector<PosedPart>& parts, std::uint64_t cycle, PairTable& table) noexcept;
-
-// Takes note that a pair's part pairs are up to date, before least_lower is: that is still known of
-// the pair as it was.
-void note_carried(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                  std::uint64_t cycle, PairTable& table) noexcept;
-
-// Takes note of a lower bound of the pair's distance for the poses in use, m. Its part pairs are
-// carried by displacement alone, which costs a fraction of carry(): their spheres are looked at by
-// who asks for them.
-void raise(std::uint32_t pair, double to, const std::vector<TrackedObject>& objects,
-           PairTable& table) noexcept;
-
-// Forgets a pair's bounds: how far its objects have come is not known.
+// Forgets a pair's bounds, because the displacement of its objects is not known.
 void forget(std::uint32_t pair, PairTable& table) noexcept;
 
 }  // namespace clearance

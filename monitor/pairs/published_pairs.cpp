@@ -9,10 +9,11 @@
 namespace clearance {
 namespace {
 
-// Enough for vector code to fill its lanes, few enough for workers to share: about 10 us.
+// Pairs of one vector query: enough to fill its lanes, few enough for workers to share (about
+// 10 us).
 constexpr std::size_t kGroup = 256;
 
-// No pose: a query of it ends before it begins.
+// A query of a pose that is NaN ends before it begins.
 const Pose kNowhere{.position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
 
 bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
@@ -50,48 +51,45 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
     }
     return body_of[part];
   };
-  std::vector<BodyPair> of_bodies;
+  std::vector<BodyPair> body_pairs;
   for (const std::uint32_t pair : single) {
     const std::uint32_t part_pair = table.entries[pair].first_part_pair;
-    of_bodies.push_back({body(table.part_a[part_pair]), body(table.part_b[part_pair])});
+    body_pairs.push_back({body(table.part_a[part_pair]), body(table.part_b[part_pair])});
   }
   world_from_body_.resize(bodies.size());
   for (std::size_t first = 0; first < single.size(); first += kGroup) {
     const std::size_t count = std::min(kGroup, single.size() - first);
-    const auto own = std::span(single).subspan(first, count);
-    groups_.push_back({{own.begin(), own.end()},
-                       DistanceBatch(bodies, std::span(of_bodies).subspan(first, count)),
+    const auto members = std::span(single).subspan(first, count);
+    groups_.push_back({{members.begin(), members.end()},
+                       DistanceBatch(bodies, std::span(body_pairs).subspan(first, count)),
                        0});
   }
 }
 
-void PublishedPairs::evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept {
+void PublishedPairs::evaluate_all(WorkerPool& pool, const OpenTick& tick, Budget& budget) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
-    const PosedPart& part = evaluation.parts[body_parts_[i]];
-    world_from_body_[i] =
-        evaluation.objects[part.object].input.has_value ? part.world_from_part : kNowhere;
+    const PosedPart& part = tick.parts[body_parts_[i]];
+    world_from_body_[i] = tick.objects[part.object].input.has_value ? part.world_from_part : kNowhere;
   }
-  const auto one = [this, &evaluation](std::uint32_t i) noexcept {
-    evaluate_group(groups_[i], evaluation);
-  };
+  const auto one = [this, &tick](std::uint32_t i) noexcept { evaluate_group(groups_[i], tick); };
   pool.run(static_cast<std::uint32_t>(groups_.size()), {.claim = 1, .least = 2}, one);
-  for (const Group& group : groups_) evaluation.budget.spend(group.known);
+  for (const Group& group : groups_) budget.spend(group.known);
   known_.clear();
   for (const std::uint32_t pair : many_parts_) {
-    if (is_known(pair, evaluation)) known_.push_back(pair);
+    if (is_known(pair, tick)) known_.push_back(pair);
   }
-  clearance::evaluate(known_, pool, evaluation);
+  evaluate_pairs(known_, pool, tick, budget);
 }
 
-// Also those that are not known: what was never seen has no pose, which costs as good as nothing,
-// and what is late is where it was.
-void PublishedPairs::evaluate_group(Group& group, const Evaluation& evaluation) noexcept {
+// Queries also the pairs that are not known. An object without a pose costs next to nothing, and a
+// late one stays where it was.
+void PublishedPairs::evaluate_group(Group& group, const OpenTick& tick) noexcept {
   const auto found = group.batch.evaluate(world_from_body_);
   group.known = 0;
   for (std::size_t i = 0; i < group.pairs.size(); ++i) {
-    if (!is_known(group.pairs[i], evaluation)) continue;
+    if (!is_known(group.pairs[i], tick)) continue;
     ++group.known;
-    settle(group.pairs[i], found[i], group.batch.point_on_b(i), evaluation);
+    settle(group.pairs[i], found[i], group.batch.point_on_b(i), tick);
   }
 }
 

@@ -1,6 +1,6 @@
-// The pairs whose figures are published, or where a scene evaluates all, all pairs.
+// The pairs whose figures every report has, or all pairs where a scene evaluates all.
 //
-// They are evaluated in every tick that has room for them, in one straight loop: pairs of single
+// They are evaluated in every tick whose budget covers them, in one straight loop: pairs of single
 // parts by vector code, many at once (core/batch.hpp), the others one by one.
 #pragma once
 
@@ -16,37 +16,37 @@ namespace clearance {
 
 class PublishedPairs {
  public:
-  // every_tick: as RefreshShare has it.
+  // `every_tick` is that of RefreshShare.
   PublishedPairs(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
                  bool every_tick);
 
   [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
-  // How many queries they can take.
+  // How many queries they take at most.
   [[nodiscard]] std::uint32_t part_pairs() const noexcept { return part_pairs_; }
   // All of them fit into the budget, so that they are never left to the broad phase.
   [[nodiscard]] bool every_tick() const noexcept { return every_tick_; }
 
-  // Evaluates all that are known, the budget covering them.
-  void evaluate(WorkerPool& pool, Evaluation& evaluation) noexcept;
+  // Evaluates all that are known. The budget covers them.
+  void evaluate_all(WorkerPool& pool, const OpenTick& tick, Budget& budget) noexcept;
 
  private:
   // Pairs of single parts that are evaluated together.
   struct Group {
     std::vector<std::uint32_t> pairs;
     DistanceBatch batch;
-    std::uint32_t known = 0;  // of the pairs, in this tick
+    std::uint32_t known = 0;  // how many of the pairs are known in this tick
   };
   void form_groups(const std::vector<PosedPart>& parts, const PairTable& table);
-  void evaluate_group(Group& group, const Evaluation& evaluation) noexcept;
+  void evaluate_group(Group& group, const OpenTick& tick) noexcept;
 
   std::vector<std::uint32_t> pairs_;
   std::uint32_t part_pairs_ = 0;
   bool every_tick_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> body_parts_;  // what part each body of the groups is
+  std::vector<std::uint32_t> body_parts_;  // the part that each body of the groups is
   std::vector<Pose> world_from_body_;      // of this tick
   std::vector<std::uint32_t> many_parts_;  // pairs of more than one part pair
-  std::vector<std::uint32_t> known_;       // of those, in this tick
+  std::vector<std::uint32_t> known_;       // those of them that are known in this tick
 };
 
 }  // namespace clearance

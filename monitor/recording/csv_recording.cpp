@@ -106,11 +106,11 @@ void check(const std::filesystem::path& csv, Ids& ids, const std::function<bool(
 }
 
 // Without a cell, the recording names the objects of the log and has no shapes.
-Scene scene_of(const std::filesystem::path& csv, const std::vector<std::string>& objects) {
-  Scene scene;
-  scene.name = csv.stem().stem().string();
-  for (const std::string& name : objects) scene.objects.emplace_back().name = name;
-  return scene;
+Cell cell_of(const std::filesystem::path& csv, const std::vector<std::string>& objects) {
+  Cell cell;
+  cell.scene.name = csv.stem().stem().string();
+  for (const std::string& name : objects) cell.scene.objects.emplace_back().name = name;
+  return cell;
 }
 
 // The second pass: one batch a time, more when it has more poses than a batch can hold.
@@ -152,20 +152,20 @@ class BatchWriter {
 
 // Rows of fixed objects are counted but not written: the cell gives their poses.
 CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::filesystem::path& out,
-                              const Scene* scene, const RecordingOptions& options,
+                              const Cell* cell, const RecordingOptions& options,
                               const std::function<bool()>& stop) {
   CsvRecordingResult result;
-  Ids ids(scene);
+  Ids ids(cell == nullptr ? nullptr : &cell->scene);
   check(csv, ids, stop, result);
   if (!result.error.empty()) return result;
 
-  const Scene made = scene == nullptr ? scene_of(csv, ids.names()) : Scene{};
-  const Scene& named = scene == nullptr ? made : *scene;
+  const Cell made = cell == nullptr ? cell_of(csv, ids.names()) : Cell{};
+  const Cell& named = cell == nullptr ? made : *cell;
   RecordingWriter writer(out, named.topics, options);
   result.begun = writer.ok();
   static_cast<void>(writer.attach(named));  // a replay says that it lacks them
   writer.catalogue(*make_catalogue(named), result.first_ns);
-  BatchWriter batches(writer, named.revision);
+  BatchWriter batches(writer, named.scene.revision);
   CsvPoseLog log(csv);
   CsvPose pose;
   std::size_t rows = 0;

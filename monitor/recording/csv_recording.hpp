@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/recording/options.hpp"
 
 namespace clearance {
@@ -23,11 +23,11 @@ struct CsvRecordingResult {
   std::int64_t first_ns = 0, last_ns = 0;
 };
 
-// `scene`: its ids are used, and every object of the log must be in it. Without one, ids are given
+// `cell`: its ids are used, and every object of the log must be in it. Without one, ids are given
 // in the order of appearance and the recording names them. The log is checked whole before `out` is
 // written. `stop` is asked every 1,024 rows: true ends it, with an error that says how far it came.
 [[nodiscard]] CsvRecordingResult record_csv(const std::filesystem::path& csv,
-                                            const std::filesystem::path& out, const Scene* scene,
+                                            const std::filesystem::path& out, const Cell* cell,
                                             const RecordingOptions& options = {},
                                             const std::function<bool()>& stop = {});
 

@@ -29,10 +29,10 @@ void write(const LoggedBatch& logged, const Scene& scene, RecordingWriter& write
 }  // namespace
 
 LogRecordingResult record_log(const std::filesystem::path& log, const std::filesystem::path& out,
-                              const Scene& scene, const InputLogOptions& log_options,
+                              const Cell& cell, const InputLogOptions& log_options,
                               const RecordingOptions& options, const std::function<bool()>& stop) {
   LogRecordingResult result;
-  const std::unique_ptr<InputLog> input = open_input_log(log, scene, log_options);
+  const std::unique_ptr<InputLog> input = open_input_log(log, cell, log_options);
   LoggedBatch batch;
   bool more = input->next(batch);
   if (!more) {
@@ -40,11 +40,11 @@ LogRecordingResult record_log(const std::filesystem::path& log, const std::files
     result.notes = input->notes();
     return result;
   }
-  RecordingWriter writer(out, scene.topics, options);
+  RecordingWriter writer(out, cell.topics, options);
   result.begun = writer.ok();
   result.first_ns = batch.log_ns;
-  static_cast<void>(writer.attach(scene));  // a replay says that it lacks them
-  writer.catalogue(*make_catalogue(scene), result.first_ns);
+  static_cast<void>(writer.attach(cell));  // a replay says that it lacks them
+  writer.catalogue(*make_catalogue(cell), result.first_ns);
   Sample<clearance_msg_PoseBatch> poses = make_batch(clearance_msg_kMaxPoses);
   for (; more && writer.ok(); more = input->next(batch)) {
     if (stop && stop()) {
@@ -52,7 +52,7 @@ LogRecordingResult record_log(const std::filesystem::path& log, const std::files
       break;
     }
     writer.roll(batch.log_ns);
-    write(batch, scene, writer, *poses);
+    write(batch, cell.scene, writer, *poses);
     ++result.batches;
     result.last_ns = batch.log_ns;
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/recording/options.hpp"
 
@@ -27,7 +27,7 @@ struct LogRecordingResult {
 // recorded: a replay of `out` makes the same reports as one of the log. `stop` is asked before
 // every message: true ends it, with an error that says how far it came.
 [[nodiscard]] LogRecordingResult record_log(const std::filesystem::path& log,
-                                            const std::filesystem::path& out, const Scene& scene,
+                                            const std::filesystem::path& out, const Cell& cell,
                                             const InputLogOptions& log_options = {},
                                             const RecordingOptions& options = {},
                                             const std::function<bool()>& stop = {});

@@ -23,19 +23,19 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
 }  // namespace
 
 // The catalogue comes first: it names the ids that every message after it uses.
-Recorder::Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+Recorder::Recorder(const std::filesystem::path& file, const Cell& cell, std::int64_t now_ns,
                    const RecordingOptions& options)
-    : scene_(scene),
+    : scene_(cell.scene),
       options_(options),
-      writer_(file, scene.topics, options),
-      without_files_(writer_.attach(scene)),
+      writer_(file, cell.topics, options),
+      without_files_(writer_.attach(cell)),
       batch_(make_batch(clearance_msg_kMaxPoses)),
-      distances_(make_distances(scene)),
-      separation_(make_separation(scene)),
-      gradients_(scene),
-      zones_(scene.zones.size()),
+      distances_(make_distances(cell.scene)),
+      separation_(make_separation(cell.scene)),
+      gradients_(cell.scene),
+      zones_(cell.scene.zones.size()),
       last_ns_(now_ns) {
-  writer_.catalogue(*make_catalogue(scene), now_ns, kBuild);
+  writer_.catalogue(*make_catalogue(cell), now_ns, kBuild);
 }
 
 // Encoded now, written with the report that names it: only then is it known that a tick used it.

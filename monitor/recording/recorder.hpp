@@ -22,7 +22,7 @@ namespace clearance {
 class Recorder {
  public:
   // Writes the catalogue.
-  Recorder(const std::filesystem::path& file, const Scene& scene, std::int64_t now_ns,
+  Recorder(const std::filesystem::path& file, const Cell& cell, std::int64_t now_ns,
            const RecordingOptions& options = {.overwrite = false});
 
   // A batch that a tick used, of poses or of joints, in the order of use; written in front of that

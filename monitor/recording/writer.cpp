@@ -38,11 +38,11 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
 }
 
 // By their absolute paths; compressed where that makes them smaller.
-std::string RecordingWriter::attach(const Scene& scene) {
-  if (scene.files.empty() || options_.attach_bytes == 0) return {};
+std::string RecordingWriter::attach(const Cell& cell) {
+  if (cell.files.empty() || options_.attach_bytes == 0) return {};
   std::vector<Attached> all;
   std::uint64_t total = 0;
-  for (const std::filesystem::path& file : scene.files) {
+  for (const std::filesystem::path& file : cell.files) {
     const auto read = read_bytes(file.string());
     if (const auto* fault = std::get_if<MeshFault>(&read)) return fault->reason;
     const auto bytes = std::as_bytes(std::span(std::get<std::string>(read)));
@@ -60,7 +60,7 @@ std::string RecordingWriter::attach(const Scene& scene) {
     }
   }
   attached_ = std::move(all);
-  cell_file_ = scene.file.string();
+  cell_file_ = cell.file.string();
   write_attachments();
   return {};
 }

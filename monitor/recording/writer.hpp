@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"
@@ -31,10 +31,10 @@ class RecordingWriter {
   RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                   const RecordingOptions& options = {});
 
-  // Keeps the files that the scene was read from, in this file and every one after it; in front of
+  // Keeps the files that the cell was read from, in this file and every one after it; in front of
   // what describes it. Returns why they are not in it, if so: they are too large (attach_bytes), or
   // one cannot be read. A recording without them is whole, but replays need the files.
-  [[nodiscard]] std::string attach(const Scene& scene);
+  [[nodiscard]] std::string attach(const Cell& cell);
 
   // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
   // that makes the reports; empty: not known.

@@ -341,14 +341,14 @@ void Replay::show_progress() {
 }  // namespace
 
 // The outline is read first: a file that is no recording is an error rather than a failure.
-OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& recording,
+OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& recording,
                              const OfflineReplayOptions& options,
                              const std::function<void(const ReplayedTick&)>& on_tick) {
   if (is_input_log(recording)) {
     InputLogOptions log{.joint_topics = options.joint_topics, .joints = options.joints};
-    TickFeed feed(open_input_log(recording, scene, log), scene,
-                  options.tick_hz.value_or(scene.rate_hz));
-    return Replay(scene, std::move(feed), options, {}).run(on_tick);
+    TickFeed feed(open_input_log(recording, cell, log), cell.scene,
+                  options.tick_hz.value_or(cell.scene.rate_hz));
+    return Replay(cell.scene, std::move(feed), options, {}).run(on_tick);
   }
   const RecordingOutline outlined = outline(recording);
   if (!outlined.error.empty()) {
@@ -358,8 +358,8 @@ OfflineReplay replay_offline(const Scene& scene, const std::filesystem::path& re
   }
   std::vector<std::filesystem::path> files{recording};
   files.insert(files.end(), options.continued_in.begin(), options.continued_in.end());
-  TickFeed feed(files, scene, outlined, options.tick_hz.value_or(0.0));
-  return Replay(scene, std::move(feed), options, outlined).run(on_tick);
+  TickFeed feed(files, cell.scene, outlined, options.tick_hz.value_or(0.0));
+  return Replay(cell.scene, std::move(feed), options, outlined).run(on_tick);
 }
 
 }  // namespace clearance

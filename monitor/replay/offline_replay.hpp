@@ -7,7 +7,7 @@
 //
 //   const CellResult cell = read_cell("cell.yaml");
 //   const OfflineReplay replay =
-//       replay_offline(std::get<Scene>(cell), "run.mcap",
+//       replay_offline(std::get<Cell>(cell), "run.mcap",
 //                      {.expect_min_distance = 0.05, .expect_no_zone = {"stop"}});
 //   EXPECT_TRUE(replay.ok()) << replay.text();
 #pragma once
@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/reference_totals.hpp"
@@ -120,7 +120,7 @@ struct OfflineReplay {
 // ROS 2 (MCAP, SQLite 3, or the folder of either); or joint positions as CSV (t_ns, a column a
 // joint).
 [[nodiscard]] OfflineReplay replay_offline(
-    const Scene& scene, const std::filesystem::path& recording,
+    const Cell& cell, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},
     const std::function<void(const ReplayedTick&)>& on_tick = {});
 

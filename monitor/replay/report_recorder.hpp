@@ -13,16 +13,15 @@ namespace clearance {
 // Overwrites the file. Without a tick, close() still writes the catalogue, stamped 0.
 class ReportRecorder {
  public:
-  ReportRecorder(const std::filesystem::path& file, const Scene& scene)
-      : file_(file), scene_(scene) {}
+  ReportRecorder(const std::filesystem::path& file, const Cell& cell) : file_(file), cell_(cell) {}
 
   void add(const ReplayedTick& tick) {
     // The catalogue is stamped with the first tick: nothing else here has a time.
-    if (!recorder_) recorder_.emplace(file_, scene_, tick.report.now_ns, RecordingOptions{});
+    if (!recorder_) recorder_.emplace(file_, cell_, tick.report.now_ns, RecordingOptions{});
     recorder_->report(tick.report, tick.sources);
   }
   bool close() {
-    if (!recorder_) recorder_.emplace(file_, scene_, 0, RecordingOptions{});
+    if (!recorder_) recorder_.emplace(file_, cell_, 0, RecordingOptions{});
     return recorder_->close();
   }
   // Why the cell's files are not in it, if so.
@@ -33,7 +32,7 @@ class ReportRecorder {
 
  private:
   std::filesystem::path file_;
-  const Scene& scene_;
+  const Cell& cell_;
   std::optional<Recorder> recorder_;
 };
 

@@ -22,11 +22,7 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
                    const RecordingOutline& outline, double tick_hz)
     : reader_(files),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
-      intake_(scene, {.is_log = true},
-              [this](PoseBatch& batch) {
-                wait(std::move(batch));
-                return true;
-              }),
+      own_(std::make_unique<OwnBatches>(scene)),
       sources_(scene),
       by_report_(outline.has_reports),
       tick_hz_(tick_hz),
@@ -35,11 +31,6 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
       objects_(scene, nullptr),
-      intake_(scene, {.is_log = true},
-              [this](PoseBatch& batch) {
-                wait(std::move(batch));
-                return true;
-              }),
       sources_(scene),
       by_report_(false),
       tick_hz_(tick_hz),
@@ -97,23 +88,19 @@ void TickFeed::read_message(const RecordedMessage& message) {
   }
 }
 
+// Poses get the ids of the scene; joints are found again by name, in whatever cell.
 void TickFeed::read_inputs(const RecordedMessage& message) {
-  const auto topic = intake_.topic(message.kind);
-  if (!topic) return;
-  const Now then{.realtime_ns = message.log_ns, .monotonic_ns = message.log_ns};
-  const bool decodes =
-      intake_.take({.topic = topic->number, .cdr = message.cdr, .sent_ns = message.log_ns}, then);
-  if (!decodes) ++undecodable_;
-}
-
-// Poses get the ids of the scene; joints have been found again by name, in whatever cell.
-void TickFeed::wait(PoseBatch batch) {
+  PoseBatch* const batch = own_->decode(message.kind, message.cdr);
+  if (batch == nullptr) {
+    ++undecodable_;
+    return;
+  }
   // The daemon took such a batch in, but not its poses.
-  if (!objects_.translate(batch)) {
-    batch.samples.clear();
+  if (!objects_.translate(*batch)) {
+    batch->samples.clear();
     ++of_other_scenes_;
   }
-  batches_waiting_.push_back({.batch = std::move(batch), .log_ns = read_to_ns_});
+  batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
 }
 
 // A report names the last batch of each source that its tick used. Recorded over DDS, that batch

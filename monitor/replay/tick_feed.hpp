@@ -24,7 +24,7 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/tick_time.hpp"
-#include "monitor/intake/intake.hpp"
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/wire/cdr.hpp"
@@ -92,7 +92,6 @@ class TickFeed {
   [[nodiscard]] bool read_one();
   void read_message(const RecordedMessage& message);
   void read_inputs(const RecordedMessage& message);
-  void wait(PoseBatch batch);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] const clearance_msg_Separation* separation_of(std::int64_t now_ns);
   [[nodiscard]] bool next_by_time(TickInput& tick);
@@ -108,7 +107,7 @@ class TickFeed {
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
   ObjectMap objects_;
-  Intake intake_;
+  std::unique_ptr<OwnBatches> own_;  // null: somebody else's log
   SourceNumbers sources_;
   bool by_report_;
   double tick_hz_;             // 0: at log times

@@ -35,27 +35,28 @@ double speed_scaling(const Report& report) noexcept {
 
 }  // namespace
 
-bool writes_ros(const Scene& scene) noexcept {
+bool writes_ros(const Cell& cell) noexcept {
   return std::ranges::any_of(kRosOutputs, [&](const RosOutput& output) {
-    return !(scene.ros.outputs.*output.topic).empty();
+    return !(cell.ros.outputs.*output.topic).empty();
   });
 }
 
-RosWriter::RosWriter(const Scene& scene, Participant& participant, const PoseReader& poses,
+RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
                      const ReportQueue& published, const RecordingHealth& recording)
-    : scene_(scene),
+    : scene_(cell.scene),
+      settings_(cell.ros),
       poses_(poses),
       published_(published),
       recording_(recording),
-      markers_(make_writer(participant, kRosMarkers, scene.ros.outputs.markers)),
-      diagnostics_(make_writer(participant, kRosDiagnostics, scene.ros.outputs.diagnostics)),
-      minimum_distance_(make_writer(participant, kRosFloat64, scene.ros.outputs.minimum_distance)),
-      speed_scaling_(make_writer(participant, kRosFloat64, scene.ros.outputs.speed_scaling)),
-      queue_(scene, {.reports = kReports}),
+      markers_(make_writer(participant, kRosMarkers, cell.ros.outputs.markers)),
+      diagnostics_(make_writer(participant, kRosDiagnostics, cell.ros.outputs.diagnostics)),
+      minimum_distance_(make_writer(participant, kRosFloat64, cell.ros.outputs.minimum_distance)),
+      speed_scaling_(make_writer(participant, kRosFloat64, cell.ros.outputs.speed_scaling)),
+      queue_(cell.scene, {.reports = kReports}),
       numbers_(kNumbers),
-      period_ns_(std::llround(1e9 / (markers_ != 0 ? scene.ros.markers_hz : kDiagnosticReportsHz))),
-      cell_diagnostics_(scene),
-      distances_(make_distances(scene)) {
+      period_ns_(std::llround(1e9 / (markers_ != 0 ? cell.ros.markers_hz : kDiagnosticReportsHz))),
+      cell_diagnostics_(cell.scene),
+      distances_(make_distances(cell.scene)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -124,14 +125,14 @@ void RosWriter::write_markers(const QueuedReport& queued) {
   if (readers.current_count == 0) return;
   const std::int64_t now_ns = queued.handed_over_ns;
   if (bodies_due_ || std::abs(now_ns - bodies_written_ns_) >= kBodiesAgainNs) {
-    if (bodies_.empty()) bodies_ = bodies_message_for_tf(scene_, scene_.ros.world());
+    if (bodies_.empty()) bodies_ = bodies_message_for_tf(scene_, settings_.world());
     write_marker_array(bodies_);
     bodies_written_ns_ = now_ns;
     bodies_due_ = false;
   }
   to_wire(queued.report, queued.sources(), 0, *distances_);
   const std::int64_t stamp_ns = queued.report.now_ns + queued.report.clock_offset_ns;
-  write_marker_array(closest_message(scene_, *distances_, stamp_ns, scene_.ros.world()));
+  write_marker_array(closest_message(scene_, *distances_, stamp_ns, settings_.world()));
 }
 
 // Through Cyclone's own type, which checks every length.

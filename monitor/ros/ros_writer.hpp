@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/ports.hpp"
@@ -25,13 +25,13 @@
 namespace clearance {
 
 // Whether the cell writes anything for ROS 2.
-[[nodiscard]] bool writes_ros(const Scene& scene) noexcept;
+[[nodiscard]] bool writes_ros(const Cell& cell) noexcept;
 
 class RosWriter final : public ReportSink {
  public:
-  // Joins the topics that the scene names and starts the thread. Everything given must outlive
+  // Joins the topics that the cell names and starts the thread. Everything given must outlive
   // this. `published`: of the reports on DDS, whose losses diagnostics name.
-  RosWriter(const Scene& scene, Participant& participant, const PoseReader& poses,
+  RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
             const ReportQueue& published, const RecordingHealth& recording);
   ~RosWriter() override;
   RosWriter(const RosWriter&) = delete;
@@ -59,6 +59,7 @@ class RosWriter final : public ReportSink {
   void write(dds_entity_t writer, const void* sample);
 
   const Scene& scene_;
+  const RosSettings& settings_;
   const PoseReader& poses_;
   const ReportQueue& published_;
   const RecordingHealth& recording_;

@@ -1,4 +1,4 @@
-// Evaluates pairs and books that: what all steps of the schedule do with the pairs they choose.
+// Evaluates pairs and records that: every step of the schedule works through it.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,38 @@
 namespace clearance {
 
 struct Evaluator {
-  Evaluation& tick;
+  const OpenTick& tick;
+  Budget& budget;
   Culling& culling;
   RefreshQueue& queue;
   WorkerPool& pool;
 
-  // Known pairs that are not evaluated yet, as many of the first as the budget covers.
-  void evaluate(std::span<const std::uint32_t> pairs) const noexcept {
-    const std::size_t done = clearance::evaluate(pairs, pool, tick);
+  // Evaluates as many of the first pairs as the budget covers. All are known, and none was
+  // evaluated in this tick before.
+  void evaluate_affordable(std::span<const std::uint32_t> pairs) const noexcept {
+    const std::size_t done = evaluate_pairs(pairs, pool, tick, budget);
     for (const std::uint32_t pair : pairs.first(done)) {
-      culling.see(pair);
-      const bool queued = is_evaluated(pair, tick) && !culling.broad_phase().left_out(pair);
-      if (queued) queue.refreshed(pair, tick.cycle);
+      culling.mark_updated(pair);
+      if (is_evaluated(pair, tick)) note_refreshed(pair);
     }
   }
-  // False: the budget did not cover it.
-  [[nodiscard]] bool evaluate(std::uint32_t pair) const noexcept {
-    evaluate(std::span(&pair, 1));
+  // Evaluates one pair; false: the budget did not cover it.
+  [[nodiscard]] bool try_evaluate(std::uint32_t pair) const noexcept {
+    evaluate_affordable(std::span(&pair, 1));
     return is_evaluated(pair, tick);
   }
-  // Takes note of what the last step of the culling has decided.
-  void take_decided() const noexcept {
+  // Records that a pair's bound was found afresh in this tick.
+  void note_refreshed(std::uint32_t pair) const noexcept {
+    tick.table.refreshed_cycle[pair] = tick.cycle;
+    if (!culling.broad_phase().left_out(pair)) queue.move_to_back(pair);
+  }
+  // Queues the pairs that the last step of the culling has decided about.
+  void queue_decided() const noexcept {
     for (const Culling::Decided& decided : culling.decided()) {
       if (decided.proved_far) {
-        queue.refreshed(decided.pair, tick.cycle);
+        note_refreshed(decided.pair);
       } else {
-        queue.enter(decided.pair);
+        queue.enter(decided.pair, tick.pairs);
       }
     }
   }

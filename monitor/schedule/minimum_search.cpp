@@ -6,29 +6,29 @@
 namespace clearance {
 namespace {
 
-constexpr int kMostRaises = 8;  // of the horizon, a tick
+constexpr int kMostRaises = 8;  // of the horizon in one tick
 
 }  // namespace
 
-void MinimumSearch::evaluate(const Evaluator& evaluator) noexcept {
+void MinimumSearch::find_minimum(const Evaluator& evaluator) noexcept {
   evaluate_closest(evaluator);
   double step = Culling::kHeadroom;
   for (int i = 0; i < kMostRaises; ++i, step *= 2.0) {
     if (evaluator.culling.covers(smallest_upper_)) return;
-    if (evaluator.tick.budget.left() == 0 || evaluator.culling.broad_phase().any_waits()) return;
-    evaluator.culling.raise_horizon(smallest_upper_, step, evaluator.tick);
-    evaluator.take_decided();
+    if (evaluator.budget.left() == 0 || evaluator.culling.broad_phase().any_waits()) return;
+    evaluator.culling.raise_horizon(smallest_upper_, step, evaluator.tick, evaluator.budget);
+    evaluator.queue_decided();
     evaluate_closest(evaluator);
   }
 }
 
-// In batches that grow: one is mostly enough, and what is shared between workers must not depend on
-// how many they are.
+// Evaluates in batches that grow. One pair is mostly enough, and the size of a batch must not
+// depend on the number of workers.
 void MinimumSearch::evaluate_closest(const Evaluator& evaluator) noexcept {
-  const PairTable& table = evaluator.tick.table;
+  const PairTable& table = evaluator.tick.pairs;
   double smallest_upper = kInfinity;
   candidates_.clear();
-  for (const std::uint32_t pair : evaluator.culling.seen()) {
+  for (const std::uint32_t pair : evaluator.culling.updated()) {
     smallest_upper = std::min(smallest_upper, upper_of(pair, table));
     if (!is_evaluated(pair, evaluator.tick)) candidates_.push_back(pair);
   }
@@ -41,7 +41,7 @@ void MinimumSearch::evaluate_closest(const Evaluator& evaluator) noexcept {
   };
   std::make_heap(candidates_.begin(), candidates_.end(), later);
   auto end = candidates_.end();
-  for (std::ptrdiff_t size = 1; evaluator.tick.budget.left() > 0; size *= 2) {
+  for (std::ptrdiff_t size = 1; evaluator.budget.left() > 0; size *= 2) {
     auto first = end;
     while (first != candidates_.begin() && end - first < size &&
            table.entries[candidates_.front()].least_lower < smallest_upper) {
@@ -49,7 +49,7 @@ void MinimumSearch::evaluate_closest(const Evaluator& evaluator) noexcept {
     }
     if (first == end) break;
     std::reverse(first, end);
-    evaluator.evaluate({first, end});
+    evaluator.evaluate_affordable({first, end});
     for (auto it = first; it != end; ++it) {
       smallest_upper = std::min(smallest_upper, upper_of(*it, table));
     }

@@ -1,5 +1,6 @@
-// The pair with the smallest distance: pairs are evaluated in the order of their lower bounds until
-// none left can beat the smallest upper bound, and the horizon is raised until no culled pair can.
+// Finds the pair with the smallest distance: pairs are evaluated in the order of their lower bounds
+// until none left can beat the smallest upper bound, and the horizon is raised until no culled pair
+// can.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +15,10 @@ class MinimumSearch {
  public:
   explicit MinimumSearch(std::size_t pairs) { candidates_.reserve(pairs); }
 
-  // When the budget lasts, no unseen pair can be closer than the minimum afterwards.
-  void evaluate(const Evaluator& evaluator) noexcept;
+  // If the budget lasts, no pair that was not updated can be closer than the minimum afterwards.
+  void find_minimum(const Evaluator& evaluator) noexcept;
 
-  // The smallest upper bound of the pairs that the last search saw, m.
+  // The smallest upper bound of the pairs that the last search looked at, m.
   [[nodiscard]] double smallest_upper() const noexcept { return smallest_upper_; }
 
  private:

@@ -8,9 +8,10 @@ namespace clearance {
 namespace {
 
 constexpr std::uint32_t kLeastRefreshed = 16;  // pairs a tick
-// Pairs out of sight, of which there may be millions, a tick.
+// Pairs of objects that are not known, a tick; there may be millions of them.
 constexpr std::uint32_t kMostSetAside = 2'000;
-// As many times more when some are overdue, having been out of sight.
+// A tick refreshes at most so many times its usual number while pairs are overdue because their
+// objects were not known.
 constexpr std::uint32_t kCatchUp = 4;
 
 std::uint32_t refreshed_per_tick(std::uint64_t pairs, std::uint64_t ticks) {
@@ -31,15 +32,16 @@ void RoundRobin::begin_tick() noexcept {
   others_.begin_tick();
 }
 
-void RoundRobin::bring_back(const Culling& culling, const Evaluation& evaluation) noexcept {
+void RoundRobin::bring_back(const Culling& culling, const TickView& view) noexcept {
   for (const std::uint32_t object : culling.known_pairs().regained()) queue_.regain(object);
-  queue_.bring_back(culling.broad_phase().by_object(), evaluation.objects, evaluation.table);
+  queue_.bring_back(culling.broad_phase().by_object(), view);
 }
 
-// Published pairs that outnumber the budget must not starve the rest, nor these those.
+// Published pairs that outnumber the budget must not starve the other pairs, nor the other way
+// round.
 void RoundRobin::refresh(const PublishedPairs& published, bool all_published,
                          const Evaluator& evaluator) noexcept {
-  Budget& budget = evaluator.tick.budget;
+  Budget& budget = evaluator.budget;
   const bool covered = all_published || published.pairs().size() <= budget.left();
   if (all_published) {
     published_.all_refreshed();
@@ -54,22 +56,22 @@ void RoundRobin::refresh(const PublishedPairs& published, bool all_published,
   if (!covered) evaluate_published(published, evaluator);
 }
 
-// As far as the budget goes; where that was in the last tick, it begins in this one.
+// Goes on where the budget ended in the last tick.
 void RoundRobin::evaluate_published(const PublishedPairs& published,
                                     const Evaluator& evaluator) noexcept {
-  const Evaluation& tick = evaluator.tick;
+  const OpenTick& tick = evaluator.tick;
   std::uint32_t part_pairs = 0;
   const auto pairs = published.pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (next_published_ >= pairs.size()) next_published_ = 0;
     const std::uint32_t pair = pairs[next_published_];
     if (!is_evaluated(pair, tick) && is_known(pair, tick)) {
-      if (!evaluator.evaluate(pair)) {
-        // No pair may wait for one that might always find too little left.
+      if (!evaluator.try_evaluate(pair)) {
+        // The next tick must not begin with a pair that may never find enough budget left.
         if (!published_.is_sure()) ++next_published_;
         return published_.end_tick(part_pairs);
       }
-      part_pairs += tick.table.part_pairs_of(pair);
+      part_pairs += tick.pairs.part_pairs_of(pair);
     }
     ++next_published_;
   }
@@ -77,13 +79,13 @@ void RoundRobin::evaluate_published(const PublishedPairs& published,
 }
 
 void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
-  const Evaluation& tick = evaluator.tick;
+  const OpenTick& tick = evaluator.tick;
   const std::uint32_t most = kCatchUp * std::max(per_tick_, others_.due());
   std::uint32_t refreshed = 0, part_pairs = 0;
   for (std::uint32_t unknown = 0; refreshed < most && unknown < kMostSetAside;) {
     const std::uint32_t pair = queue_.stalest();
     const bool left = pair != RefreshQueue::kNoIndex;
-    const std::uint64_t last = left ? queue_.refreshed_cycle(pair) : tick.cycle;
+    const std::uint64_t last = left ? tick.pairs.refreshed_cycle[pair] : tick.cycle;
     if (last == tick.cycle) return others_.all_refreshed();
     if (!is_known(pair, tick)) {
       set_aside(pair, tick);
@@ -92,30 +94,30 @@ void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
     }
     const bool overdue = tick.cycle - last >= ticks_;
     if (refreshed >= per_tick_ && part_pairs >= others_.due() && !overdue) break;
-    if (!refresh(pair, evaluator)) break;
+    if (!refresh_pair(pair, evaluator)) break;
     ++refreshed;
-    part_pairs += tick.table.part_pairs_of(pair);
+    part_pairs += tick.pairs.part_pairs_of(pair);
   }
   others_.end_tick(part_pairs);
 }
 
 // False: the budget is used up.
-bool RoundRobin::refresh(std::uint32_t pair, const Evaluator& evaluator) noexcept {
-  if (evaluator.culling.refresh_by_models(pair, others_.kept(), evaluator.tick)) {
-    queue_.refreshed(pair, evaluator.tick.cycle);
+bool RoundRobin::refresh_pair(std::uint32_t pair, const Evaluator& evaluator) noexcept {
+  if (evaluator.culling.prove_far(pair, others_.kept(), evaluator.tick, evaluator.budget)) {
+    evaluator.note_refreshed(pair);
     return true;
   }
-  if (!evaluator.evaluate(pair)) return false;
-  // Of a pair that was culled this is the only look at what it really does.
+  if (!evaluator.try_evaluate(pair)) return false;
+  // Only here is the true distance of a culled pair found.
   CLEARANCE_INVARIANT(
-      evaluator.culling.broad_phase().may_be_culled(pair, upper_of(pair, evaluator.tick.table)));
+      evaluator.culling.broad_phase().may_be_culled(pair, upper_of(pair, evaluator.tick.pairs)));
   return true;
 }
 
-void RoundRobin::set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept {
-  const PairEntry& entry = evaluation.table.entries[pair];
-  const bool a_is_known = evaluation.objects[entry.object_a].known();
-  queue_.set_aside(pair, a_is_known ? entry.object_b : entry.object_a);
+void RoundRobin::set_aside(std::uint32_t pair, const TickView& view) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const bool a_is_known = view.objects[entry.object_a].known();
+  queue_.set_aside(pair, a_is_known ? entry.object_b : entry.object_a, view.pairs);
 }
 
 }  // namespace clearance

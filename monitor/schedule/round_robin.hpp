@@ -1,8 +1,9 @@
-// Round-robin refresh: every pair has its bound found afresh in time, whatever else is urgent.
+// Round-robin refresh: the bound of every pair is found afresh in time, whatever else is urgent.
 //
-// The stalest pairs first, culled or not: by the models of their objects where these prove them out
-// of question, else by an evaluation. Published pairs that the budget does not cover in one tick
-// are evaluated round-robin as well. What that takes is kept from what is urgent (RefreshBudget).
+// The stalest pairs come first, culled or not. A pair is refreshed by the models of its objects
+// where these prove it far, else by an evaluation. Published pairs that the budget does not cover
+// in one tick are evaluated round-robin as well. The queries for both are kept from urgent pairs
+// (RefreshBudget).
 #pragma once
 
 #include <cstdint>
@@ -18,14 +19,14 @@ class RoundRobin {
  public:
   RoundRobin(const Scene& scene, const RefreshShare& share);
 
-  // What is due grows by a tick's share.
+  // Adds one tick's share to the queries that are due.
   void begin_tick() noexcept;
-  // Queries to keep for what is due of the published pairs, and of the others.
+  // Queries to keep for the published pairs that are due, and for the others.
   [[nodiscard]] std::uint32_t kept_for_published() const noexcept { return published_.kept(); }
   [[nodiscard]] std::uint32_t kept_for_others() const noexcept { return others_.kept(); }
 
-  // Pairs that some object's return has made known come back into the queue.
-  void bring_back(const Culling& culling, const Evaluation& evaluation) noexcept;
+  // Brings the pairs of objects that are known again back into the queue.
+  void bring_back(const Culling& culling, const TickView& view) noexcept;
 
   // `all_published`: all published pairs that are known have been evaluated in this tick.
   void refresh(const PublishedPairs& published, bool all_published,
@@ -37,14 +38,14 @@ class RoundRobin {
  private:
   void evaluate_published(const PublishedPairs& published, const Evaluator& evaluator) noexcept;
   void refresh_stalest(const Evaluator& evaluator) noexcept;
-  [[nodiscard]] bool refresh(std::uint32_t pair, const Evaluator& evaluator) noexcept;
-  void set_aside(std::uint32_t pair, const Evaluation& evaluation) noexcept;
+  [[nodiscard]] bool refresh_pair(std::uint32_t pair, const Evaluator& evaluator) noexcept;
+  void set_aside(std::uint32_t pair, const TickView& view) noexcept;
 
   const std::uint64_t ticks_;  // within which every pair is refreshed
   RefreshBudget published_, others_;
-  const std::uint32_t per_tick_;    // pairs to be refreshed a tick
-  RefreshQueue queue_;              // of the pairs that the broad phase is told of
-  std::size_t next_published_ = 0;  // whose turn it is
+  const std::uint32_t per_tick_;    // pairs to be refreshed in each tick
+  RefreshQueue queue_;              // of the pairs that are not left out of the broad phase
+  std::size_t next_published_ = 0;  // the published pair whose turn it is
 };
 
 }  // namespace clearance

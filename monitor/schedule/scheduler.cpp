@@ -6,10 +6,10 @@
 namespace clearance {
 namespace {
 
-// A pair that stays active is evaluated this often, in ticks: its carried bound may be what keeps
-// it active.
+// A pair that stays active is evaluated again after so many ticks, because its loose carried bound
+// may be the reason why it stays active.
 constexpr std::uint64_t kReEvaluationTicks = 16;
-constexpr std::uint32_t kMostReEvaluated = 256;  // a tick
+constexpr std::uint32_t kMostReEvaluated = 256;  // pairs a tick
 
 std::uint32_t part_pairs_of(std::span<const std::uint32_t> pairs, const PairTable& table) noexcept {
   return std::transform_reduce(pairs.begin(), pairs.end(), 0u, std::plus<>(),
@@ -23,7 +23,7 @@ Scheduler::Scheduler(const Scene& scene, const RefreshShare& share,
                      const ZoneLevels& levels, WorkerPool& pool)
     : published_(scene, parts, table, share.published_every_tick),
       minimum_(scene.pairs.size()),
-      urgency_(scene, parts, levels),
+      urgency_(scene, levels),
       round_robin_(scene, share),
       pool_(pool) {
   re_evaluated_.reserve(kMostReEvaluated);
@@ -33,85 +33,79 @@ std::span<const std::uint32_t> Scheduler::left_out() const noexcept {
   return published_.every_tick() ? published_.pairs() : std::span<const std::uint32_t>();
 }
 
-// Whatever is urgent can be evaluated besides the published pairs, so that it need not come first.
-Schedule Scheduler::schedule(const Culling& culling, const Evaluation& evaluation) noexcept {
+// The published pairs are evaluated at once only if the budget covers all active pairs besides.
+// Then it does not matter that urgent pairs come after them.
+Schedule Scheduler::schedule(const Culling& culling, const TickView& view,
+                             const Budget& budget) noexcept {
   round_robin_.begin_tick();
   const std::uint32_t kept = round_robin_.kept_for_others();
   const std::uint64_t first = std::uint64_t{published_.part_pairs()} + kept;
-  const std::uint64_t others = part_pairs_of(culling.active(), evaluation.table);
-  const bool covered = first + others <= evaluation.budget.left();
+  const std::uint64_t others = part_pairs_of(culling.active(), view.pairs);
+  const bool covered = first + others <= budget.left();
   const bool at_once = published_.every_tick() && covered;
   return {.published_at_once = at_once,
           .kept = kept + (at_once ? 0 : round_robin_.kept_for_published())};
 }
 
-void Scheduler::evaluate(const Schedule& schedule, const Zones& zones, Culling& culling,
-                         ZoneCrossings& crossings, Evaluation& evaluation) noexcept {
-  const Evaluator evaluator{evaluation, culling, round_robin_.queue(), pool_};
-  Budget& budget = evaluation.budget;
-  round_robin_.bring_back(culling, evaluation);
-  evaluator.take_decided();
-
-  const std::uint32_t kept = budget.reserve(schedule.kept);
-  if (published_.every_tick()) look_at_published(schedule, evaluator);
-  minimum_.evaluate(evaluator);
-  urgency_.evaluate(evaluator);
-  crossings.begin_tick();
-  crossings.find(culling.seen(), zones, evaluation);
-  const bool ran_out = budget.left() == 0;
-  const std::uint32_t kept_for_sweep = budget.reserve(crossings.queries());
-  budget.release(kept);
-
-  round_robin_.refresh(published_, schedule.published_at_once, evaluator);
-  if (ran_out) {  // some of those that were kept were not needed
-    minimum_.evaluate(evaluator);
-    urgency_.evaluate(evaluator);
-  }
-  re_evaluate_active(evaluator);
-  budget.release(kept_for_sweep);
-  culling.cull_active(evaluation);
+bool Scheduler::evaluate_urgent(const Schedule& schedule, Culling& culling, const OpenTick& tick,
+                                Budget& budget) noexcept {
+  const Evaluator evaluator{tick, budget, culling, round_robin_.queue(), pool_};
+  round_robin_.bring_back(culling, tick);
+  evaluator.queue_decided();
+  if (published_.every_tick()) update_published(schedule, evaluator);
+  minimum_.find_minimum(evaluator);
+  urgency_.evaluate_urgent(evaluator);
+  return budget.left() > 0;
 }
 
-void Scheduler::look_at_published(const Schedule& schedule, const Evaluator& evaluator) noexcept {
-  Evaluation& tick = evaluator.tick;
+Evaluated Scheduler::refresh(const Schedule& schedule, bool urgent_done, Culling& culling,
+                             const OpenTick& tick, Budget& budget) noexcept {
+  const Evaluator evaluator{tick, budget, culling, round_robin_.queue(), pool_};
+  round_robin_.refresh(published_, schedule.published_at_once, evaluator);
+  if (!urgent_done) {
+    minimum_.find_minimum(evaluator);
+    urgency_.evaluate_urgent(evaluator);
+  }
+  re_evaluate_active(evaluator);
+  return {.smallest_upper = minimum_.smallest_upper(),
+          .oldest_refresh = oldest_refresh(schedule, culling, tick)};
+}
+
+void Scheduler::update_published(const Schedule& schedule, const Evaluator& evaluator) noexcept {
+  const OpenTick& tick = evaluator.tick;
   if (schedule.published_at_once) {
-    published_.evaluate(pool_, tick);
+    published_.evaluate_all(pool_, tick, evaluator.budget);
     for (const std::uint32_t pair : published_.pairs()) {
-      if (is_evaluated(pair, tick)) evaluator.culling.see(pair);
+      if (!is_evaluated(pair, tick)) continue;
+      evaluator.culling.mark_updated(pair);
+      evaluator.note_refreshed(pair);
     }
     return;
   }
   for (const std::uint32_t pair : published_.pairs()) {
-    if (is_known(pair, tick)) evaluator.culling.look_at(pair, tick);
+    if (is_known(pair, tick)) evaluator.culling.update(pair, tick);
   }
 }
 
 void Scheduler::re_evaluate_active(const Evaluator& evaluator) noexcept {
-  const Evaluation& tick = evaluator.tick;
+  const TickView& view = evaluator.tick;
   re_evaluated_.clear();
   for (const std::uint32_t pair : evaluator.culling.active()) {
     if (re_evaluated_.size() == kMostReEvaluated) break;
-    const std::uint64_t last = tick.table.entries[pair].evaluated_cycle;
-    if (last + kReEvaluationTicks >= tick.cycle && last > 0) continue;
-    if (is_known(pair, tick)) re_evaluated_.push_back(pair);
+    const std::uint64_t last = view.pairs.entries[pair].evaluated_cycle;
+    if (last + kReEvaluationTicks >= view.cycle && last > 0) continue;
+    if (is_known(pair, view)) re_evaluated_.push_back(pair);
   }
-  evaluator.evaluate(re_evaluated_);
-}
-
-std::uint64_t Scheduler::refreshed_cycle(std::uint32_t pair, const Culling& culling,
-                                         const PairTable& table) const noexcept {
-  return culling.broad_phase().left_out(pair) ? table.entries[pair].evaluated_cycle
-                                              : round_robin_.queue().refreshed_cycle(pair);
+  evaluator.evaluate_affordable(re_evaluated_);
 }
 
 std::uint64_t Scheduler::oldest_refresh(const Schedule& schedule, const Culling& culling,
-                                        const Evaluation& evaluation) const noexcept {
+                                        const TickView& view) const noexcept {
   if (!culling.broad_phase().everyone_met()) return 0;
-  std::uint64_t oldest = std::min(evaluation.cycle, round_robin_.queue().oldest());
+  std::uint64_t oldest = std::min(view.cycle, round_robin_.queue().oldest(view.pairs));
   if (!published_.every_tick() || schedule.published_at_once) return oldest;
   for (const std::uint32_t pair : published_.pairs()) {
-    if (!is_known(pair, evaluation)) continue;
-    oldest = std::min(oldest, evaluation.table.entries[pair].evaluated_cycle);
+    if (is_known(pair, view)) oldest = std::min(oldest, view.pairs.refreshed_cycle[pair]);
   }
   return oldest;
 }

@@ -1,19 +1,21 @@
-// Stages 4 and 5 of a tick: which pairs are evaluated, and with how much of the budget? (§4.6)
+// Stages 'schedule', 'evaluate' and 'refresh' of a tick: which pairs are evaluated, and with how
+// much of the budget? (§4.6)
 //
 // Every bound is true before and after; the schedule decides only how tight it is. Published pairs
-// are evaluated in every tick, as long as the budget covers them and everything that competes with
-// them. Of the others the culling says which are active, and among those:
-//  1. the minimum: in order of carried lower bound, until none left can beat the smallest upper
-//     bound; the horizon below which pairs are active follows that (MinimumSearch);
-//  2. bins by the number of ticks until contact, or a zone's threshold, can be reached: the first
-//     bins every tick, nearest first (UrgencyBins);
-//  3. what the sweep needs for pairs that are outside their zones, but may have been inside since
-//     the last tick, is kept from all that follows;
-//  4. published pairs, if the budget covers them after all;
-//  5. round-robin, a share of all pairs, culled or not, and published pairs that the budget does
-//     not cover at once (RoundRobin). What that takes is kept from 1 to 4;
-//  6. pairs that a tighter bound may cull are re-evaluated.
-// Order and outcome depend on the inputs only: no clock, no addresses, no number of workers.
+// are evaluated in every tick whose budget covers them and everything that competes with them.
+// Among the others the culling says which are active, and these have their turns in this order:
+//  1. evaluate: the minimum. Pairs are evaluated in the order of their carried lower bounds until
+//     none left can beat the smallest upper bound. The horizon, below which pairs are active,
+//     follows that (MinimumSearch);
+//  2. evaluate: bins by the number of ticks until contact, or a zone's threshold, can be reached.
+//     The first bins have their turn in every tick, the nearest first (UrgencyBins);
+//  3. the tick keeps from all that follows what the sweep needs for pairs that are outside their
+//     zones, but may have been inside since the last tick (ZoneCrossings);
+//  4. refresh: published pairs, if the budget covers them after all;
+//  5. refresh: a share of all pairs, culled or not, and of the published pairs that the budget does
+//     not cover at once, round-robin (RoundRobin). The tick keeps their queries from 1 to 4;
+//  6. refresh: pairs that a tighter bound may cull.
+// Order and result depend on the inputs only: on no clock, no addresses, no number of workers.
 #pragma once
 
 #include <cstdint>
@@ -26,47 +28,50 @@
 #include "monitor/schedule/minimum_search.hpp"
 #include "monitor/schedule/round_robin.hpp"
 #include "monitor/schedule/urgency_bins.hpp"
-#include "monitor/swept/zone_crossings.hpp"
 
 namespace clearance {
 
-// What stage 4 decides before anything is evaluated.
+// What stage 'schedule' decides about a tick.
 struct Schedule {
-  bool published_at_once = false;  // all that are known, first of all: the budget covers them and
-                                   // whatever is urgent
-  std::uint32_t kept = 0;          // queries kept for the round-robin refresh
+  bool published_at_once = false;  // all published pairs are evaluated in one loop
+  std::uint32_t kept = 0;          // queries that are kept for the refresh
+};
+
+// What the evaluations of a tick leave to the next one and to the report.
+struct Evaluated {
+  double smallest_upper = kInfinity;  // of any pair that the search for the minimum looked at, m
+  // The tick in which the stalest known pair was last refreshed. While pairs are met for the first
+  // time, or come back, it may be too early, but no pair is older.
+  std::uint64_t oldest_refresh = 0;
 };
 
 class Scheduler {
  public:
-  // `pool` and `levels` must outlive it.
+  // The scene, the levels and the pool must outlive it.
   Scheduler(const Scene& scene, const RefreshShare& share, const std::vector<PosedPart>& parts,
             const PairTable& table, const ZoneLevels& levels, WorkerPool& pool);
 
-  // Pairs that the broad phase is not told of: evaluated, or looked at, in every tick.
+  // The pairs that are left out of the broad phase: every tick evaluates or updates them.
   [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept;
 
-  // Stage 4, after the culling.
-  [[nodiscard]] Schedule schedule(const Culling& culling, const Evaluation& evaluation) noexcept;
+  // Stage 'schedule', after the culling.
+  [[nodiscard]] Schedule schedule(const Culling& culling, const TickView& view,
+                                  const Budget& budget) noexcept;
 
-  // Stage 5. Leaves budget for the zone crossings that it finds.
-  void evaluate(const Schedule& schedule, const Zones& zones, Culling& culling,
-                ZoneCrossings& crossings, Evaluation& evaluation) noexcept;
+  // Stage 'evaluate'. False: the budget ran out.
+  [[nodiscard]] bool evaluate_urgent(const Schedule& schedule, Culling& culling,
+                                     const OpenTick& tick, Budget& budget) noexcept;
 
-  // The smallest upper bound of any pair that the last search for the minimum saw, m.
-  [[nodiscard]] double minimum_upper() const noexcept { return minimum_.smallest_upper(); }
-  // The tick in which a pair was last refreshed: evaluated, or proved far by the models of its
-  // objects; 0: never.
-  [[nodiscard]] std::uint64_t refreshed_cycle(std::uint32_t pair, const Culling& culling,
-                                              const PairTable& table) const noexcept;
-  // The same of the stalest pair that is known; the cycle itself: none is stale. Exact, but while
-  // pairs are met for the first time or come back into sight: then none is older.
-  [[nodiscard]] std::uint64_t oldest_refresh(const Schedule& schedule, const Culling& culling,
-                                             const Evaluation& evaluation) const noexcept;
+  // Stage 'refresh', with the queries that were kept for it. `urgent_done`: what the stage before
+  // returned; if false, it is tried again with the queries that the refresh did not need.
+  [[nodiscard]] Evaluated refresh(const Schedule& schedule, bool urgent_done, Culling& culling,
+                                  const OpenTick& tick, Budget& budget) noexcept;
 
  private:
-  void look_at_published(const Schedule& schedule, const Evaluator& evaluator) noexcept;
+  void update_published(const Schedule& schedule, const Evaluator& evaluator) noexcept;
   void re_evaluate_active(const Evaluator& evaluator) noexcept;
+  [[nodiscard]] std::uint64_t oldest_refresh(const Schedule& schedule, const Culling& culling,
+                                             const TickView& view) const noexcept;
 
   PublishedPairs published_;
   MinimumSearch minimum_;

@@ -19,11 +19,11 @@ std::vector<double> stated_speeds(const Scene& scene) {
   return speeds;
 }
 
-// As many as the budget allows, the stalest first; pairs of equal age in their own order.
+// Evaluates as many as the budget allows, the stalest first; pairs of equal age in their order.
 void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator) noexcept {
-  const std::vector<PairEntry>& entries = evaluator.tick.table.entries;
-  const std::uint32_t queries = evaluator.tick.budget.left();
-  // A pair takes one query or more, so no more pairs than this have a turn.
+  const std::vector<PairEntry>& entries = evaluator.tick.pairs.entries;
+  const std::uint32_t queries = evaluator.budget.left();
+  // A pair takes at least one query, so no more pairs than this can have a turn.
   if (pairs.size() > queries) {
     const auto staler = [&entries](std::uint32_t left, std::uint32_t right) {
       return std::tie(entries[left].evaluated_cycle, left) <
@@ -34,20 +34,13 @@ void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator
     std::sort(pairs.begin(), end, staler);
     pairs = pairs.first(queries);
   }
-  evaluator.evaluate(pairs);
+  evaluator.evaluate_affordable(pairs);
 }
 
 }  // namespace
 
-UrgencyBins::UrgencyBins(const Scene& scene, const std::vector<PosedPart>& parts,
-                         const ZoneLevels& levels)
-    : levels_(levels),
-      period_s_(1.0 / scene.rate_hz),
-      reach_(scene.objects.size(), 0.0),
-      stated_speed_(stated_speeds(scene)) {
-  for (const PosedPart& part : parts) {
-    reach_[part.object] = std::max(reach_[part.object], part.reach);
-  }
+UrgencyBins::UrgencyBins(const Scene& scene, const ZoneLevels& levels)
+    : levels_(levels), period_s_(1.0 / scene.rate_hz), stated_speed_(stated_speeds(scene)) {
   in_bin_.reserve(scene.pairs.size());
 }
 
@@ -58,46 +51,44 @@ std::vector<double> UrgencyBins::distances_ahead(const Scene& scene) {
   return distances;
 }
 
-void UrgencyBins::evaluate(const Evaluator& evaluator) noexcept {
-  const Evaluation& tick = evaluator.tick;
+void UrgencyBins::evaluate_urgent(const Evaluator& evaluator) noexcept {
+  const TickView& view = evaluator.tick;
   std::array<bool, kBins> filled{};
-  for (const std::uint32_t pair : evaluator.culling.seen()) {
-    if (is_evaluated(pair, tick)) continue;
-    const std::size_t bin = bin_of(pair, tick.objects, tick.table);
+  for (const std::uint32_t pair : evaluator.culling.updated()) {
+    if (is_evaluated(pair, view)) continue;
+    const std::size_t bin = bin_of(pair, view);
     if (bin < kBins) filled[bin] = true;
   }
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     if (!filled[bin]) continue;
     in_bin_.clear();
-    for (const std::uint32_t pair : evaluator.culling.seen()) {
-      if (is_evaluated(pair, tick)) continue;
-      if (bin_of(pair, tick.objects, tick.table) == bin) in_bin_.push_back(pair);
+    for (const std::uint32_t pair : evaluator.culling.updated()) {
+      if (is_evaluated(pair, view)) continue;
+      if (bin_of(pair, view) == bin) in_bin_.push_back(pair);
     }
     evaluate_stalest(in_bin_, evaluator);
   }
 }
 
-std::size_t UrgencyBins::bin_of(std::uint32_t pair, const std::vector<TrackedObject>& objects,
-                                const PairTable& table) const noexcept {
-  const std::uint32_t a = table.entries[pair].object_a;
-  const std::uint32_t b = table.entries[pair].object_b;
-  const double lower =
-      table.entries[pair].least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
+std::size_t UrgencyBins::bin_of(std::uint32_t pair, const TickView& view) const noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const std::uint32_t a = entry.object_a, b = entry.object_b;
+  const std::vector<TrackedObject>& objects = view.objects;
+  const double lower = entry.least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
   const double above = lower - std::max(levels_.largest_threshold(pair), 0.0);
   if (!(above > 0.0)) return 0;
   const double speed = speed_of(a, objects[a]) + speed_of(b, objects[b]);
-  const double ticks = above / (speed * period_s_);  // nothing moves: infinity
+  const double ticks = above / (speed * period_s_);  // infinity where nothing moves
   std::size_t bin = 0;
   for (double until = 1.0; bin < kBins && !(ticks < until); until *= 2.0) ++bin;
   return bin;
 }
 
-// A velocity that is not known counts as zero: the stated speed is what is left then, and a pair
-// that has just been seen is evaluated anyway.
+// A velocity that is not known is zero: then the stated speed counts, and a pair of an object that
+// has just become known is evaluated anyway.
 double UrgencyBins::speed_of(std::uint32_t object, const TrackedObject& state) const noexcept {
   const double turning = state.twist.angular.norm();
-  const double measured =
-      state.twist.linear.norm() + (turning > 0.0 ? turning * reach_[object] : 0.0);
+  const double measured = state.twist.linear.norm() + (turning > 0.0 ? turning * state.reach : 0.0);
   return std::max(stated_speed_[object], measured);
 }
 

@@ -8,16 +8,16 @@
 namespace clearance {
 namespace {
 
-// A direction, and a middle rotated into another frame: relative to the lengths that take part.
+// The rounding of a direction, and of a centre rotated into another frame, relative to the lengths
+// that take part.
 constexpr double kDirectionError = 0x1p-44;
-// Nearer instants tell nothing apart.
-constexpr double kLeastGap = 0x1p-20;
+constexpr double kLeastGap = 0x1p-20;  // instants that are nearer are not told apart
 
 struct Meeting {
   double value, at;
 };
 
-// max(left + t * fall_right, right + (1 - t) * fall_left) at its least over 0 <= t <= 1.
+// The least value of max(left + t * fall_right, right + (1 - t) * fall_left) for 0 <= t <= 1.
 Meeting least_between(double left, double fall_right, double right, double fall_left) noexcept {
   const Meeting start{std::max(left, right + fall_left), 0.0};
   const Meeting end{std::max(left + fall_right, right), 1.0};
@@ -30,27 +30,28 @@ Meeting least_between(double left, double fall_right, double right, double fall_
   return least;
 }
 
-// Puts a part of the object where it is at `s` of its way, 0 to 1. Its errors hold for that.
-void place_on_the_way(const InterpolatedMotion& motion, double s, PosedPart& part) noexcept {
+// Places a part as its object is after the share `s`, 0 to 1, of its motion. The part's errors hold
+// for that pose.
+void place_between(const InterpolatedMotion& motion, double s, PosedPart& part) noexcept {
   place_at(pose_at(motion, s), part);
   if (s <= 0.0 || s >= 1.0) return;
-  const double reach = motion.from.position.norm() + motion.to.position.norm();
+  const double lengths = motion.from.position.norm() + motion.to.position.norm();
   const double offset = motion.turns ? part.object_from_part.position.norm() : 0.0;
-  part.shift_error += kInterpolationError * (reach + offset);
+  part.shift_error += kInterpolationError * (lengths + offset);
   if (motion.turns) part.turn_error += kInterpolationError;
 }
 
 }  // namespace
 
-SweptSearch::SweptSearch(std::uint32_t part_pair, const Evaluation& evaluation) noexcept
-    : a_(evaluation.parts[evaluation.table.part_a[part_pair]]),
-      b_(evaluation.parts[evaluation.table.part_b[part_pair]]),
-      motion_a_(evaluation.objects[a_.object].interpolated()),
-      motion_b_(evaluation.objects[b_.object].interpolated()),
+SweptSearch::SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept
+    : a_(view.parts[view.pairs.part_a[part_pair]]),
+      b_(view.parts[view.pairs.part_b[part_pair]]),
+      motion_a_(view.objects[a_.object].interpolated()),
+      motion_b_(view.objects[b_.object].interpolated()),
       directed_(a_.keeps_direction && b_.keeps_direction),
-      tracking_(evaluation.table.tracking[part_pair]) {
-  place_on_the_way(motion_a_, 0.0, a_);
-  place_on_the_way(motion_b_, 0.0, b_);
+      tracking_(view.pairs.tracking[part_pair]) {
+  place_between(motion_a_, 0.0, a_);
+  place_between(motion_b_, 0.0, b_);
   const RelativeMotion of_a =
       seen_from(motion_b_, motion_a_, a_.sphere_in_world.centre, a_.sphere_in_world.radius);
   const RelativeMotion of_b =
@@ -64,11 +65,11 @@ SweptSearch::SweptSearch(std::uint32_t part_pair, const Evaluation& evaluation) 
   }
 }
 
-SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
+SweptBounds SweptSearch::decide(double level, Budget& budget) noexcept {
   SweptBounds bounds;
-  if (!(relative_.speed < kInfinity) || evaluation.budget.left() < kLeastQueries) return bounds;
-  insert(look(0.0, evaluation));
-  insert(look(1.0, evaluation));
+  if (!(relative_.speed < kInfinity) || budget.left() < kLeastQueries) return bounds;
+  insert(query_at(0.0, budget));
+  insert(query_at(1.0, budget));
   while (true) {
     const Gap lowest = lowest_gap();
     bounds.lower = lowest.lower;
@@ -77,23 +78,23 @@ SweptBounds SweptSearch::decide(double level, Evaluation& evaluation) noexcept {
     if (bounds.lower >= level || bounds.upper < level) return bounds;
     const Instant& left = instants_[lowest.before];
     const double width = instants_[lowest.before + 1].s - left.s;
-    if (size_ == kMostQueries || evaluation.budget.left() == 0 || width < kLeastGap) return bounds;
-    insert(look(left.s + width * std::clamp(lowest.deepest, 0.25, 0.75), evaluation));
+    if (size_ == kMostQueries || budget.left() == 0 || width < kLeastGap) return bounds;
+    insert(query_at(left.s + width * std::clamp(lowest.deepest, 0.25, 0.75), budget));
   }
 }
 
-SweptSearch::Instant SweptSearch::look(double s, Evaluation& evaluation) noexcept {
-  place_on_the_way(motion_a_, s, a_);
-  place_on_the_way(motion_b_, s, b_);
+SweptSearch::Instant SweptSearch::query_at(double s, Budget& budget) noexcept {
+  place_between(motion_a_, s, a_);
+  place_between(motion_b_, s, b_);
   const DistanceResult found = distance(
       *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
-  evaluation.budget.spend();
+  budget.spend();
   const DistanceBounds bounds = for_exact_poses(found, a_, b_);
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
   const PosedPart& other = from_b_ ? a_ : b_;
   const Pose frame = pose_at(from_b_ ? motion_b_ : motion_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
-  instant.middle = into * (other.sphere_in_world.centre - frame.position);
+  instant.centre = into * (other.sphere_in_world.centre - frame.position);
   if (directed_) {
     instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
   }
@@ -115,8 +116,8 @@ SweptSearch::Gap SweptSearch::lowest_gap() const noexcept {
   return lowest;
 }
 
-// From either end the distance falls no faster than the parts approach, nor than they approach
-// along the direction that separates them there.
+// From either end the distance falls no faster than the parts approach, and no faster than they
+// approach along the direction that separates them at that end.
 SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
   const Instant& left = instants_[before];
   const Instant& right = instants_[before + 1];
@@ -126,14 +127,14 @@ SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
   return {.before = before, .lower = least.value - std::abs(error), .deepest = least.at};
 }
 
-// How much less than at `from` the distance may be at `to`, and in proportion on the way there, at
-// most; m, negative where it falls.
+// How much less the distance may be at `to` than at `from`, m, negative where it falls; between the
+// two it falls at most in proportion.
 double SweptSearch::fall(const Instant& from, const Instant& to) const noexcept {
   const double width = std::abs(to.s - from.s);
   const double by_speed = -rounded_up(relative_.speed * width);
   if (from.normal.isZero(0.0)) return by_speed;
   const double bent = relative_.turning * width + 0.5 * relative_.bending * width * width;
-  const double along = from.normal.dot(to.middle - from.middle);
+  const double along = from.normal.dot(to.centre - from.centre);
   return std::max(by_speed, along - rounded_up(bent + direction_error_));
 }
 

@@ -3,27 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/invariant.hpp"
 #include "monitor/motion/directed_rounding.hpp"
+#include "monitor/pairs/carried_bounds.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/swept/swept_search.hpp"
 
 namespace clearance {
 namespace {
 
-// At the part pairs that the objects' displacement leaves open; no more of them once one was
-// nearer.
-SweptBounds look_closer(std::uint32_t pair, double level, double displacement,
-                        Evaluation& evaluation) noexcept {
-  const PairTable& table = evaluation.table;
-  if (table.entries[pair].carried_cycle != evaluation.cycle) {
-    displacement = rounded_up(displacement + displacement_since(pair, evaluation.objects, table));
+// Searches the part pairs that displacement alone leaves open, until one of them was nearer than
+// `level`. `displacement`: of both objects since the last tick, m.
+SweptBounds search_part_pairs(std::uint32_t pair, double level, double displacement,
+                              const TickView& view, Budget& budget) noexcept {
+  const PairTable& table = view.pairs;
+  if (!is_carried(pair, view)) {
+    displacement = rounded_up(displacement + displacement_since(pair, view));
   }
   SweptBounds all{.lower = kInfinity};
   for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
        part_pair < table.entries[pair].end_part_pair; ++part_pair) {
     SweptBounds bounds{.lower = rounded_down(table.lower[part_pair] - displacement)};
     const bool matters = bounds.lower < level && !(all.upper < level);
-    if (matters && evaluation.budget.left() >= SweptSearch::kLeastQueries) {
-      const SweptBounds found = SweptSearch(part_pair, evaluation).decide(level, evaluation);
+    if (matters && budget.left() >= SweptSearch::kLeastQueries) {
+      const SweptBounds found = SweptSearch(part_pair, view).decide(level, budget);
       bounds.lower = std::max(bounds.lower, found.lower);
       bounds.upper = found.upper;
     }
@@ -33,68 +36,89 @@ SweptBounds look_closer(std::uint32_t pair, double level, double displacement,
   return all;
 }
 
-// It was known at the last tick, and is where it can have come since.
+// Whether the object was known at the last tick and has made no discontinuity since.
 bool has_swept_motion(const TrackedObject& object) noexcept {
   return !object.first_seen && !object.discontinuous;
 }
 
-}  // namespace
-
-SweptBounds swept_bounds_of(std::uint32_t pair, double level, Evaluation& evaluation) noexcept {
-  const TrackedObject& a = evaluation.objects[evaluation.table.entries[pair].object_a];
-  const TrackedObject& b = evaluation.objects[evaluation.table.entries[pair].object_b];
-  if (!has_swept_motion(a) || !has_swept_motion(b)) return {};
-  const double unseen = rounded_up(a.unseen_since + b.unseen_since);
-  const SweptBounds found = look_closer(pair, rounded_up(level + unseen),
-                                        rounded_up(a.displacement + b.displacement), evaluation);
-  return {rounded_down(found.lower - unseen), rounded_up(found.upper + unseen)};
+// Whether displacement alone proves that the pair was outside its zones since the last tick. Most
+// pairs are decided here.
+inline bool stayed_outside(std::uint32_t pair, double threshold, const TickView& view) noexcept {
+  if (threshold == -kInfinity) return true;  // the pair has no zone
+  const PairEntry& entry = view.pairs.entries[pair];
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
+  const double displaced =
+      2.0 * (a.displacement + b.displacement) + (a.unseen_since + b.unseen_since);
+  return rounded_down(entry.least_lower - rounded_up(displaced)) >= threshold;
 }
 
-void ZoneCrossings::find(std::span<const std::uint32_t> seen, const Zones& zones,
-                         const Evaluation& evaluation) noexcept {
-  for (; looked_at_ < seen.size(); ++looked_at_) {
-    const std::uint32_t pair = seen[looked_at_];
-    if (!is_far(pair, levels_.largest_threshold(pair), evaluation))
-      look_at(pair, zones, evaluation);
+}  // namespace
+
+SweptBounds swept_bounds_of(std::uint32_t pair, double level, const TickView& view,
+                            Budget& budget) noexcept {
+  const TrackedObject& a = view.objects[view.pairs.entries[pair].object_a];
+  const TrackedObject& b = view.objects[view.pairs.entries[pair].object_b];
+  if (!has_swept_motion(a) || !has_swept_motion(b)) return {};
+  const double unobserved = rounded_up(a.unseen_since + b.unseen_since);
+  const SweptBounds found =
+      search_part_pairs(pair, rounded_up(level + unobserved),
+                        rounded_up(a.displacement + b.displacement), view, budget);
+  return {rounded_down(found.lower - unobserved), rounded_up(found.upper + unobserved)};
+}
+
+void ZoneCrossings::find(std::span<const std::uint32_t> updated, const Zones& zones,
+                         const TickView& view) noexcept {
+  crossings_.clear();
+  examined_ = 0;
+  find_more(updated, zones, view);
+}
+
+void ZoneCrossings::find_more(std::span<const std::uint32_t> updated, const Zones& zones,
+                              const TickView& view) noexcept {
+  for (; examined_ < updated.size(); ++examined_) {
+    const std::uint32_t pair = updated[examined_];
+    if (!stayed_outside(pair, levels_.largest_threshold(pair), view)) examine(pair, zones, view);
   }
 }
 
-void ZoneCrossings::look_at(std::uint32_t pair, const Zones& zones,
-                            const Evaluation& evaluation) noexcept {
+void ZoneCrossings::examine(std::uint32_t pair, const Zones& zones, const TickView& view) noexcept {
   if (crossings_.size() == crossings_.capacity()) return;
-  const PairTable& table = evaluation.table;
-  const PairEntry& entry = table.entries[pair];
-  const std::vector<TrackedObject>& objects = evaluation.objects;
-  const TrackedObject& a = objects[entry.object_a];
-  const TrackedObject& b = objects[entry.object_b];
+  const PairEntry& entry = view.pairs.entries[pair];
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
   if (a.displacement + b.displacement == 0.0 || !has_swept_motion(a) || !has_swept_motion(b))
     return;
 
-  const double unseen_now = rounded_up(a.may_have_moved + b.may_have_moved);
-  const double unseen = rounded_up(a.unseen_since + b.unseen_since);
-  const double now = rounded_down(entry.least_lower - unseen_now);
+  const double unobserved_now = rounded_up(a.may_have_moved + b.may_have_moved);
+  const double unobserved = rounded_up(a.unseen_since + b.unseen_since);
+  const double now = rounded_down(entry.least_lower - unobserved_now);
   if (!(zones.undecided(pair, now, -kInfinity) > -kInfinity)) return;
-  const double known = lower_since_last_tick(pair, entry.least_lower, objects, evaluation.cycle,
-                                             table, SweptPrecision::kByRelativeDisplacement);
-  const double swept_lower = rounded_down(known - unseen);
+  const double known =
+      lower_since_last_tick(pair, entry.least_lower, view, SweptPrecision::kByRelativeDisplacement);
+  const double swept_lower = rounded_down(known - unobserved);
   if (!(zones.undecided(pair, now, swept_lower) > -kInfinity)) return;
   crossings_.push_back({pair, now, {.lower = swept_lower}});
 }
 
-void ZoneCrossings::sweep(std::span<const std::uint32_t> seen, const Zones& zones,
-                          Evaluation& evaluation) noexcept {
-  find(seen, zones, evaluation);
-  for (Crossing& crossing : crossings_) decide(zones, evaluation, crossing);
+std::uint32_t ZoneCrossings::queries() const noexcept {
+  return static_cast<std::uint32_t>(crossings_.size()) * SweptSearch::kMostQueries;
+}
+
+void ZoneCrossings::sweep(std::span<const std::uint32_t> updated, const Zones& zones,
+                          const TickView& view, Budget& budget) noexcept {
+  find_more(updated, zones, view);
+  for (Crossing& crossing : crossings_) decide(zones, view, budget, crossing);
   std::ranges::sort(crossings_, {}, &Crossing::pair);
 }
 
-// Level by level, from the farthest zone threshold down.
-void ZoneCrossings::decide(const Zones& zones, Evaluation& evaluation,
+// Level by level, from the largest zone threshold down.
+void ZoneCrossings::decide(const Zones& zones, const TickView& view, Budget& budget,
                            Crossing& crossing) noexcept {
   SweptBounds& bounds = crossing.bounds;
   double level = zones.undecided(crossing.pair, crossing.now, bounds.lower);
-  while (level > -kInfinity && evaluation.budget.left() >= SweptSearch::kLeastQueries) {
-    const SweptBounds found = swept_bounds_of(crossing.pair, level, evaluation);
+  while (level > -kInfinity && budget.left() >= SweptSearch::kLeastQueries) {
+    const SweptBounds found = swept_bounds_of(crossing.pair, level, view, budget);
     bounds.lower = std::max(bounds.lower, found.lower);
     bounds.upper = std::min(bounds.upper, found.upper);
     level = zones.undecided(crossing.pair, std::nextafter(level, -kInfinity), bounds.lower);

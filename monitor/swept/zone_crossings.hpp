@@ -1,78 +1,64 @@
-// Which pairs are outside their zones now, but may have been inside between two ticks? Those are
-// looked at closer, until it is decided or the budget ends.
+// Which pairs are outside their zones now, but may have been inside between two ticks? Each of them
+// is searched more closely, until that is decided or the budget ends.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/swept/swept_search.hpp"
+#include "monitor/pairs/budget.hpp"
+#include "monitor/swept/swept_bounds.hpp"
 #include "monitor/zones/zones.hpp"
 
 namespace clearance {
 
-// How near a known pair was at any instant since the last tick, looked at closer until `level` is
-// decided, m, or the budget ends; for where its objects may have been. Nothing: infinite.
-[[nodiscard]] SweptBounds swept_bounds_of(std::uint32_t pair, double level,
-                                          Evaluation& evaluation) noexcept;
+// Bounds of a known pair's distance at any instant since the last tick, for where its objects may
+// have been. The search ends when `level`, m, is decided, or the budget ends. Infinite: no bounds
+// were found.
+[[nodiscard]] SweptBounds swept_bounds_of(std::uint32_t pair, double level, const TickView& view,
+                                          Budget& budget) noexcept;
 
 class ZoneCrossings {
  public:
-  // `most`: pairs that a tick can look at closer.
+  // `most`: the largest number of pairs that a tick can search more closely.
   explicit ZoneCrossings(const ZoneLevels& levels, std::size_t most) : levels_(levels) {
     crossings_.reserve(most);
   }
 
-  void begin_tick() noexcept {
-    crossings_.clear();
-    looked_at_ = 0;
-  }
+  // Stage 'cross' of a tick: begins the tick's list with those among the `updated` pairs.
+  void find(std::span<const std::uint32_t> updated, const Zones& zones,
+            const TickView& view) noexcept;
 
-  // Finds those among `seen`, the known pairs whose bounds are of this tick, from where the last
-  // call of this tick ended.
-  void find(std::span<const std::uint32_t> seen, const Zones& zones,
-            const Evaluation& evaluation) noexcept;
+  // How many queries the sweep of the pairs found so far takes at most, if all but one part pair of
+  // each are clear.
+  [[nodiscard]] std::uint32_t queries() const noexcept;
 
-  // That deciding them takes at most, where all but one part pair each are clear.
-  [[nodiscard]] std::uint32_t queries() const noexcept {
-    return static_cast<std::uint32_t>(crossings_.size()) * SweptSearch::kMostQueries;
-  }
+  // Stage 'sweep' of a tick: adds the pairs that have been updated since find(), and decides all of
+  // them, as far as the budget goes.
+  void sweep(std::span<const std::uint32_t> updated, const Zones& zones, const TickView& view,
+             Budget& budget) noexcept;
 
-  // Stage 6 of a tick: finds the rest of them and decides all, as far as the budget goes.
-  void sweep(std::span<const std::uint32_t> seen, const Zones& zones,
-             Evaluation& evaluation) noexcept;
-
-  // What looking closer has told about a pair this tick, for where its objects may have been.
-  // Nothing: infinite.
+  // The bounds that this tick's sweep has found for a pair; infinite where it found none.
   [[nodiscard]] SweptBounds of(std::uint32_t pair) const noexcept;
-  // About any pair.
+  // The sweep has searched some pair.
   [[nodiscard]] bool any() const noexcept { return !crossings_.empty(); }
 
  private:
-  // A pair that is outside its zones with `now`, m, but not with the swept bound that is known.
+  // A pair that is outside its zones by its bound of now, `now`, m, but not by its swept bound.
   struct Crossing {
     std::uint32_t pair;
     double now;
     SweptBounds bounds;
   };
-  // Most pairs are decided by less than what is known.
-  [[nodiscard]] static bool is_far(std::uint32_t pair, double threshold,
-                                   const Evaluation& evaluation) noexcept {
-    if (threshold == -kInfinity) return true;  // of what?
-    const PairEntry& entry = evaluation.table.entries[pair];
-    const TrackedObject& a = evaluation.objects[entry.object_a];
-    const TrackedObject& b = evaluation.objects[entry.object_b];
-    const double displaced =
-        2.0 * (a.displacement + b.displacement) + (a.unseen_since + b.unseen_since);
-    return rounded_down(entry.least_lower - rounded_up(displaced)) >= threshold;
-  }
-  void look_at(std::uint32_t pair, const Zones& zones, const Evaluation& evaluation) noexcept;
-  static void decide(const Zones& zones, Evaluation& evaluation, Crossing& crossing) noexcept;
+  void find_more(std::span<const std::uint32_t> updated, const Zones& zones,
+                 const TickView& view) noexcept;
+  void examine(std::uint32_t pair, const Zones& zones, const TickView& view) noexcept;
+  static void decide(const Zones& zones, const TickView& view, Budget& budget,
+                     Crossing& crossing) noexcept;
 
   const ZoneLevels& levels_;
-  std::size_t looked_at_ = 0;        // of the pairs seen in this tick
-  std::vector<Crossing> crossings_;  // by pair, once swept
+  std::size_t examined_ = 0;         // how many of the updated pairs
+  std::vector<Crossing> crossings_;  // in ascending order of pairs after the sweep
 };
 
 }  // namespace clearance

@@ -182,12 +182,13 @@ void to_wire(const Report& report, std::int64_t publish_ns,
 }
 
 // Ids are places in the lists, as in the scene.
-Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene) {
+Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell) {
+  const Scene& scene = cell.scene;
   Sample<clearance_msg_Catalogue> sample;
   sample->scene = duplicate(scene.name);
   sample->scene_revision = scene.revision;
   sample->rate_hz = scene.rate_hz;
-  sample->cell_yaml = duplicate(scene.yaml);
+  sample->cell_yaml = duplicate(cell.yaml);
   reserve_sequence(sample->objects, scene.objects.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     fill(scene.objects[i], i, sample->objects._buffer[sample->objects._length++]);

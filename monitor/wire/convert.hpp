@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -37,7 +37,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
 // Allocates. Names, pairs, zones, joints and the text of the cell.
-[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Scene& scene);
+[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
 
 // The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
 // ids, non-finite numbers and the rest. Allocates only while `out` has less room than the batch has

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-#include "config/scene/topics.hpp"
+#include "config/cell/topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -1,5 +1,5 @@
-// The states of all zones, from tick to tick: from the pairs that a tick has looked at and what is
-// known of the rest.
+// The states of all zones from tick to tick, by the pairs that a tick has updated and by what is
+// known of all others.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,23 @@ class Zones {
   // As of the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }
 
-  // The farthest distance below which the pair is inside a zone, of the zones that it is outside of
-  // with `lower`, m, but not with `swept_lower`. -infinity: there is none.
+  // The pair has a zone.
+  [[nodiscard]] bool watch(std::uint32_t pair) const noexcept { return levels_.has(pair); }
+
+  // The largest threshold, m, among the pair's zones that it is outside of with the distance
+  // `lower`, but not with `swept_lower`. -infinity: there is no such zone.
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
                                  double swept_lower) const noexcept;
 
-  // A pair that this tick has looked at; once.
+  // Takes in an updated pair, each once a tick.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
-  // What was not added: farther than its zones watch for since the last tick, at least `waiting`
-  // apart where that is less (margins not subtracted), or unknown. `objects`: none where all are
-  // known and none has made a discontinuity. Ends the tick.
+  // Ends the tick. A pair that was not added is unknown; or it was beyond its zones' thresholds
+  // since the last tick; or it waits, and `waiting` is a lower bound of its distance, margins not
+  // subtracted. `objects`: none where all are known and none has made a discontinuity.
   void finish(std::span<const TrackedObject> objects, const Clearance& waiting,
               std::uint64_t cycle) noexcept;
-  // After finish(), with all objects: why each zone is active.
+  // After finish(), with all objects: finds why each zone is active.
   void explain(std::span<const TrackedObject> objects) noexcept;
 
  private:

@@ -17,14 +17,15 @@ namespace {
 using testing::HasSubstr;
 
 TEST(CellFile, DefaultsAreThoseOfTheReference) {
-  const Scene scene = scene_of("name: test\nunits: {length: m, angle: deg}\n" + kBoxes);
+  const Cell cell = read_good("name: test\nunits: {length: m, angle: deg}\n" + kBoxes);
+  const Scene& scene = cell.scene;
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.rate_hz, 1000.0);
   EXPECT_EQ(scene.budget, 2000u);
   EXPECT_EQ(scene.future_limit_ns, 5'000'000);
-  EXPECT_EQ(scene.domain, 0u);
-  EXPECT_EQ(scene.partition, "");
-  EXPECT_EQ(scene.topics.distances, "clearance/distances");
+  EXPECT_EQ(cell.domain, 0u);
+  EXPECT_EQ(cell.partition, "");
+  EXPECT_EQ(cell.topics.distances, "clearance/distances");
   ASSERT_EQ(scene.objects.size(), 3u);
   EXPECT_EQ(scene.objects[0].margin, 0.0);
   EXPECT_EQ(scene.objects[0].max_speed, kInfinity);
@@ -35,7 +36,7 @@ TEST(CellFile, DefaultsAreThoseOfTheReference) {
 }
 
 TEST(CellFile, EverySettingArrives) {
-  const Scene scene = scene_of(
+  const Cell cell = read_good(
       "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nrefresh_s: 3\n"
       "future_limit_ms: 2.5\n"
       "dds: {domain: 42, partition: cell_7, topics: {poses: a/poses, zones: b_zones}}\n"
@@ -51,15 +52,16 @@ TEST(CellFile, EverySettingArrives) {
       "    parts: [{name: top, box: {size: [1, 1, 1]}, pose: {xyz: [300, 0, 0]}}]\n"
       "pairs: [{between: [left, right], publish: false}, {between: [left, table]}]\n"
       "zones: [{name: slow, between: [left, table], enter_below: 120, leave_above: 150}]\n");
+  const Scene& scene = cell.scene;
   EXPECT_EQ(scene.rate_hz, 250.0);
   EXPECT_EQ(scene.budget, 77u);
   EXPECT_EQ(scene.refresh_s, 3.0);
   EXPECT_EQ(scene.future_limit_ns, 2'500'000);
-  EXPECT_EQ(scene.domain, 42u);
-  EXPECT_EQ(scene.partition, "cell_7");
-  EXPECT_EQ(scene.topics.poses, "a/poses");
-  EXPECT_EQ(scene.topics.zones, "b_zones");
-  EXPECT_EQ(scene.topics.health, "clearance/health");
+  EXPECT_EQ(cell.domain, 42u);
+  EXPECT_EQ(cell.partition, "cell_7");
+  EXPECT_EQ(cell.topics.poses, "a/poses");
+  EXPECT_EQ(cell.topics.zones, "b_zones");
+  EXPECT_EQ(cell.topics.health, "clearance/health");
   EXPECT_EQ(scene.objects[0].margin, 0.004);
   EXPECT_EQ(scene.objects[0].max_speed, 1.5);
   EXPECT_EQ(scene.objects[1].margin, 0.007);
@@ -204,13 +206,14 @@ TEST(CellFile, QuaternionsAreXyzw) {
 }
 
 TEST(CellFile, RevisionFollowsEveryByteAndIsNeverZero) {
-  const Scene one = scene_of(cell_text(kBoxes));
+  const Cell read = read_good(cell_text(kBoxes));
+  const Scene& one = read.scene;
   const Scene same = scene_of(cell_text(kBoxes));
   const Scene other = scene_of(cell_text(kBoxes + "# a comment\n"));
   EXPECT_EQ(one.revision, same.revision);
   EXPECT_NE(one.revision, other.revision);
   EXPECT_NE(one.revision, 0u);
-  EXPECT_EQ(one.yaml, cell_text(kBoxes));
+  EXPECT_EQ(read.yaml, cell_text(kBoxes));
 }
 
 TEST(CellFile, EveryErrorIsFoundInOnePass) {

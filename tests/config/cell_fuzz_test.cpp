@@ -60,8 +60,8 @@ TEST(CellFuzz, EveryDamagedCellIsReadOrRefusedWithAPlace) {
     std::mt19937 random(seed);
     const std::string text = test::mutated(whole, random);
     const CellResult result = parse_cell(text, "cell.yaml");
-    if (const auto* scene = std::get_if<Scene>(&result)) {
-      ASSERT_NO_FATAL_FAILURE(expect_sound(*scene));
+    if (const auto* cell = std::get_if<Cell>(&result)) {
+      ASSERT_NO_FATAL_FAILURE(expect_sound(cell->scene));
       ++scenes;
     } else {
       ASSERT_NO_FATAL_FAILURE(expect_located(std::get<std::vector<CellError>>(result), text));

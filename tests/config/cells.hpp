@@ -15,14 +15,17 @@ inline std::string cell_text(const std::string& sections) {
   return "name: test\nunits: {length: m, angle: deg}\nrate_hz: 500\n" + sections;
 }
 
-// The scene of a text that must be good.
-inline Scene scene_of(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
+// A text that must be good.
+inline Cell read_good(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
   CellResult result = parse_cell(text, file);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
     for (const CellError& error : *errors) ADD_FAILURE() << error.text;
     return {};
   }
-  return std::get<Scene>(std::move(result));
+  return std::get<Cell>(std::move(result));
+}
+inline Scene scene_of(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
+  return read_good(text, file).scene;
 }
 
 // The errors of a text, a line each; empty for a good one.

@@ -56,7 +56,7 @@ TEST_P(MeshMutation, IsRefusedByNameOrWithinTheLimits) {
       continue;
     }
     ++accepted;
-    const ConvexBody& shape = std::get<Scene>(result).objects.at(0).parts.at(0).shape;
+    const ConvexBody& shape = std::get<Cell>(result).scene.objects.at(0).parts.at(0).shape;
     for (const Vertex& vertex : shape.vertices) {
       ASSERT_LE(vertex.position.cwiseAbs().maxCoeff(), 100.0);
     }

@@ -47,7 +47,7 @@ class PartsOfMeshes : public testing::Test {
     };
     options.mesh_errors = &mesh_errors_;
     CellResult result = parse_cell(text, folder_ / "cell.yaml", options);
-    if (auto* scene = std::get_if<Scene>(&result)) return std::move(*scene);
+    if (auto* cell = std::get_if<Cell>(&result)) return std::move(cell->scene);
     for (const CellError& error : std::get<std::vector<CellError>>(result)) errors_ += error.text;
     return {};
   }

@@ -106,7 +106,7 @@ TEST_F(RobotCellFile, DisabledPairsAreAllowedWithTheirReasons) {
   ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
   EXPECT_EQ(scene.pairs[0].first, 0u);
   EXPECT_EQ(scene.pairs[0].second, 2u);
-  EXPECT_THAT(scene.yaml, HasSubstr(R"(between: ["head", "mast"], reason: "Say \"never\"")"));
+  EXPECT_THAT(cell().yaml, HasSubstr(R"(between: ["head", "mast"], reason: "Say \"never\"")"));
 }
 
 TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
@@ -245,7 +245,7 @@ TEST_F(RobotCellFile, WithoutAnSrdfNeighboursAreLeftOutAndNamed) {
   ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
   EXPECT_EQ(scene.pairs[0].first, 0u);
   EXPECT_EQ(scene.pairs[0].second, 2u);
-  EXPECT_THAT(scene.yaml, HasSubstr("reason: \"Adjacent in the URDF\""));
+  EXPECT_THAT(cell().yaml, HasSubstr("reason: \"Adjacent in the URDF\""));
 }
 
 // The mast turns in a bearing that has no shape of its own.
@@ -271,7 +271,7 @@ TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   ASSERT_EQ(scene.pairs.size(), 2u);
   EXPECT_EQ(scene.pairs[0].second, 1u);  // foot - mast is enabled, foot - head is not
   EXPECT_EQ(scene.pairs[1].first, 1u);
-  EXPECT_THAT(scene.yaml, HasSubstr("reason: \"disabled by default in the SRDF\""));
+  EXPECT_THAT(cell().yaml, HasSubstr("reason: \"disabled by default in the SRDF\""));
   EXPECT_THAT(cell().notes, testing::Contains(HasSubstr("1 pairs are disabled by default")));
   // What is disabled one by one stays so.
   write("little_description/urdf/little.srdf",
@@ -300,7 +300,7 @@ TEST_F(RobotCellFile, ACapsuleIsOneWithItsEndsAlongZ) {
   EXPECT_EQ(capsule.radius, 0.12);
   ASSERT_EQ(capsule.anchors.size(), 2u);
   EXPECT_EQ((capsule.anchors[0] - capsule.anchors[1]).cwiseAbs(), Vec3(0, 0, 1));
-  EXPECT_THAT(scene.yaml,
+  EXPECT_THAT(cell().yaml,
               HasSubstr("capsule: {from: [0, 0, -0.5], to: [0, 0, 0.5], radius: 0.12}"));
 }
 

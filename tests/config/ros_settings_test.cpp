@@ -11,16 +11,16 @@ namespace {
 using testing::HasSubstr;
 
 TEST(RosSettingsOfACell, NameTopicsOrTakeTheStandardOnes) {
-  const Scene scene =
-      scene_of(cell_text("ros2: {markers: true, diagnostics: false, minimum_distance: "
-                         "/left/minimum, markers_hz: 10}\n" +
-                         kBoxes));
-  EXPECT_EQ(scene.ros.outputs.markers, "/clearance/markers");
-  EXPECT_EQ(scene.ros.outputs.diagnostics, "");
-  EXPECT_EQ(scene.ros.outputs.minimum_distance, "/left/minimum");
-  EXPECT_EQ(scene.ros.outputs.speed_scaling, "");
-  EXPECT_EQ(scene.ros.markers_hz, 10.0);
-  EXPECT_EQ(scene.ros.world(), "world");
+  const Cell cell =
+      read_good(cell_text("ros2: {markers: true, diagnostics: false, minimum_distance: "
+                          "/left/minimum, markers_hz: 10}\n" +
+                          kBoxes));
+  EXPECT_EQ(cell.ros.outputs.markers, "/clearance/markers");
+  EXPECT_EQ(cell.ros.outputs.diagnostics, "");
+  EXPECT_EQ(cell.ros.outputs.minimum_distance, "/left/minimum");
+  EXPECT_EQ(cell.ros.outputs.speed_scaling, "");
+  EXPECT_EQ(cell.ros.markers_hz, 10.0);
+  EXPECT_EQ(cell.ros.world(), "world");
 }
 
 TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
@@ -41,9 +41,9 @@ TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
       "objects:\n  - {name: box, frame: /box_link, sphere: {radius: 1}}\n"
       "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}\n"
       "pairs: [{between: [box, floor]}]\n";
-  const Scene scene = scene_of(cell_text("ros2: {world_frame: map}\n" + boxes));
-  EXPECT_EQ(scene.objects[0].frame, "box_link");
-  EXPECT_EQ(scene.ros.world(), "map");
+  const Cell cell = read_good(cell_text("ros2: {world_frame: map}\n" + boxes));
+  EXPECT_EQ(cell.scene.objects[0].frame, "box_link");
+  EXPECT_EQ(cell.ros.world(), "map");
   EXPECT_THAT(errors_of(cell_text(boxes)),
               HasSubstr("found that 'box' follows the frame 'box_link', and no world_frame"));
   EXPECT_THAT(errors_of(cell_text("ros2: {world_frame: map}\nobjects:\n  - {name: floor, fixed: "

@@ -13,13 +13,13 @@
 namespace clearance {
 namespace {
 
-Scene shipped(const std::string& name) {
+Cell shipped(const std::string& name) {
   CellResult result = read_cell(std::string(CLEARANCE_SOURCE) + "/config/cells/" + name);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
     for (const CellError& error : *errors) ADD_FAILURE() << error.text;
     return {};
   }
-  return std::get<Scene>(std::move(result));
+  return std::get<Cell>(std::move(result));
 }
 
 bool in_group(const Object& object, const std::string& group) {
@@ -29,12 +29,13 @@ bool in_group(const Object& object, const std::string& group) {
 // The truth about one instant of a cell's motion: every pair's lower bound.
 class Instant {
  public:
-  explicit Instant(const Scene& scene) : scene_(scene), poses_(scene.objects.size()) {
-    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = scene.objects[i].world_from_object;
+  explicit Instant(const Cell& cell)
+      : scene_(cell.scene), simulation_(cell.simulation), poses_(scene_.objects.size()) {
+    for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = scene_.objects[i].world_from_object;
   }
 
   void move_to(double t_s) {
-    poses_at(scene_, t_s, moving_);
+    poses_at(simulation_, t_s, moving_);
     for (const PoseAt& at : moving_) poses_[at.object] = at.world_from_object;
   }
 
@@ -56,6 +57,7 @@ class Instant {
 
  private:
   const Scene& scene_;
+  const Simulation& simulation_;
   std::vector<Pose> poses_;
   std::vector<PoseAt> moving_;
 };
@@ -64,8 +66,9 @@ class Instant {
 constexpr double kPeriod = 10.0;  // s
 constexpr double kStep = 0.05;
 
-double least_clearance(const Scene& scene) {
-  Instant instant(scene);
+double least_clearance(const Cell& cell) {
+  const Scene& scene = cell.scene;
+  Instant instant(cell);
   double least = kInfinity;
   for (double t = 0.0; t < kPeriod; t += kStep) {
     instant.move_to(t);
@@ -74,8 +77,9 @@ double least_clearance(const Scene& scene) {
   return least;
 }
 
-std::set<std::string> zones_entered(const Scene& scene) {
-  Instant instant(scene);
+std::set<std::string> zones_entered(const Cell& cell) {
+  const Scene& scene = cell.scene;
+  Instant instant(cell);
   std::set<std::string> entered;
   for (double t = 0.0; t < kPeriod; t += kStep) {
     instant.move_to(t);
@@ -90,8 +94,9 @@ std::set<std::string> zones_entered(const Scene& scene) {
 
 // The speed of the fastest point of any part, over the motion, never exceeds what the object
 // states.
-void expect_stated_speeds(const Scene& scene) {
-  Instant instant(scene);
+void expect_stated_speeds(const Cell& cell) {
+  const Scene& scene = cell.scene;
+  Instant instant(cell);
   for (double t = 0.0; t < kPeriod; t += kStep) {
     instant.move_to(t);
     for (const PoseAt& at : instant.moving()) {
@@ -112,10 +117,11 @@ void expect_stated_speeds(const Scene& scene) {
 }
 
 // Every moving object is moved, and comes back after the period.
-void expect_whole_motion(const Scene& scene) {
+void expect_whole_motion(const Cell& cell) {
+  const Scene& scene = cell.scene;
   std::vector<PoseAt> start, end;
-  poses_at(scene, 0.0, start);
-  poses_at(scene, kPeriod, end);
+  poses_at(cell.simulation, 0.0, start);
+  poses_at(cell.simulation, kPeriod, end);
   const auto moving = std::count_if(scene.objects.begin(), scene.objects.end(),
                                     [](const Object& object) { return !object.fixed; });
   ASSERT_EQ(start.size(), static_cast<std::size_t>(moving));
@@ -132,7 +138,8 @@ void expect_whole_motion(const Scene& scene) {
 }
 
 TEST(McIntyreCell, HasTheThesisCounts) {
-  const Scene scene = shipped("mcintyre.yaml");
+  const Cell cell = shipped("mcintyre.yaml");
+  const Scene& scene = cell.scene;
   std::size_t polyhedra = 0, facets = 0;
   for (const Object& object : scene.objects) {
     if (!in_group(object, "arm")) continue;
@@ -158,15 +165,17 @@ TEST(McIntyreCell, HasTheThesisCounts) {
 }
 
 TEST(McIntyreCell, MovesWithoutTouchingAndEntersItsZones) {
-  const Scene scene = shipped("mcintyre.yaml");
-  expect_whole_motion(scene);
-  expect_stated_speeds(scene);
-  EXPECT_GT(least_clearance(scene), 0.02);
-  EXPECT_EQ(zones_entered(scene), (std::set<std::string>{"slow", "stop", "low"}));
+  const Cell cell = shipped("mcintyre.yaml");
+  const Scene& scene = cell.scene;
+  expect_whole_motion(cell);
+  expect_stated_speeds(cell);
+  EXPECT_GT(least_clearance(cell), 0.02);
+  EXPECT_EQ(zones_entered(cell), (std::set<std::string>{"slow", "stop", "low"}));
 }
 
 TEST(TwoArmsCell, HasTwoSevenJointArmsAndThirtyObstacles) {
-  const Scene scene = shipped("two_arms.yaml");
+  const Cell cell = shipped("two_arms.yaml");
+  const Scene& scene = cell.scene;
   const auto members = [&](const std::string& group) {
     return std::count_if(scene.objects.begin(), scene.objects.end(),
                          [&](const Object& object) { return in_group(object, group); });
@@ -174,9 +183,9 @@ TEST(TwoArmsCell, HasTwoSevenJointArmsAndThirtyObstacles) {
   EXPECT_EQ(members("left_arm"), 8);
   EXPECT_EQ(members("right_arm"), 8);
   EXPECT_EQ(members("obstacles"), 30);
-  ASSERT_EQ(scene.simulation.chains.size(), 2u);
-  EXPECT_EQ(scene.simulation.chains[0].joints.size(), 7u);
-  EXPECT_EQ(scene.simulation.chains[1].joints.size(), 7u);
+  ASSERT_EQ(cell.simulation.chains.size(), 2u);
+  EXPECT_EQ(cell.simulation.chains[0].joints.size(), 7u);
+  EXPECT_EQ(cell.simulation.chains[1].joints.size(), 7u);
   // Self: 2 x (28 - 7 adjacent - 2 held at one distance). Each other: 8 x 8 less the two fixed
   // bases. Obstacles: 14 moving links x 30 less 2 pedestals, and 2 bases x 3 moving obstacles.
   EXPECT_EQ(scene.pairs.size(), 2u * 19u + 63u + 14u * 30u - 2u + 6u);
@@ -191,15 +200,17 @@ TEST(TwoArmsCell, UsesEveryKindOfShape) {
 }
 
 TEST(TwoArmsCell, MovesWithoutTouchingAndEntersItsZones) {
-  const Scene scene = shipped("two_arms.yaml");
-  expect_whole_motion(scene);
-  expect_stated_speeds(scene);
-  EXPECT_GT(least_clearance(scene), 0.02);
-  EXPECT_EQ(zones_entered(scene), (std::set<std::string>{"slow", "stop", "hands_slow"}));
+  const Cell cell = shipped("two_arms.yaml");
+  const Scene& scene = cell.scene;
+  expect_whole_motion(cell);
+  expect_stated_speeds(cell);
+  EXPECT_GT(least_clearance(cell), 0.02);
+  EXPECT_EQ(zones_entered(cell), (std::set<std::string>{"slow", "stop", "hands_slow"}));
 }
 
 TEST(RoundArmCell, IsOfCurvedAndRoundedBodiesOnly) {
-  const Scene scene = shipped("round_arm.yaml");
+  const Cell cell = shipped("round_arm.yaml");
+  const Scene& scene = cell.scene;
   for (const Object& object : scene.objects) {
     for (const Part& part : object.parts) {
       const ConvexBody& shape = part.shape;
@@ -207,16 +218,17 @@ TEST(RoundArmCell, IsOfCurvedAndRoundedBodiesOnly) {
     }
   }
   for (const char* kind : {"ellipsoid:", "cylinder:", "cone:", "truncated_cone:", "rounding:"}) {
-    EXPECT_NE(scene.yaml.find(kind), std::string::npos) << kind;
+    EXPECT_NE(cell.yaml.find(kind), std::string::npos) << kind;
   }
 }
 
 TEST(RoundArmCell, MovesWithoutTouchingAndEntersItsZones) {
-  const Scene scene = shipped("round_arm.yaml");
-  expect_whole_motion(scene);
-  expect_stated_speeds(scene);
-  EXPECT_GT(least_clearance(scene), 0.02);
-  EXPECT_EQ(zones_entered(scene), (std::set<std::string>{"slow", "stop"}));
+  const Cell cell = shipped("round_arm.yaml");
+  const Scene& scene = cell.scene;
+  expect_whole_motion(cell);
+  expect_stated_speeds(cell);
+  EXPECT_GT(least_clearance(cell), 0.02);
+  EXPECT_EQ(zones_entered(cell), (std::set<std::string>{"slow", "stop"}));
 }
 
 }  // namespace

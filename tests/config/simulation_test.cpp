@@ -1,10 +1,8 @@
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
-
-#include "config/scene/scene.hpp"
 
 namespace clearance {
 namespace {
@@ -12,9 +10,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // Two revolute joints and a slide, all askew, on a turned base; beside them a spinning mover.
-Scene moving_scene() {
-  Scene scene;
-  scene.objects.resize(4);
+Simulation moving_cell() {
+  Simulation simulation;
   const Eigen::Quaterniond turned = Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();
   SimulatedChain chain;
   chain.world_from_base = {Vec3(0.4, -0.2, 0.1), turned};
@@ -31,28 +28,29 @@ Scene moving_scene() {
                           .parent_from_joint = {Vec3(0.0, 0.4, 0.0), turned},
                           .axis = Vec3::UnitX(),
                           .motion = {-0.5, 0.8, 1.3, 2.0}});
-  scene.simulation.chains.push_back(chain);
-  scene.simulation.movers.push_back({.object = 3,
-                                     .centre = {Vec3(1.0, 1.0, 1.0), turned},
-                                     .amplitude = Vec3(0.1, -0.2, 0.3),
-                                     .frequency_hz = 0.8,
-                                     .phase = 0.4,
-                                     .spin = Vec3(0.5, -1.0, 2.0)});
-  return scene;
+  simulation.chains.push_back(chain);
+  simulation.movers.push_back({.object = 3,
+                               .centre = {Vec3(1.0, 1.0, 1.0), turned},
+                               .amplitude = Vec3(0.1, -0.2, 0.3),
+                               .frequency_hz = 0.8,
+                               .phase = 0.4,
+                               .spin = Vec3(0.5, -1.0, 2.0)});
+  return simulation;
 }
 
-std::vector<PoseAt> at(const Scene& scene, double t_s) {
+std::vector<PoseAt> at(const Simulation& simulation, double t_s) {
   std::vector<PoseAt> poses;
-  poses_at(scene, t_s, poses);
+  poses_at(simulation, t_s, poses);
   return poses;
 }
 
 TEST(Simulation, TwistIsTheDerivativeOfThePose) {
-  const Scene scene = moving_scene();
+  const Simulation simulation = moving_cell();
   const double step = 1e-5;
   const Vec3 point(0.2, -0.1, 0.3);  // of the object: rotation and translation both move it
   for (const double t : {0.0, 0.31, 1.7, 12.9}) {
-    const auto before = at(scene, t - step), now = at(scene, t), after = at(scene, t + step);
+    const auto before = at(simulation, t - step), now = at(simulation, t),
+               after = at(simulation, t + step);
     ASSERT_EQ(now.size(), 4u);
     for (std::size_t i = 0; i < now.size(); ++i) {
       const Vec3 difference = (transform(after[i].world_from_object, point) -
@@ -67,16 +65,16 @@ TEST(Simulation, TwistIsTheDerivativeOfThePose) {
 }
 
 TEST(Simulation, APlanarArmIsWhereTheClosedFormPutsIt) {
-  Scene scene;
-  scene.objects.resize(2);
+  Simulation simulation;
   SimulatedChain chain;
   chain.joints.push_back({.objects = {0}, .motion = {kPi / 2.0, 0.0, 0.0, 0.0}});
   chain.joints.push_back(
       {.objects = {1},
        .parent_from_joint = {Vec3(2.0, 0.0, 0.0), Eigen::Quaterniond::Identity()},
        .motion = {0.0, kPi / 2.0, 0.25, 0.0}});
-  scene.simulation.chains.push_back(chain);
-  const auto poses = at(scene, 1.0);  // a quarter period: the second joint stands at 90 degrees
+  simulation.chains.push_back(chain);
+  const auto poses =
+      at(simulation, 1.0);  // a quarter period: the second joint stands at 90 degrees
   EXPECT_LT((poses[1].world_from_object.position - Vec3(0.0, 2.0, 0.0)).norm(), 1e-15);
   EXPECT_LT(
       (transform(poses[1].world_from_object, Vec3(1.0, 0.0, 0.0)) - Vec3(-1.0, 2.0, 0.0)).norm(),
@@ -84,10 +82,10 @@ TEST(Simulation, APlanarArmIsWhereTheClosedFormPutsIt) {
 }
 
 TEST(Simulation, SameInstantGivesTheSameBits) {
-  const Scene scene = moving_scene();
-  std::vector<PoseAt> reused = at(scene, 3.0);
-  poses_at(scene, 1234.567, reused);
-  const auto fresh = at(scene, 1234.567);
+  const Simulation simulation = moving_cell();
+  std::vector<PoseAt> reused = at(simulation, 3.0);
+  poses_at(simulation, 1234.567, reused);
+  const auto fresh = at(simulation, 1234.567);
   ASSERT_EQ(reused.size(), fresh.size());
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     EXPECT_EQ(reused[i].world_from_object.position, fresh[i].world_from_object.position);

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "config/cell/cell_file.hpp"
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -18,22 +18,22 @@ namespace {
 
 using test::kStart;
 
-Scene shipped(const std::string& name) {
+Cell shipped(const std::string& name) {
   const CellResult read =
       read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells" / name);
-  return std::get<Scene>(read);
+  return std::get<Cell>(read);
 }
 
 // A cell in its simulated motion.
 class SimulatedCell {
  public:
-  explicit SimulatedCell(const std::string& name) : scene(shipped(name)) {
+  explicit SimulatedCell(const std::string& name) : cell(shipped(name)) {
     for (const Object& object : scene.objects)
       world_from_object_.push_back(object.world_from_object);
   }
 
   const Report& tick(Monitor& monitor, double t_s) {
-    poses_at(scene, t_s, poses_);
+    poses_at(cell.simulation, t_s, poses_);
     const std::int64_t now_ns = kStart + std::llround(t_s * 1e9);
     samples_.clear();
     for (const PoseAt& pose : poses_) {
@@ -51,7 +51,8 @@ class SimulatedCell {
                                 world_from_object_[b]);
   }
 
-  Scene scene;
+  Cell cell;
+  Scene& scene = cell.scene;
 
  private:
   std::vector<Pose> world_from_object_;

@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {
 
-[[nodiscard]] inline std::vector<PoseSample> simulated_samples(const Scene& scene, double t_s,
-                                                               std::int64_t now_ns) {
+[[nodiscard]] inline std::vector<PoseSample> simulated_samples(const Simulation& simulation,
+                                                               double t_s, std::int64_t now_ns) {
   std::vector<PoseAt> poses;
-  poses_at(scene, t_s, poses);
+  poses_at(simulation, t_s, poses);
   std::vector<PoseSample> samples;
   for (const PoseAt& at : poses) {
     samples.push_back({.object = at.object,

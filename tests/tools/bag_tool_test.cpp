@@ -152,8 +152,8 @@ TEST_F(BagTool, RecorderTakesTheSameOptions) {
   EXPECT_EQ(2, run(kRecord, {"-o", path("a.mcap"), "--without", "catalogue"}));
   EXPECT_THAT(output, HasSubstr("found 'catalogue'; expected 'poses', 'joint_states', "
                                 "'distances', 'zones', 'health', 'separation' or 'gradients'"));
-  const Scene scene = bench_cell();
-  record_run(scene, folder / "run.mcap", {.ticks = 60});
+  const Cell cell{bench_cell()};
+  record_run(cell, folder / "run.mcap", {.ticks = 60});
   const auto where = dds_arguments(own_dds());
   ChildProcess recorder(kRecord, with({"-o", path("again.mcap"), "--every", "20", "--without",
                                        "poses", "--uncompressed"},

@@ -23,10 +23,10 @@ std::uint32_t alive_writers(dds_entity_t reader) {
 // A cell, a client with default liveliness, and how soon that one is told.
 struct WatchedDaemon {
   test::CellFile cell{test::small_cell("small")};
-  Scene scene = cell.scene();
+  Cell read = cell.cell();
   DdsOptions dds = test::own_dds();
   Participant client{dds};
-  test::Distances distances{client, scene};
+  test::Distances distances{client, read};
   ChildProcess daemon{test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds))};
 
   // Cyclone itself gives a dead process up after 10 s: a tenth of that, where the lease is 100 ms.
@@ -64,10 +64,10 @@ TEST(DaemonLiveliness, LeaseIsTenPeriodsAndNoLessThanATenthOfASecond) {
 
 TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
   const test::CellFile cell(test::small_cell("small"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Distances distances(client, scene);
+  test::Distances distances(client, read);
   const auto arguments = test::with({cell.path()}, test::dds_arguments(dds));
   ChildProcess first(test::kDaemon, arguments);
   distances.settle();
@@ -116,13 +116,13 @@ TEST(TwoDaemons, OneThatStandsStillOrIsDeadIsInNobodysWay) {
 
 TEST(TwoDaemons, AnotherProgramOnTheTopicIsNamedAndCountedInHealth) {
   const test::CellFile cell(test::small_cell("small"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds), replay(dds);
-  const dds_entity_t health = client.reader(TopicKind::kHealth, scene.topics.health);
-  const dds_entity_t writer = replay.writer(TopicKind::kDistances, scene.topics.distances);
+  const dds_entity_t health = client.reader(TopicKind::kHealth, read.topics.health);
+  const dds_entity_t writer = replay.writer(TopicKind::kDistances, read.topics.distances);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
-  const auto foreign = make_distances(scene);
+  const auto foreign = make_distances(read.scene);
   Sample<clearance_msg_Health> sample;
   EXPECT_TRUE(eventually([&] {
     dds_write(writer, &*foreign);

@@ -68,11 +68,11 @@ class DaemonInputs : public testing::Test {
   }
 
   CellFile cell{kCell};
-  Scene scene = cell.scene();
+  Cell read = cell.cell();
   DdsOptions dds = own_dds();
   Participant client{dds};
-  Distances distances{client, scene};
-  Poses robot{client, scene};
+  Distances distances{client, read};
+  Poses robot{client, read};
   double t_s = 0.0;
   Report last;
   std::optional<ChildProcess> daemon;
@@ -124,7 +124,7 @@ TEST_F(DaemonInputs, ObjectBelongsToTheSourceThatSentItFirstAndTheOtherIsNamed) 
   start();
   ASSERT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
   Participant elsewhere(dds);
-  Poses other(elsewhere, scene, "other");
+  Poses other(elsewhere, read, "other");
   other.set_clock_ahead(4 * kMs);
   for (int i = 0; i < 300; ++i) {
     robot.send(t_s += 0.005);

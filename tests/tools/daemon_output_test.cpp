@@ -15,9 +15,8 @@ using testing::HasSubstr;
 // Many sources and poses that are refused: what makes the log write most.
 class Flood {
  public:
-  Flood(Participant& participant, const Scene& scene)
-      : writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)),
-        sample_(make_batch(1)) {}
+  Flood(Participant& participant, const Cell& cell)
+      : writer_(participant.writer(TopicKind::kPoses, cell.topics.poses)), sample_(make_batch(1)) {}
 
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
 
@@ -55,15 +54,15 @@ class DaemonOutput : public testing::Test {
   }
 
   CellFile cell{small_cell("small")};
-  Scene scene = cell.scene();
+  Cell read = cell.cell();
   DdsOptions dds = own_dds();
   Participant client{dds};
-  Distances distances{client, scene};
+  Distances distances{client, read};
 };
 
 TEST_F(DaemonOutput, KeepsNothingWaitingThoughNobodyReadsIt) {
   FullPipe pipe;
-  Flood flood(client, scene);
+  Flood flood(client, read);
   ChildProcess daemon(kDaemon, with({cell.path(), "--log-level", "trace"}, dds_arguments(dds)),
                       {.out = pipe.in(), .err = pipe.in()});
   ASSERT_TRUE(eventually([&] { return matched_readers(flood.writer()) == 1; })) << "it hangs";
@@ -75,7 +74,7 @@ TEST_F(DaemonOutput, KeepsNothingWaitingThoughNobodyReadsIt) {
 
 TEST_F(DaemonOutput, LosesTheLogOfNoMomentInWhichItIsRead) {
   FullPipe pipe;
-  Flood flood(client, scene);
+  Flood flood(client, read);
   ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)), {.err = pipe.in()});
   ASSERT_TRUE(eventually([&] { return matched_readers(flood.writer()) == 1; }));
   std::string log = pipe.read(100);
@@ -99,7 +98,7 @@ TEST_F(DaemonOutput, EndsAfterItsTicksOrAnErrorThoughNobodyReadsIt) {
 }
 
 TEST_F(DaemonOutput, IsNotWrittenByTheNamesOfStrangers) {
-  Flood flood(client, scene);
+  Flood flood(client, read);
   ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return matched_readers(flood.writer()) == 1; }));
   const std::string forged = "a\n2026 error: stop \x1b[2J\xff";

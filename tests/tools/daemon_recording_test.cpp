@@ -86,11 +86,11 @@ class RecordingDaemon : public testing::Test {
 
   ScratchFolder folder;
   CellFile cell;
-  Scene scene = cell.scene();
+  Cell read = cell.cell();
   DdsOptions dds = own_dds();
   Participant client{dds};
-  Distances distances{client, scene};
-  dds_entity_t health = client.reader(TopicKind::kHealth, scene.topics.health);
+  Distances distances{client, read};
+  dds_entity_t health = client.reader(TopicKind::kHealth, read.topics.health);
   std::optional<ChildProcess> daemon;
 };
 
@@ -236,7 +236,7 @@ TEST_F(RecordingDaemon, NeverRecordsOverItsCell) {
                     with({cell.path(), "--record", cell.path(), "--force"}, dds_arguments(dds)));
   EXPECT_EQ(2, over.wait());
   EXPECT_TRUE(over.wrote("is a file that is read")) << over.output();
-  EXPECT_EQ("small", cell.scene().name);
+  EXPECT_EQ("small", cell.cell().scene.name);
 }
 
 }  // namespace

@@ -85,11 +85,11 @@ void expect_offline_run_agrees(const Scene& scene, const std::vector<PoseBatch>&
 }
 
 void expect_daemon_agrees_with_offline_run(const std::string& cell, std::size_t batches) {
-  const Scene scene = std::get<Scene>(read_cell(cell));
+  const Cell read = std::get<Cell>(read_cell(cell));
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Poses poses(client, scene);
-  test::Distances distances(client, scene);
+  test::Poses poses(client, read);
+  test::Distances distances(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell}, test::dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] {
     return test::matched_readers(poses.writer()) == 1 &&
@@ -99,7 +99,7 @@ void expect_daemon_agrees_with_offline_run(const std::string& cell, std::size_t 
   const Reports reports = run_in_step(poses, distances, batches);
   ASSERT_FALSE(reports.empty()) << daemon.output();
   EXPECT_TRUE((*reports.back())->minimum_known);
-  expect_offline_run_agrees(scene, poses.sent(), reports);
+  expect_offline_run_agrees(read.scene, poses.sent(), reports);
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }
@@ -139,10 +139,10 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   ASSERT_NE(text.find(far), std::string::npos);
   const test::CellFile cell(
       text.replace(text.find(far), far.size(), "enter_below: 0.6, leave_above: 0.65"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Poses poses(client, scene);
+  test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   EXPECT_TRUE(eventually([&] { return daemon.wrote("zone 'near' entered at cycle"); }));
   EXPECT_TRUE(daemon.wrote("left - right unknown")) << daemon.output();
@@ -180,12 +180,12 @@ TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {
 
 TEST(Daemon, DoesNotHearAnotherDaemonsCell) {
   const test::CellFile cell_a(test::small_cell("one")), cell_b(test::small_cell("two"));
-  const Scene scene_a = cell_a.scene(), scene_b = cell_b.scene();
+  const Cell read_a = cell_a.cell(), read_b = cell_b.cell();
   const DdsOptions dds_a = test::own_dds(), dds_b = test::own_dds();  // one domain, two partitions
   ASSERT_EQ(dds_a.domain, dds_b.domain);
   Participant client_a(dds_a), client_b(dds_b);
-  test::Poses poses_a(client_a, scene_a);
-  test::Distances distances_a(client_a, scene_a), distances_b(client_b, scene_b);
+  test::Poses poses_a(client_a, read_a);
+  test::Distances distances_a(client_a, read_a), distances_b(client_b, read_b);
   ChildProcess daemon_a(test::kDaemon, test::with({cell_a.path()}, test::dds_arguments(dds_a)));
   ChildProcess daemon_b(test::kDaemon, test::with({cell_b.path()}, test::dds_arguments(dds_b)));
   ASSERT_TRUE(eventually([&] {
@@ -195,22 +195,22 @@ TEST(Daemon, DoesNotHearAnotherDaemonsCell) {
   }));
   const Reports reports_a = run_in_step(poses_a, distances_a, 20);
   ASSERT_FALSE(reports_a.empty());
-  for (const auto& report : reports_a) EXPECT_EQ((*report)->scene_revision, scene_a.revision);
+  for (const auto& report : reports_a) EXPECT_EQ((*report)->scene_revision, read_a.scene.revision);
   for (int i = 0; i < 20; ++i) {
     const auto report = distances_b.next();
     ASSERT_NE(report, nullptr);
-    EXPECT_EQ((*report)->scene_revision, scene_b.revision);
+    EXPECT_EQ((*report)->scene_revision, read_b.scene.revision);
     EXPECT_FALSE((*report)->minimum_known) << "poses for one cell reached the other";
   }
 }
 
 TEST(Daemon, IsNotHeldUpByAClientThatStopped) {
   const test::CellFile cell(test::small_cell("small"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Poses poses(client, scene);
-  test::Distances distances(client, scene);
+  test::Poses poses(client, read);
+  test::Distances distances(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   ChildProcess stopped(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return stopped.wrote("cycle "); })) << stopped.output();

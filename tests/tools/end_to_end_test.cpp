@@ -49,7 +49,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   const auto path = [&](const char* name) { return (folder / name).string(); };
   write_text(folder / "cell.yaml", small_cell("small"));
   write_text(folder / "log.csv", visiting_log());
-  const Scene scene = std::get<Scene>(read_cell(path("cell.yaml")));
+  const Cell cell = std::get<Cell>(read_cell(path("cell.yaml")));
   const DdsOptions dds = own_dds();
   const auto where = dds_arguments(dds);
   run(kRecord,
@@ -57,7 +57,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
 
   ChildProcess client(kRecord, with({"-o", path("heard.mcap")}, where));
   Participant probe(dds);
-  const Poses poses(probe, scene);  // never sends: it only tells who listens
+  const Poses poses(probe, cell);  // never sends: it only tells who listens
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; })) << client.output();
   ChildProcess daemon(kDaemon, with({path("cell.yaml")}, where));
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 2; })) << daemon.output();
@@ -80,12 +80,12 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
 }
 
 // Every 10 ms for 0.2 s, at half a radian a second.
-void record_turning_joint(const std::string& file, const Scene& scene) {
-  RecordingWriter writer(file, scene.topics);
-  writer.catalogue(*make_catalogue(scene), kStart);
+void record_turning_joint(const std::string& file, const Cell& cell) {
+  RecordingWriter writer(file, cell.topics);
+  writer.catalogue(*make_catalogue(cell), kStart);
   PoseBatch batch;
   batch.source = SourceName("arm");
-  batch.scene_revision = scene.revision;
+  batch.scene_revision = cell.scene.revision;
   for (int k = 0; k < 20; ++k) {
     const std::int64_t now = kStart + 10 * kTick * k;
     ++batch.sequence_number;
@@ -94,7 +94,7 @@ void record_turning_joint(const std::string& file, const Scene& scene) {
                      .position = 0.005 * k,
                      .velocity = 0.5,
                      .has_velocity = true}};
-    writer.write(TopicKind::kJointStates, now, now, *make_joint_states(batch, scene));
+    writer.write(TopicKind::kJointStates, now, now, *make_joint_states(batch, cell.scene));
   }
   ASSERT_TRUE(writer.close()) << writer.error();
 }
@@ -102,11 +102,11 @@ void record_turning_joint(const std::string& file, const Scene& scene) {
 TEST(EndToEnd, RestampedJointStatesKeepTheirScheduleAndTheirVelocitiesFollowTheRate) {
   const ScratchFolder folder;
   const std::string file = folder / "joints.mcap";
-  const Scene scene = scara_cell();
-  record_turning_joint(file, scene);
+  const Cell cell{scara_cell()};
+  record_turning_joint(file, cell);
   const DdsOptions dds = own_dds();
   Participant client(dds);
-  const dds_entity_t reader = client.reader(TopicKind::kJointStates, scene.topics.joint_states, 64);
+  const dds_entity_t reader = client.reader(TopicKind::kJointStates, cell.topics.joint_states, 64);
   run(kReplay,
       with({file, "--only", "clearance/joint_states", "--restamp", "--rate", "2", "--wait", "20"},
            dds_arguments(dds)));

@@ -30,13 +30,13 @@ json read_officially(const std::filesystem::path& file) {
 class OfficialReader : public testing::Test {
  protected:
   OfficialReader() {
-    scene.yaml = "name: bench # \xc3\xa9\n";
-    record_run(scene, file, {.ticks = 500, .nearest = 0.05});
+    cell.yaml = "name: bench # \xc3\xa9\n";
+    record_run(cell, file, {.ticks = 500, .nearest = 0.05});
     messages = messages_of(file);
     read = read_officially(file);
   }
   ScratchFolder folder;
-  Scene scene = bench_cell();
+  Cell cell{bench_cell()};
   std::filesystem::path file = folder / "run.mcap";
   std::vector<Kept> messages;
   json read;
@@ -65,7 +65,7 @@ TEST_F(OfficialReader, SeeksThroughTheIndex) {
   EXPECT_GT(late, 200);
   EXPECT_GT(read["indexed"]["statistics"]["chunkCount"], 2);
   EXPECT_EQ(json::array({"zstd"}), read["indexed"]["compressions"]);
-  EXPECT_EQ(scene.yaml, read["indexed"]["metadata"][std::string(kRecordingMetadata)]["cell"]);
+  EXPECT_EQ(cell.yaml, read["indexed"]["metadata"][std::string(kRecordingMetadata)]["cell"]);
 }
 
 TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
@@ -98,7 +98,7 @@ TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
   EXPECT_EQ(false, poses["poses"][0]["has_twist"]);
 
   const json& catalogue = read["streamed"]["topics"]["clearance/catalogue"]["first"];
-  EXPECT_EQ(scene.yaml, catalogue["cell_yaml"]);
+  EXPECT_EQ(cell.yaml, catalogue["cell_yaml"]);
   EXPECT_EQ("box", catalogue["objects"][2]["name"]);
   EXPECT_EQ("block", catalogue["objects"][2]["parts"][0]);
   EXPECT_EQ("stop", read["streamed"]["topics"]["clearance/zones"]["first"]["name"]);

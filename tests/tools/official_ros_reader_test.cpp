@@ -89,11 +89,11 @@ class OfficialRosReader : public testing::Test {
 // Of the tests' cell: two boxes whose zone is active while they are nearer than 0.3 m.
 TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
   const CellFile cell(small_cell("official") + "ros2: {diagnostics: true, world_frame: map}\n");
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   RawTopic markers(client, kRosMarkers, "rt/clearance/markers");
   RawTopic diagnostics(client, kRosDiagnostics, "rt/diagnostics");
   RawTopic minimum(client, kRosFloat64, "rt/clearance/minimum_distance");
-  Poses poses(client, scene);
+  Poses poses(client, read);
   ChildProcess daemon(kDaemon, with({cell.path(), "--ros2", "all"}, dds_arguments(dds)));
   double t = 0.0;
   ASSERT_TRUE(eventually([&] {

@@ -108,14 +108,14 @@ TEST_F(OfficialWriter, ItsBagsAreReadWhicheverWayTheyAreCompressed) {
 
 // The whole way, against a bag that SQLite's library wrote.
 TEST_F(OfficialWriter, ItsBagsMoveTheRobotOfACell) {
-  const Scene scene = scara_cell();
+  const Cell cell{scara_cell()};
   both.spec["compression"] = "zstd";
   write(both.spec, (folder / "bag.mcap").string());
   write_sqlite_bag(folder / "bag.db3", both.ours);
   std::vector<double> lower[2];
   for (const int i : {0, 1}) {
     const OfflineReplay replay = replay_offline(
-        scene, folder / (i == 0 ? "bag.mcap" : "bag.db3"), {},
+        cell, folder / (i == 0 ? "bag.mcap" : "bag.db3"), {},
         [&](const ReplayedTick& tick) { lower[i].push_back(tick.report.lower_all); });
     EXPECT_TRUE(replay.ok()) << replay.text();
     EXPECT_EQ(0u, replay.notes.size()) << replay.text();

@@ -151,8 +151,8 @@ TEST_F(RecordReplay, ReplayOfAReplayIsTheSameToTheByteAndComparesAsSuch) {
 }
 
 TEST_F(RecordReplay, RecordingOfAMonitorComparesEqualAndAnAlteredOneNamesTheField) {
-  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
-  record_run(scene, folder / "run.mcap", {.ticks = 100});
+  const Cell cell = std::get<Cell>(read_cell(folder / "cell.yaml"));
+  record_run(cell, folder / "run.mcap", {.ticks = 100});
   EXPECT_EQ(0, replay({"--compare"})) << output;
   EXPECT_THAT(output, HasSubstr("100 reports compared"));
   // The cell is in the recording, too.
@@ -274,8 +274,8 @@ TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {
 }
 
 TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
-  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
-  record_run(scene, folder / "run.mcap", {.ticks = 300, .nearest = 0.05});
+  const Cell cell = std::get<Cell>(read_cell(folder / "cell.yaml"));
+  record_run(cell, folder / "run.mcap", {.ticks = 300, .nearest = 0.05});
   std::string recorder_output;
   ASSERT_NO_FATAL_FAILURE(publish_and_record_again(recorder_output));
   const std::vector<Kept> sent = messages_of(folder / "run.mcap");
@@ -299,8 +299,8 @@ TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
 }
 
 TEST_F(RecordReplay, RecorderTellsWhatItMissed) {
-  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
-  record_run(scene, folder / "run.mcap", {.ticks = 40});
+  const Cell cell = std::get<Cell>(read_cell(folder / "cell.yaml"));
+  record_run(cell, folder / "run.mcap", {.ticks = 40});
   std::vector<Kept> messages = messages_of(folder / "run.mcap");
   const auto is_lost = [](const Kept& message) {
     if (message.kind == TopicKind::kDistances) {
@@ -337,8 +337,8 @@ TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {
 }
 
 TEST_F(RecordReplay, ReportsWithoutTheirPosesCannotBeCompared) {
-  const Scene scene = std::get<Scene>(read_cell(folder / "cell.yaml"));
-  record_run(scene, folder / "run.mcap", {.ticks = 40});
+  const Cell cell = std::get<Cell>(read_cell(folder / "cell.yaml"));
+  record_run(cell, folder / "run.mcap", {.ticks = 40});
   std::vector<Kept> messages = messages_of(folder / "run.mcap");
   std::erase_if(messages, [](const Kept& message) { return message.kind == TopicKind::kPoses; });
   write_messages(folder / "run.mcap", messages);

@@ -99,8 +99,8 @@ TEST_F(Reduction, PartsThatWereChosenMakeACell) {
           "pairs: [{between: [l, floor]}]\n";
   cell.close();
   const CellResult read = read_cell(file("cell.yaml"));
-  ASSERT_TRUE(std::holds_alternative<Scene>(read));
-  EXPECT_EQ(std::get<Scene>(read).objects[0].parts.size(), 2u);
+  ASSERT_TRUE(std::holds_alternative<Cell>(read));
+  EXPECT_EQ(std::get<Cell>(read).scene.objects[0].parts.size(), 2u);
 }
 
 // By the schedule that tools/scene/watching.hpp describes: nine ticks of 1 ms are taken off, and

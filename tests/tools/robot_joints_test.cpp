@@ -24,9 +24,9 @@ bool all_known(const clearance_msg_Distances& report) {
 class RobotJoints : public testing::Test {
  protected:
   // A robot with these arguments moves `cell`, which a daemon watches, until everything is known.
-  void moves(const std::vector<std::string>& cell, const Scene& scene,
+  void moves(const std::vector<std::string>& cell, const Cell& read,
              const std::vector<std::string>& arguments) {
-    Distances distances(client, scene);
+    Distances distances(client, read);
     ChildProcess daemon(kDaemon, with(cell, dds_arguments(dds)));
     distances.settle();
     ChildProcess robot(kRobot, with(with(cell, dds_arguments(dds)), arguments));
@@ -57,19 +57,18 @@ TEST_F(RobotJoints, OfTheShippedArmsSwingThroughTheirRanges) {
   std::filesystem::copy(std::filesystem::path(kArms).parent_path() / "seven_joint_arm",
                         folder / "seven_joint_arm");
   write_text(folder / "cell.yaml", text);
-  moves({folder / "cell.yaml"}, std::get<Scene>(read_cell(folder / "cell.yaml")),
-        {"--rate", "200"});
+  moves({folder / "cell.yaml"}, std::get<Cell>(read_cell(folder / "cell.yaml")), {"--rate", "200"});
 }
 
 TEST_F(RobotJoints, OfAUrdfAreSentAsRos2Does) {
-  moves(with({"--urdf", kArm}, kSlow), std::get<Scene>(read_single_robot({.urdf = kArm})),
+  moves(with({"--urdf", kArm}, kSlow), std::get<Cell>(read_single_robot({.urdf = kArm})),
         {"--rate", "200", "--ros", "/joint_states"});
 }
 
 TEST_F(RobotJoints, FollowALog) {
   const ScratchFolder folder;
   write_text(folder / "joints.csv", "t_ns,joint4,other,joint1\n0,0.1,9,0\n20000000000,0.2,9,1\n");
-  moves(with({"--urdf", kArm}, kSlow), std::get<Scene>(read_single_robot({.urdf = kArm})),
+  moves(with({"--urdf", kArm}, kSlow), std::get<Cell>(read_single_robot({.urdf = kArm})),
         {"--rate", "200", "--joints", folder / "joints.csv"});
 }
 

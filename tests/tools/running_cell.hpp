@@ -38,7 +38,7 @@ class CellFile {
   CellFile(const CellFile&) = delete;
   CellFile& operator=(const CellFile&) = delete;
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] Scene scene() const { return std::get<Scene>(read_cell(path_)); }
+  [[nodiscard]] Cell cell() const { return std::get<Cell>(read_cell(path_)); }
 
  private:
   std::string path_;
@@ -97,11 +97,12 @@ inline std::vector<std::string> with(std::vector<std::string> first,
 // Sends the cell's simulated motion, a batch a call.
 class Poses {
  public:
-  Poses(Participant& participant, const Scene& scene, std::string_view source = "test")
-      : scene_(scene),
+  Poses(Participant& participant, const Cell& cell, std::string_view source = "test")
+      : scene_(cell.scene),
+        simulation_(cell.simulation),
         source_(source),
-        writer_(participant.writer(TopicKind::kPoses, scene.topics.poses)) {
-    poses_at(scene, 0.0, poses_);
+        writer_(participant.writer(TopicKind::kPoses, cell.topics.poses)) {
+    poses_at(simulation_, 0.0, poses_);
     sample_ = make_batch(poses_.size());
   }
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
@@ -117,7 +118,7 @@ class Poses {
   [[nodiscard]] const std::vector<PoseBatch>& sent() const noexcept { return sent_; }
 
   void send(double t_s, bool with_twist = true) {
-    poses_at(scene_, t_s, poses_);
+    poses_at(simulation_, t_s, poses_);
     PoseBatch& batch = sent_.emplace_back();
     batch.source = source_;
     batch.sequence_number = sent_.size();
@@ -138,6 +139,7 @@ class Poses {
 
  private:
   const Scene& scene_;
+  const Simulation& simulation_;
   SourceName source_;
   dds_entity_t writer_;
   std::vector<PoseAt> poses_;
@@ -151,8 +153,8 @@ class Poses {
 // Reads distances as any client would.
 class Distances {
  public:
-  Distances(Participant& participant, const Scene& scene)
-      : reader_(participant.reader(TopicKind::kDistances, scene.topics.distances, 8192)) {}
+  Distances(Participant& participant, const Cell& cell)
+      : reader_(participant.reader(TopicKind::kDistances, cell.topics.distances, 8192)) {}
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
 
   // Past discovery: until both ends know each other, reports may be missing.

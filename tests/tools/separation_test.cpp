@@ -32,13 +32,13 @@ simulation:
 
 TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   const CellFile cell(kPersonAndRobot);
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = own_dds();
   const ScratchFolder folder;
   const std::string run = (folder / "run.mcap").string();
   Participant client(dds);
-  Poses poses(client, scene);
-  const dds_entity_t reader = client.reader(TopicKind::kSeparation, scene.topics.separation, 4096);
+  Poses poses(client, read);
+  const dds_entity_t reader = client.reader(TopicKind::kSeparation, read.topics.separation, 4096);
   ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
   const std::string thinned = (folder / "thinned.mcap").string();
   ChildProcess recorder(kRecord, with({"-o", thinned, "--every", "7"}, dds_arguments(dds)));
@@ -67,7 +67,7 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   ASSERT_EQ(sample->pairs._length, 1u);
   const clearance_msg_PairSeparation& pair = sample->pairs._buffer[0];
   EXPECT_NE(sample->daemon, 0u);
-  EXPECT_EQ(sample->scene_revision, scene.revision);
+  EXPECT_EQ(sample->scene_revision, read.scene.revision);
   EXPECT_GE(sample->publish_ns, sample->now_ns);
   EXPECT_NEAR(pair.clearance, 1.7, 1e-9);
   // C, and the way of 1.6 m/s while the robot reacts and the pose gets older.

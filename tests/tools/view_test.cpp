@@ -11,6 +11,9 @@
 
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/ros_frames.hpp"
+#include "tests/shared/ros_joints.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
@@ -35,9 +38,9 @@ std::string pictures() {
 }
 
 // Until the daemon has poses of both boxes.
-void wait_for_poses(const DdsOptions& dds, const Scene& scene) {
+void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
   Participant client(dds);
-  test::Distances reports(client, scene);
+  test::Distances reports(client, cell);
   for (;;) {
     const auto report = reports.next();
     ASSERT_NE(report, nullptr);
@@ -54,7 +57,7 @@ class ViewOfARecording : public testing::Test {
     const auto dds = test::dds_arguments(own);
     ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", file}, dds));
     ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-    wait_for_poses(own, cell.scene());
+    wait_for_poses(own, cell.cell());
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
@@ -85,12 +88,12 @@ class ViewOfARecording : public testing::Test {
 TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   const DdsOptions dds = test::own_dds();
   const auto arguments = test::dds_arguments(dds);
-  const Scene scene = std::get<Scene>(read_cell(kTwoArms));
+  const Cell cell = std::get<Cell>(read_cell(kTwoArms));
   Participant client(dds);
   ChildProcess daemon(test::kDaemon, test::with({kTwoArms}, arguments));
   ChildProcess robot(test::kRobot, test::with({kTwoArms, "--rate", "250"}, arguments));
   View view(test::with({kTwoArms}, arguments));
-  test::Distances reports(client, scene);
+  test::Distances reports(client, cell);
   ChildProcess page("/usr/bin/env",
                     {"node", kScripts + "/page.mjs", view.page(), pictures(), "live"});
   std::map<std::uint64_t, double> distances;  // by cycle
@@ -116,7 +119,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   EXPECT_GE(compared, 1);  // a busy machine leaves reports out, of the page or of this loop
   EXPECT_EQ(shown["chosen"], 1);
   EXPECT_GT(shown["rows"], 100);
-  EXPECT_EQ(shown["zones"].size(), scene.zones.size());
+  EXPECT_EQ(shown["zones"].size(), cell.scene.zones.size());
   EXPECT_EQ(shown["theme"], "dark");
   EXPECT_THAT(shown["address"].get<std::string>(), testing::HasSubstr("pairs="));
 
@@ -296,7 +299,7 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   const auto dds = test::dds_arguments(own);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.scene());
+  wait_for_poses(own, cell.cell());
   View view(test::with({cell.path()}, dds));
   ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
                                        "30", "clearance/catalogue", "clearance/zones", "/tf",
@@ -329,13 +332,52 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   EXPECT_EQ(view.end(), 0);
 }
 
+// An arm on a cart that follows a frame, and a box that follows another.
+TEST(View, DrawsLiveWhatFollowsFrames) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  test::write_text(folder / "cell.yaml",
+                   "name: frames\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+                   "defaults: {age_limit_ms: 10000}\nros2: {world_frame: map}\n"
+                   "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir}}]\n"
+                   "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
+                   "pairs: [{between: [arm, box]}]\n");
+  const std::string cell = (folder / "cell.yaml").string();
+  const DdsOptions own = test::own_dds();
+  const auto dds = test::dds_arguments(own);
+  Participant robot(own);
+  test::RosFrames frames(robot), fixed(robot, test::RosFrames::Kind::kStatic);
+  test::RosJoints joints(robot);
+  fixed.send({{"mir", "box_link", {0.5, 0, 0}}});
+  ChildProcess daemon(test::kDaemon, test::with({cell}, dds));
+  View view(test::with({cell}, dds));
+  ChildProcess client("/usr/bin/env",
+                      {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "120", "/tf"});
+  ASSERT_TRUE(eventually([&] {
+    frames.send({{"map", "mir", {1, 0, 0}}});
+    joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1});
+    return client.wrote("\"cycles\"");
+  })) << client.output();
+  EXPECT_EQ(client.wait(), 0) << client.output();
+  std::map<std::string, double> drawn;  // x of what is drawn, by name
+  for (const json& each : lines_of(client).front()["last"]["/tf"]["transforms"]) {
+    drawn[each["child_frame_id"]] = each["transform"]["translation"]["x"];
+  }
+  ASSERT_TRUE(drawn.contains("box") && drawn.contains("foot") && drawn.contains("finger"))
+      << client.output();
+  EXPECT_NEAR(drawn["box"], 1.5, 1e-12);
+  EXPECT_NEAR(drawn["foot"], 1.0, 1e-12);
+  EXPECT_NEAR(drawn["finger"], 1.0 + 2.1, 1e-12);
+  EXPECT_EQ(view.end(), 0);
+}
+
 TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
   const test::CellFile cell(test::small_cell("small"));
   const DdsOptions own = test::own_dds();
   const auto dds = test::dds_arguments(own);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.scene());
+  wait_for_poses(own, cell.cell());
   View view(test::with({cell.path()}, dds));
   std::uint64_t last = 0;
   for (int look = 0; look < 2; ++look) {

@@ -33,10 +33,10 @@ TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
 
 TEST(Watch, SaysThatNobodyKnowsHowFastThingsCloseYet) {
   const test::CellFile cell(test::small_cell("small"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Poses poses(client, scene);
+  test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
@@ -135,10 +135,10 @@ TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
 
 TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
   const test::CellFile cell(test::small_cell("small", 100));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant client(dds);
-  test::Poses poses(client, scene);
+  test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no pose of left"); }))
@@ -166,10 +166,10 @@ TEST(Watch, EndsAfterItsSecondsAndSaysSoWhenNothingCame) {
 
 TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
   const test::CellFile cell(test::small_cell("small"));
-  const Scene scene = cell.scene();
+  const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
   Participant participant(dds);
-  const dds_entity_t reader = participant.reader(TopicKind::kPoses, scene.topics.poses, 4096);
+  const dds_entity_t reader = participant.reader(TopicKind::kPoses, read.topics.poses, 4096);
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "100", "--source", "tester"},
                                               test::dds_arguments(dds)));
   Sample<clearance_msg_PoseBatch> sample;
@@ -185,7 +185,7 @@ TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
     }
     expected = sample->sequence_number + 1;
     EXPECT_STREQ(sample->source, "tester");
-    EXPECT_EQ(sample->scene_revision, scene.revision);
+    EXPECT_EQ(sample->scene_revision, read.scene.revision);
     ASSERT_EQ(sample->poses._length, 2u);
     EXPECT_EQ(sample->poses._buffer[1].object, 1u);
     EXPECT_TRUE(sample->poses._buffer[1].has_twist);

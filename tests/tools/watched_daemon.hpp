@@ -21,8 +21,8 @@ class WatchedDaemon : public testing::Test {
     write_text(folder / "scara.urdf", kScaraUrdf);
     cell = folder / "cell.yaml";
     write_text(cell, text);
-    scene = std::get<Scene>(read_cell(cell));
-    distances.emplace(client, scene);
+    read = std::get<Cell>(read_cell(cell));
+    distances.emplace(client, read);
     daemon.emplace(kDaemon, with(with({cell}, dds_arguments(dds)), more));
     distances->settle();
   }
@@ -66,7 +66,8 @@ class WatchedDaemon : public testing::Test {
 
   ScratchFolder folder;
   std::filesystem::path cell;
-  Scene scene;
+  Cell read;
+  Scene& scene = read.scene;
   DdsOptions dds = own_dds();
   Participant client{dds};
   std::optional<Distances> distances;

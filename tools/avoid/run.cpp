@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance::avoid {
@@ -47,16 +47,16 @@ class Path {
 // What one run sends: the arm and the obstacles, under one stamp.
 class World {
  public:
-  World(const Scene& scene, client::Connection& connection)
-      : scene_(scene),
-        joints_(connection, "avoid arm", names_of(scene)),
+  World(const Cell& cell, client::Connection& connection)
+      : cell_(cell),
+        joints_(connection, "avoid arm", names_of(cell.scene)),
         poses_(connection, "avoid obstacles") {}
 
   // Returns the stamp.
   std::int64_t send(double t_s, const std::vector<double>& positions,
                     const std::vector<double>& velocities) {
     const std::int64_t stamp_ns = client::now_ns();
-    poses_at(scene_, t_s, obstacles_);
+    poses_at(cell_.simulation, t_s, obstacles_);
     sent_.resize(obstacles_.size());
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
       to_wire({.object = obstacles_[i].object,
@@ -66,7 +66,7 @@ class World {
                .has_twist = true},
               sent_[i]);
     }
-    poses_.write(sent_, scene_.revision);
+    poses_.write(sent_, cell_.scene.revision);
     joints_.write(positions, velocities, stamp_ns);
     return stamp_ns;
   }
@@ -78,7 +78,7 @@ class World {
     return names;
   }
 
-  const Scene& scene_;
+  const Cell& cell_;
   client::JointWriter joints_;
   client::PoseWriter poses_;
   std::vector<PoseAt> obstacles_;
@@ -121,15 +121,16 @@ bool all_known(const clearance_msg_Gradients& gradients) {
 }  // namespace
 
 // Each step: what the daemon made of the last positions, new velocities, a step in time.
-RunResult run(const Scene& scene, client::Connection& connection, const RunOptions& options,
+RunResult run(const Cell& cell, client::Connection& connection, const RunOptions& options,
               const std::function<bool()>& go_on) {
   RunResult result;
+  const Scene& scene = cell.scene;
   ArmModel arm(scene, options.end_link);
   std::vector<double> positions = home_of(scene), velocities(positions.size(), 0.0);
   const Controller controller(scene, arm, positions, options.controller);
   arm.place(positions);
   const Path path(arm.end_point());
-  World world(scene, connection);
+  World world(cell, connection);
   client::Gradients gradients(connection, {.old_after = kPatience, .depth = 4});
   Nearest nearest(scene, arm, result);
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
 #include "tools/avoid/controller.hpp"
 
@@ -26,7 +26,7 @@ struct RunResult {
 
 // Both obstacles and path are functions of the run's own time, which stands while the daemon does
 // not answer: every run meets the same motion. `go_on` is asked before each step.
-[[nodiscard]] RunResult run(const Scene& scene, client::Connection& connection,
+[[nodiscard]] RunResult run(const Cell& cell, client::Connection& connection,
                             const RunOptions& options, const std::function<bool()>& go_on);
 
 }  // namespace clearance::avoid

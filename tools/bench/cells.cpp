@@ -51,15 +51,15 @@ std::vector<PartPair> part_pairs(const Scene& scene) {
   return pairs;
 }
 
-std::shared_ptr<Workload> make_workload(Scene scene) {
+std::shared_ptr<Workload> make_workload(Cell cell) {
   auto load = std::make_shared<Workload>();
-  load->scene = std::move(scene);
+  load->scene = std::move(cell.scene);
   std::vector<PoseAt> poses;
   for (int step = 0; step < kSteps; ++step) {
     std::vector<Pose> world(load->scene.objects.size());
     for (std::size_t i = 0; i < world.size(); ++i)
       world[i] = load->scene.objects[i].world_from_object;
-    poses_at(load->scene, 1e-3 * step, poses);
+    poses_at(cell.simulation, 1e-3 * step, poses);
     for (const PoseAt& p : poses) world[p.object] = p.world_from_object;
     load->world_from_object.push_back(std::move(world));
   }
@@ -135,8 +135,8 @@ void time_batch(benchmark::State& state, const Workload& load) {
       benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void register_cell(const std::string& name, Scene scene) {
-  const auto load = make_workload(std::move(scene));
+void register_cell(const std::string& name, Cell cell) {
+  const auto load = make_workload(std::move(cell));
   benchmark::RegisterBenchmark((fmt::format("cell/tracked/{}", name)).c_str(),
                                [load](benchmark::State& s) { time_queries(s, *load, true); });
   benchmark::RegisterBenchmark((fmt::format("cell/cold/{}", name)).c_str(),
@@ -160,18 +160,18 @@ std::vector<std::filesystem::path> cells_in(const std::filesystem::path& folder)
   return {files.begin(), files.end()};
 }
 
-std::optional<Scene> read_or_say(const std::filesystem::path& file) {
+std::optional<Cell> read_or_say(const std::filesystem::path& file) {
   CellResult cell = read_cell(file);
   if (auto* errors = std::get_if<std::vector<CellError>>(&cell)) {
     for (const CellError& e : *errors) print(stderr, "{}\n", e.text);
     return std::nullopt;
   }
-  return std::get<Scene>(std::move(cell));
+  return std::get<Cell>(std::move(cell));
 }
 
 void register_cells(const std::vector<std::filesystem::path>& cells) {
   for (const auto& file : cells) {
-    if (auto scene = read_or_say(file)) register_cell(file.stem().string(), std::move(*scene));
+    if (auto cell = read_or_say(file)) register_cell(file.stem().string(), std::move(*cell));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 
 namespace clearance::bench {
 
@@ -13,7 +13,7 @@ namespace clearance::bench {
 [[nodiscard]] std::vector<std::filesystem::path> cells_in(const std::filesystem::path& folder);
 
 // What a cell file says; its mistakes go to stderr.
-[[nodiscard]] std::optional<Scene> read_or_say(const std::filesystem::path& file);
+[[nodiscard]] std::optional<Cell> read_or_say(const std::filesystem::path& file);
 
 // One set of benchmarks a cell file.
 void register_cells(const std::vector<std::filesystem::path>& cells);

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "config/cell/cell_file.hpp"
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "config/write/warehouse_cell.hpp"
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
@@ -68,6 +68,14 @@ std::uint32_t grid_side(std::uint32_t count) {
   return side;
 }
 
+Crowd crowd_of(std::string name, Cell cell) {
+  Crowd crowd;
+  crowd.name = std::move(name);
+  crowd.scene = std::move(cell.scene);
+  crowd.simulation = std::move(cell.simulation);
+  return crowd;
+}
+
 }  // namespace
 
 void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample>& samples) const {
@@ -87,9 +95,9 @@ void Crowd::samples_at(double t_s, std::int64_t stamp_ns, std::vector<PoseSample
     s.has_twist = true;
     samples.push_back(s);
   }
-  if (scene.simulation.empty()) return;
+  if (simulation.empty()) return;
   std::vector<PoseAt> poses;
-  poses_at(scene, t_s, poses);
+  poses_at(simulation, t_s, poses);
   for (const PoseAt& p : poses) {
     samples.push_back({.object = p.object,
                        .stamp_ns = stamp_ns,
@@ -152,7 +160,7 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
     joint.motion = {.centre = 0.05, .amplitude = 0.15, .frequency_hz = 0.4, .phase = 0.7 * i};
     chain.joints.push_back(joint);
   }
-  crowd.scene.simulation.chains.push_back(chain);
+  crowd.simulation.chains.push_back(chain);
   for (std::uint32_t i = 0; i < obstacles; ++i) {
     Object object =
         object_of(fmt::format("obstacle_{}", i), body(i, draw.uniform(0.15, 0.28), draw));
@@ -173,17 +181,13 @@ Crowd robot_in_crowd(std::uint32_t obstacles) {
 }
 
 Crowd warehouse_crowd(std::uint32_t objects) {
-  Crowd crowd;
-  crowd.scene = std::get<Scene>(parse_cell(warehouse_cell({.objects = objects}), "warehouse.yaml"));
-  crowd.name = crowd.scene.name;
-  return crowd;
+  Cell cell = std::get<Cell>(parse_cell(warehouse_cell({.objects = objects}), "warehouse.yaml"));
+  return crowd_of(cell.scene.name, std::move(cell));
 }
 
 Crowd shipped_crowd(const std::string& name) {
-  Crowd crowd;
-  crowd.scene = std::get<Scene>(read_cell(fmt::format("{}{}.yaml", CLEARANCE_CELLS "/", name)));
-  crowd.name = name;
-  return crowd;
+  const auto file = fmt::format("{}{}.yaml", CLEARANCE_CELLS "/", name);
+  return crowd_of(name, std::get<Cell>(read_cell(file)));
 }
 
 }  // namespace clearance::bench

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance::bench {
@@ -24,6 +24,7 @@ struct Crowd {
   };
   std::string name;
   Scene scene;
+  Simulation simulation;
   std::vector<Orbit> orbits;
   std::map<std::string, double> swept;  // parameters of a sweep, which become counters
 

@@ -154,8 +154,9 @@ void register_robot(const std::string& name, Scene read) {
 
 void register_robots(const std::vector<std::filesystem::path>& cells) {
   for (const std::filesystem::path& file : cells) {
-    std::optional<Scene> scene = read_or_say(file);
-    if (scene && !scene->robots.empty()) register_robot(file.stem().string(), std::move(*scene));
+    std::optional<Cell> cell = read_or_say(file);
+    if (cell && !cell->scene.robots.empty())
+      register_robot(file.stem().string(), std::move(cell->scene));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"
@@ -25,14 +25,14 @@ struct RecordArguments {
   DdsArguments dds;
 };
 
-// tools/record/from_csv.cpp, from_log.cpp, subscribe.cpp. All return the exit code. `scene` is the
+// tools/record/from_csv.cpp, from_log.cpp, subscribe.cpp. All return the exit code. `cell` is the
 // cell, or null when none was given.
-[[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Scene* scene,
+[[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Cell* cell,
                                   StopSignal& stop);
 // Of a bag, or joints as CSV.
 [[nodiscard]] int record_from_log(const RecordArguments& arguments, const std::string& log,
-                                  const Scene& scene, StopSignal& stop);
-[[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Scene* scene,
+                                  const Cell& cell, StopSignal& stop);
+[[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Cell* cell,
                                   StopSignal& stop);
 
 }  // namespace clearance

@@ -8,9 +8,9 @@
 
 namespace clearance {
 
-int record_from_csv(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
+int record_from_csv(const RecordArguments& arguments, const Cell* cell, StopSignal& stop) {
   const CsvRecordingResult result =
-      record_csv(arguments.from_csv, arguments.out, scene,
+      record_csv(arguments.from_csv, arguments.out, cell,
                  arguments.recording.options(arguments.force), [&stop] { return stop.wait(0); });
   if (!result.error.empty()) {
     print(stderr, "clearance-record: {}\n", result.error);

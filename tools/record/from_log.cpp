@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-int record_from_log(const RecordArguments& arguments, const std::string& log, const Scene& scene,
+int record_from_log(const RecordArguments& arguments, const std::string& log, const Cell& cell,
                     StopSignal& stop) {
   InputLogOptions options{.joint_topics = arguments.joint_topics};
   if (const auto wrong = read_joint_positions(arguments.joints, options.joints); !wrong.empty()) {
@@ -17,7 +17,7 @@ int record_from_log(const RecordArguments& arguments, const std::string& log, co
     return kUsage;
   }
   const LogRecordingResult result =
-      record_log(log, arguments.out, scene, options, arguments.recording.options(arguments.force),
+      record_log(log, arguments.out, cell, options, arguments.recording.options(arguments.force),
                  [&stop] { return stop.wait(0); });
   for (const std::string& note : result.notes) {
     print(stderr, "clearance-record: {}\n", note);

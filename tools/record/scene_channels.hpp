@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "monitor/intake/intake.hpp"
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -21,11 +21,7 @@ class SceneChannels {
       : scene_(scene),
         writer_(writer),
         poses_(scene),
-        intake_(scene, {},
-                [this](PoseBatch& batch) {
-                  poses_.take(batch, ObjectPoses::Numbers::kOfSender);
-                  return true;
-                }),
+        own_(scene),
         transforms_(writer.add_channel(ros::transforms_schema(), kTransformsTopic)),
         closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)),
         bodies_(writer.add_channel(ros::markers_schema(), kBodiesTopic)) {
@@ -37,8 +33,8 @@ class SceneChannels {
 
   // Poses and joints as they came; `kind`: of which topic.
   void take(TopicKind kind, std::span<const std::byte> cdr) {
-    if (const auto topic = intake_.topic(kind)) {
-      intake_.take({.topic = topic->number, .cdr = cdr}, {});
+    if (PoseBatch* const batch = own_.decode(kind, cdr)) {
+      poses_.take(std::move(*batch), ObjectPoses::Numbers::kOfSender);
     }
   }
 
@@ -56,7 +52,7 @@ class SceneChannels {
   const Scene& scene_;
   RecordingWriter& writer_;
   ObjectPoses poses_;
-  Intake intake_;
+  OwnBatches own_;
   std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };

@@ -169,24 +169,23 @@ void record_until(std::int64_t end_ns, Subscription& subscription, Participant& 
 
 }  // namespace
 
-int record_from_dds(const RecordArguments& arguments, const Scene* scene, StopSignal& stop) {
-  Participant participant(scene == nullptr ? arguments.dds.resolve()
-                                           : arguments.dds.resolve(*scene));
-  const Topics topics = scene == nullptr ? Topics{} : scene->topics;
+int record_from_dds(const RecordArguments& arguments, const Cell* cell, StopSignal& stop) {
+  Participant participant(cell == nullptr ? arguments.dds.resolve() : arguments.dds.resolve(*cell));
+  const Topics topics = cell == nullptr ? Topics{} : cell->topics;
   const RecordingOptions options = arguments.recording.options(arguments.force);
   RecordingWriter writer(arguments.out, topics, options);
   // The daemon's own catalogue follows when there is a daemon; poses alone need one as well.
-  if (scene != nullptr) {
-    if (const std::string why = writer.attach(*scene); !why.empty()) {
+  if (cell != nullptr) {
+    if (const std::string why = writer.attach(*cell); !why.empty()) {
       print(stderr,
             "clearance-record: the files that the cell names are not in the recording: {}. A "
             "replay needs --cell\n",
             why);
     }
-    writer.catalogue(*make_catalogue(*scene), dds_time());
+    writer.catalogue(*make_catalogue(*cell), dds_time());
   }
   std::optional<SceneChannels> channels;
-  if (arguments.scene && scene != nullptr) channels.emplace(*scene, writer, dds_time());
+  if (arguments.scene && cell != nullptr) channels.emplace(cell->scene, writer, dds_time());
   SceneChannels* const drawn = channels ? &*channels : nullptr;
   Subscription subscription(participant, topics, writer, options, drawn);
   const std::int64_t end_ns = arguments.seconds > 0.0

@@ -113,10 +113,10 @@ void print_summary(const Scene& scene, const OfflineReplay& replay, std::optiona
 // What was asked for of -o, --csv, --plot and --report.
 class Outputs {
  public:
-  Outputs(const ReplayArguments& arguments, const Scene& scene) : arguments_(arguments) {
-    if (!arguments.out.empty()) recording_.emplace(arguments.out, scene);
-    if (!arguments.csv.empty()) csv_.emplace(arguments.csv, scene, !arguments.published);
-    if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, scene);
+  Outputs(const ReplayArguments& arguments, const Cell& cell) : arguments_(arguments) {
+    if (!arguments.out.empty()) recording_.emplace(arguments.out, cell);
+    if (!arguments.csv.empty()) csv_.emplace(arguments.csv, cell.scene, !arguments.published);
+    if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, cell);
   }
   // False, after saying why, when a file cannot be made.
   [[nodiscard]] bool ok() const { return !csv_ || said(csv_->error()); }
@@ -173,7 +173,7 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
   return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
 }
 
-int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) {
+int replay_in(Cell& cell, const ReplayArguments& arguments, StopSignal& stop) {
   std::map<std::string, double> joints;
   if (const auto wrong = read_joint_positions(arguments.joints, joints); !wrong.empty()) {
     say(wrong);
@@ -187,10 +187,10 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
     return kUsage;
   }
   if (arguments.evaluate_all || !arguments.reference.empty()) {
-    scene.evaluate_all = true;
-    scene.budget = std::numeric_limits<std::uint32_t>::max();
+    cell.scene.evaluate_all = true;
+    cell.scene.budget = std::numeric_limits<std::uint32_t>::max();
   }
-  Outputs outputs(arguments, scene);
+  Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
 
   ProgressBar bar(arguments.progress);
@@ -200,13 +200,13 @@ int replay_in(Scene& scene, const ReplayArguments& arguments, StopSignal& stop) 
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
   const OfflineReplay replay =
-      replay_offline(scene, arguments.recording(), options,
+      replay_offline(cell, arguments.recording(), options,
                      [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
   print(stderr, "{}", replay.text());
   if (!replay.error.empty()) return kFailed;
-  print_summary(scene, replay, arguments.tolerance, elapsed.count());
+  print_summary(cell.scene, replay, arguments.tolerance, elapsed.count());
   return finish(replay, outputs);
 }
 
@@ -237,10 +237,10 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
     }
     if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
   }
-  std::optional<CellResult> cell = find_cell(arguments);
-  if (!cell) return kFailed;
-  std::optional<Scene> scene = scene_or_errors(std::move(*cell));
-  if (!scene) {
+  std::optional<CellResult> read = find_cell(arguments);
+  if (!read) return kFailed;
+  std::optional<Cell> cell = cell_or_errors(std::move(*read));
+  if (!cell) {
     const bool is_recorded = arguments.cell.empty() && arguments.robot.urdf.empty() &&
                              !is_input_log(arguments.recording());
     if (is_recorded)
@@ -248,8 +248,8 @@ int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop) {
           "with --cell");
     return kBadCell;
   }
-  scene->gradients = scene->gradients || arguments.gradients;
-  return replay_in(*scene, arguments, stop);
+  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
+  return replay_in(*cell, arguments, stop);
 }
 
 }  // namespace clearance

@@ -308,9 +308,9 @@ int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
   }
   DdsOptions dds = arguments.dds.resolve();
   if (!arguments.cell.empty()) {
-    const auto scene = scene_or_errors(read_cell(arguments.cell, told_on_stderr()));
-    if (!scene) return kBadCell;
-    dds = arguments.dds.resolve(*scene);
+    const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+    if (!cell) return kBadCell;
+    dds = arguments.dds.resolve(*cell);
   }
   use_precise_timers();
   return Publishing(arguments, dds, found.first_ns, stop).run();

@@ -103,7 +103,7 @@ std::string RunCurves::write_report(const OfflineReplay& replay) const {
   std::string cell = arguments_.cell;
   if (cell.empty()) {
     cell = folder / "cell.yaml";
-    std::ofstream(cell) << scene_.yaml;
+    std::ofstream(cell) << cell_.yaml;
   }
   page.no_pictures = take_pictures(arguments_, cell, page.moments);
   std::ofstream file(arguments_.report, std::ios::binary);

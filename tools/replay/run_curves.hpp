@@ -11,8 +11,8 @@ namespace clearance {
 class RunCurves {
  public:
   // Both must outlive it.
-  RunCurves(const ReplayArguments& arguments, const Scene& scene)
-      : arguments_(arguments), scene_(scene), series_(scene) {}
+  RunCurves(const ReplayArguments& arguments, const Cell& cell)
+      : arguments_(arguments), cell_(cell), scene_(cell.scene), series_(cell.scene) {}
 
   void add(const ReplayedTick& tick) { series_.add(tick); }
 
@@ -24,6 +24,7 @@ class RunCurves {
   [[nodiscard]] std::string unknown_pair() const;
 
   const ReplayArguments& arguments_;
+  const Cell& cell_;
   const Scene& scene_;
   RunSeries series_;
 };

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "config/cell/simulation.hpp"
 #include "config/scene/scene.hpp"
-#include "config/scene/simulation.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {

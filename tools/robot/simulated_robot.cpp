@@ -6,14 +6,14 @@
 namespace clearance {
 
 // One name belongs to one writer: where there are both, joints have one of their own.
-SimulatedRobot::SimulatedRobot(const Scene& scene, client::Connection& connection,
+SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
                                const SimulatedRobotOptions& options, JointMotion joints)
-    : scene_(scene), motion_(std::move(joints)) {
-  poses_at(scene_, 0.0, poses_);
+    : scene_(cell.scene), simulation_(cell.simulation), motion_(std::move(joints)) {
+  poses_at(simulation_, 0.0, poses_);
   if (!poses_.empty()) pose_writer_.emplace(connection, options.source);
-  if (scene.variables.empty()) return;
-  positions_.resize(scene.variables.size());
-  velocities_.resize(scene.variables.size());
+  if (cell.scene.variables.empty()) return;
+  positions_.resize(cell.scene.variables.size());
+  velocities_.resize(cell.scene.variables.size());
   if (!options.ros_topic.empty()) {
     ros_writer_ = connection.participant().ros_writer(kRosJointState, "rt" + options.ros_topic);
     make_ros_message();
@@ -21,7 +21,7 @@ SimulatedRobot::SimulatedRobot(const Scene& scene, client::Connection& connectio
   }
   const std::string source = poses_.empty() ? options.source : "joints of " + options.source;
   std::vector<std::string> names;
-  for (const JointVariable& variable : scene.variables) names.push_back(variable.name);
+  for (const JointVariable& variable : cell.scene.variables) names.push_back(variable.name);
   joint_writer_.emplace(connection, source.substr(0, kMaxSourceLength), names);
 }
 
@@ -50,7 +50,7 @@ void SimulatedRobot::send(double t_s) {
 }
 
 void SimulatedRobot::send_poses(double t_s, std::int64_t stamp_ns) {
-  poses_at(scene_, t_s, poses_);
+  poses_at(simulation_, t_s, poses_);
   sent_poses_.resize(poses_.size());
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     to_wire({.object = poses_[i].object,

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/simulation.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/participant/participant.hpp"
@@ -27,9 +27,9 @@ struct SimulatedRobotOptions {
 
 class SimulatedRobot {
  public:
-  // The scene and the connection must outlive this. `joints` is not called in a cell without
+  // The cell and the connection must outlive this. `joints` is not called in a cell without
   // robots.
-  SimulatedRobot(const Scene& scene, client::Connection& connection,
+  SimulatedRobot(const Cell& cell, client::Connection& connection,
                  const SimulatedRobotOptions& options, JointMotion joints);
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;
@@ -51,6 +51,7 @@ class SimulatedRobot {
   void send_joints_to_ros(std::int64_t stamp_ns);
 
   const Scene& scene_;
+  const Simulation& simulation_;
   JointMotion motion_;
   SystemClock clock_;
   std::vector<PoseAt> poses_;

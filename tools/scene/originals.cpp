@@ -123,7 +123,7 @@ std::variant<Scene, Faults> scene_of(const std::filesystem::path& file) {
   CellResult cell = file.extension() == ".urdf"
                         ? read_single_robot({.urdf = file}, told_on_stderr())
                         : read_cell(file, told_on_stderr());
-  if (auto* scene = std::get_if<Scene>(&cell)) return std::move(*scene);
+  if (auto* read = std::get_if<Cell>(&cell)) return std::move(read->scene);
   Faults texts;
   for (const CellError& error : std::get<std::vector<CellError>>(cell)) texts.push_back(error.text);
   return texts;

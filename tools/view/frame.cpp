@@ -14,20 +14,6 @@ Bytes shared(std::vector<std::byte> bytes) {
 
 }  // namespace
 
-Frame::Frame(const Scene& scene)
-    : scene_(scene),
-      poses_(scene),
-      own_(scene, {},
-           [this](PoseBatch& batch) {
-             source_ = batch.source.view();
-             poses_.take(batch, ObjectPoses::Numbers::kOfSender);
-             return true;
-           }),
-      ros_(scene, {}, [this](PoseBatch& batch) {
-        poses_.take(batch, ObjectPoses::Numbers::kUnnumbered);
-        return true;
-      }) {}
-
 void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr) {
   keep(channel(kind), key_of(kind, cdr), time_ns, cdr);
   if (kind == TopicKind::kCatalogue && decoder_.decode(cdr, catalogue_)) {
@@ -40,10 +26,12 @@ void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte
 std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
   if (kind == TopicKind::kZones && decoder_.decode(cdr, zone_)) return zone_->zone;
   if (kind != TopicKind::kPoses && kind != TopicKind::kJointStates) return 0;
-  const auto topic = own_.topic(kind);
-  if (!topic || !own_.take({.topic = topic->number, .cdr = cdr}, {})) return 0;
+  PoseBatch* const batch = own_.decode(kind, cdr);
+  if (batch == nullptr) return 0;
   const auto next = static_cast<std::uint32_t>(sources_.size());
-  return sources_.try_emplace(source_, next).first->second;
+  const std::uint32_t key = sources_.try_emplace(batch->source.c_str(), next).first->second;
+  poses_.take(std::move(*batch), ObjectPoses::Numbers::kOfSender);
+  return key;
 }
 
 void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,

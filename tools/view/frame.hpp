@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "monitor/intake/intake.hpp"
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/view/server.hpp"
@@ -20,13 +20,15 @@ namespace clearance::view {
 
 class Frame {
  public:
-  explicit Frame(const Scene& scene);
+  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene), own_(scene) {}
 
   // Takes one message of our topics. Of a report nothing more is done than to keep its bytes, of
   // poses and joints their numbers are kept: what is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
-  // Poses and joints of ROS 2's topics.
-  [[nodiscard]] Intake& of_ros() noexcept { return ros_; }
+  // Poses or joints of a topic of ROS 2.
+  void take_from_ros(PoseBatch batch) {
+    poses_.take(std::move(batch), ObjectPoses::Numbers::kUnnumbered);
+  }
 
   // Sends what has come since the last call.
   void publish(Server& server);
@@ -48,8 +50,7 @@ class Frame {
 
   const Scene& scene_;
   ObjectPoses poses_;
-  Intake own_, ros_;
-  std::string source_;  // of the batch of ours that was taken last
+  OwnBatches own_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;

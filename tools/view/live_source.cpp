@@ -29,8 +29,17 @@ std::int32_t depth_of(TopicKind kind) {
 
 }  // namespace
 
-LiveSource::LiveSource(const Scene& scene, const DdsOptions& dds)
-    : scene_(scene), participant_(dds), frame_(scene), ros_(participant_, frame_.of_ros()) {
+LiveSource::LiveSource(const Cell& cell, const DdsOptions& dds)
+    : scene_(cell.scene),
+      topics_(cell.topics),
+      participant_(dds),
+      frame_(cell.scene),
+      intake_(cell, {},
+              [this](PoseBatch& batch) {
+                frame_.take_from_ros(std::move(batch));
+                return true;
+              }),
+      ros_(participant_, intake_) {
   for (const Topic& topic : kTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
@@ -57,7 +66,7 @@ void LiveSource::advance(Server& server) {
 void LiveSource::join(TopicKind kind) {
   dds_entity_t& reader = readers_[index(kind)];
   if (reader != 0) return;
-  reader = participant_.reader(kind, scene_.topics.*topic(kind).name, depth_of(kind));
+  reader = participant_.reader(kind, topics_.*topic(kind).name, depth_of(kind));
 }
 
 // Whoever looks next must not be shown the last report of before.
@@ -87,13 +96,12 @@ void LiveSource::take(TopicKind kind) {
 
 // As the daemon does (dds/pose_reader.cpp). Its log names what is wrong, not the page.
 void LiveSource::take_from_ros(const Now& now) {
-  Intake& intake = frame_.of_ros();
-  if (ros_.look()) intake.keep(ros_.writers());
+  if (ros_.look()) intake_.keep(ros_.writers());
   for (const RosReaders::Reader& reader : ros_.readers()) {
-    take_into(intake, reader.topic, reader.handle, now, taken_);
+    take_into(intake_, reader.topic, reader.handle, now, taken_);
   }
-  intake.settle(now);
-  static_cast<void>(intake.take_news());
+  intake_.settle(now);
+  static_cast<void>(intake_.take_news());
 }
 
 // The same states as clearance-watch tells apart.

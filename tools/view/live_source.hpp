@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
@@ -16,8 +16,8 @@ namespace clearance::view {
 
 class LiveSource final : public Source {
  public:
-  // Throws DdsError. `scene` must outlive it.
-  LiveSource(const Scene& scene, const DdsOptions& dds);
+  // Throws DdsError. `cell` must outlive it.
+  LiveSource(const Cell& cell, const DdsOptions& dds);
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.
@@ -31,10 +31,12 @@ class LiveSource final : public Source {
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   const Scene& scene_;
+  const Topics& topics_;
   Participant participant_;
   std::array<dds_entity_t, kTopics.size()> readers_{};  // 0: there is none
   std::vector<CdrSample> taken_;
   Frame frame_;
+  Intake intake_;  // of ROS 2's topics
   RosReaders ros_;
   bool heard_ = false;           // a report has come since somebody looks
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC

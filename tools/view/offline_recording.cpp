@@ -15,11 +15,11 @@ constexpr std::string_view kSource = "replay";
 
 class Copy {
  public:
-  Copy(const Scene& scene, std::filesystem::path out)
-      : scene_(scene), out_(std::move(out)), stamps_(scene.objects.size()) {}
+  Copy(const Cell& cell, std::filesystem::path out)
+      : cell_(cell), out_(std::move(out)), stamps_(cell.scene.objects.size()) {}
 
   void add(const ReplayedTick& tick) {
-    if (!recorder_) recorder_.emplace(out_, scene_, tick.report.now_ns, RecordingOptions{});
+    if (!recorder_) recorder_.emplace(out_, cell_, tick.report.now_ns, RecordingOptions{});
     recorder_->poses(moved_in(tick.monitor));
     const SourceUse used{batch_.source, batch_.sequence_number};
     recorder_->report(tick.report, {&used, 1});
@@ -32,7 +32,7 @@ class Copy {
   const PoseBatch& moved_in(const Monitor& monitor) {
     batch_.source = SourceName(kSource);
     ++batch_.sequence_number;
-    batch_.scene_revision = scene_.revision;
+    batch_.scene_revision = cell_.scene.revision;
     batch_.samples.clear();
     for (std::uint32_t i = 0; i < stamps_.size(); ++i) {
       const std::int64_t stamp_ns = monitor.stamp_ns(i);
@@ -46,7 +46,7 @@ class Copy {
     return batch_;
   }
 
-  const Scene& scene_;
+  const Cell& cell_;
   std::filesystem::path out_;
   std::optional<Recorder> recorder_;
   std::vector<std::int64_t> stamps_;  // of the poses written last
@@ -55,16 +55,16 @@ class Copy {
 
 }  // namespace
 
-std::string replay_into(const Scene& scene, const std::filesystem::path& recording,
+std::string replay_into(const Cell& cell, const std::filesystem::path& recording,
                         const std::filesystem::path& out,
                         const std::function<void(double)>& progress,
                         const std::function<bool()>& stop) {
   OfflineReplayOptions options;
   options.progress = progress;
   options.stop = stop;
-  Copy copy(scene, out);
+  Copy copy(cell, out);
   const OfflineReplay replay = replay_offline(
-      scene, recording, options, [&copy](const ReplayedTick& tick) { copy.add(tick); });
+      cell, recording, options, [&copy](const ReplayedTick& tick) { copy.add(tick); });
   if (!replay.error.empty()) return replay.error;
   return copy.close();
 }

@@ -5,13 +5,13 @@
 #include <functional>
 #include <string>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 
 namespace clearance::view {
 
 // Runs `recording` through the monitor and writes `out`: the poses in use and the report of every
 // tick. What went wrong, or nothing. `stop` is asked before every tick: true ends it there.
-[[nodiscard]] std::string replay_into(const Scene& scene, const std::filesystem::path& recording,
+[[nodiscard]] std::string replay_into(const Cell& cell, const std::filesystem::path& recording,
                                       const std::filesystem::path& out,
                                       const std::function<void(double)>& progress,
                                       const std::function<bool()>& stop);

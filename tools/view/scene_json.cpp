@@ -160,16 +160,17 @@ json zones_json(const Scene& scene, Meshes& meshes) {
 
 }  // namespace
 
-std::string scene_json(const Scene& scene) {
+std::string scene_json(const Cell& cell) {
+  const Scene& scene = cell.scene;
   Meshes meshes(scene);
   json all = {{"name", scene.name},
               {"revision", std::to_string(scene.revision)},
               {"rate_hz", scene.rate_hz},
               {"topics",
-               {{"distances", scene.topics.distances},
-                {"zones", scene.topics.zones},
-                {"health", scene.topics.health},
-                {"separation", scene.topics.separation}}},
+               {{"distances", cell.topics.distances},
+                {"zones", cell.topics.zones},
+                {"health", cell.topics.health},
+                {"separation", cell.topics.separation}}},
               {"objects", objects_json(scene)},
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},

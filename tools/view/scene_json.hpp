@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "config/scene/scene.hpp"
+#include "config/cell/cell.hpp"
 
 namespace clearance::view {
 
 // Equal meshes occur once. A pose is [x, y, z, qx, qy, qz, qw], lengths are in m. Zones have
 // shells: the parts of one of their groups, enlarged by what the zone is entered below.
-[[nodiscard]] std::string scene_json(const Scene& scene);
+[[nodiscard]] std::string scene_json(const Cell& cell);
 
 }  // namespace clearance::view

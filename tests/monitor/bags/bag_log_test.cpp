@@ -35,7 +35,7 @@ class BagLogTest : public testing::Test {
     return read_file("bag.mcap", options);
   }
   ReadLog read_file(const std::string& name, const InputLogOptions& options = {}) {
-    const std::unique_ptr<InputLog> log = open_input_log(folder / name, scene, options);
+    const std::unique_ptr<InputLog> log = open_input_log(folder / name, cell, options);
     ReadLog all;
     LoggedBatch batch;
     while (log->next(batch)) all.batches.push_back(batch);
@@ -46,7 +46,8 @@ class BagLogTest : public testing::Test {
   }
 
   ScratchFolder folder;
-  Scene scene = scara_cell();
+  Cell cell{scara_cell()};
+  Scene& scene = cell.scene;
 };
 
 TEST_F(BagLogTest, JointStatesMoveTheJointsOfTheirNamesInAnyOrder) {
@@ -163,7 +164,7 @@ TEST_F(BagLogTest, FramesHangOnTheRobotsRootOrOnAWorldOfAnotherName) {
 // The same keys of the cell as live.
 TEST_F(BagLogTest, FramesThatTheCellNamesMoveObjectsAndBases) {
   write_text(folder / "scara.urdf", kScaraUrdf);
-  scene = scene_of(
+  cell = read_good(
       "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: map}\n"
       "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir, pose: {xyz: [0, 0, 1]}}}]\n"
       "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"

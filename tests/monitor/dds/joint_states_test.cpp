@@ -30,12 +30,13 @@ class JointStatesReader : public testing::Test {
     ASSERT_EQ(dds_write(poses, &*sample), DDS_RETCODE_OK);
   }
 
-  const Scene scene = test::scara_cell();
+  const Cell cell{test::scara_cell()};
+  const Scene& scene = cell.scene;
   const DdsOptions dds = test::own_dds();
   Participant daemon{dds}, robot{dds};
-  PoseReader inputs{scene, daemon};
-  const dds_entity_t joints = robot.writer(TopicKind::kJointStates, scene.topics.joint_states);
-  const dds_entity_t poses = robot.writer(TopicKind::kPoses, scene.topics.poses);
+  PoseReader inputs{cell, daemon};
+  const dds_entity_t joints = robot.writer(TopicKind::kJointStates, cell.topics.joint_states);
+  const dds_entity_t poses = robot.writer(TopicKind::kPoses, cell.topics.poses);
 };
 
 TEST_F(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {

@@ -22,10 +22,9 @@ Scene two_movers() {
 
 class Sender {
  public:
-  Sender(const Scene& scene, const DdsOptions& dds, std::string_view source,
-         std::size_t room = 4096)
+  Sender(const Cell& cell, const DdsOptions& dds, std::string_view source, std::size_t room = 4096)
       : participant_(dds),
-        writer_(participant_.writer(TopicKind::kPoses, scene.topics.poses)),
+        writer_(participant_.writer(TopicKind::kPoses, cell.topics.poses)),
         sample_(make_batch(room)) {
     batch_.source = SourceName(source);
   }
@@ -58,10 +57,11 @@ std::vector<std::uint64_t> take(PoseReader& poses, std::size_t count) {
 }
 
 struct Port {
-  Scene scene = two_movers();
+  Cell cell{two_movers()};
+  Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant participant{dds};
-  PoseReader poses{scene, participant};
+  PoseReader poses{cell, participant};
 
   void wait_for(const Sender& sender) {
     ASSERT_TRUE(test::eventually([&] { return test::matched_readers(sender.writer()) == 1; }));
@@ -70,7 +70,7 @@ struct Port {
 
 TEST(PoseReader, HandsEveryBatchOverInOrder) {
   Port port;
-  Sender sender(port.scene, port.dds, "arm");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   std::vector<std::uint64_t> sent, came;
   for (std::uint64_t round = 0; round < 20; ++round) {
@@ -90,7 +90,7 @@ TEST(PoseReader, HandsEveryBatchOverInOrder) {
 
 TEST(PoseReader, KeepsThePosesAsTheyWereSent) {
   Port port;
-  Sender sender(port.scene, port.dds, "arm");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   sender.send(1, 3);
   const PoseBatch* batch = nullptr;
@@ -103,7 +103,7 @@ TEST(PoseReader, KeepsThePosesAsTheyWereSent) {
 
 TEST(PoseReader, CountsGapsInTheNumbersButNotANewStartAsLoss) {
   Port port;
-  Sender sender(port.scene, port.dds, "arm");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   for (const std::uint64_t number : {5, 6, 9, 1, 2}) sender.send(number);
   EXPECT_EQ(take(port.poses, 5), (std::vector<std::uint64_t>{5, 6, 9, 1, 2}));
@@ -112,7 +112,7 @@ TEST(PoseReader, CountsGapsInTheNumbersButNotANewStartAsLoss) {
 
 TEST(PoseReader, CutsABatchThatIsTooLargeForTheCell) {
   Port port;
-  Sender sender(port.scene, port.dds, "arm");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   const std::size_t room = PoseReader::samples_a_batch(port.scene);
   sender.send(1, room + 5);
@@ -130,7 +130,7 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
   std::vector<std::unique_ptr<Sender>> senders;
   for (std::size_t i = 0; i <= kMaxSources; ++i) {
     senders.push_back(
-        std::make_unique<Sender>(port.scene, port.dds, "source" + std::to_string(i), 4));
+        std::make_unique<Sender>(port.cell, port.dds, "source" + std::to_string(i), 4));
     port.wait_for(*senders.back());
     senders.back()->send(100 + i, 3);
     if (i == kMaxSources) break;
@@ -158,8 +158,8 @@ std::uint64_t refused(const Port& port, std::string_view cause) {
 
 TEST(PoseReader, LeavesANameToItsFirstWriterUntilThatOneLeaves) {
   Port port;
-  auto first = std::make_unique<Sender>(port.scene, port.dds, "arm");
-  Sender second(port.scene, port.dds, "arm");
+  auto first = std::make_unique<Sender>(port.cell, port.dds, "arm");
+  Sender second(port.cell, port.dds, "arm");
   port.wait_for(*first);
   port.wait_for(second);
   first->send(1);
@@ -184,7 +184,7 @@ TEST(PoseReader, LeavesANameToItsFirstWriterUntilThatOneLeaves) {
 
 TEST(PoseReader, StoresNoMoreThanSixteenNamesOfAWriterAndStillHearsOthers) {
   Port port;
-  Sender hostile(port.scene, port.dds, "name0", 4), arm(port.scene, port.dds, "arm", 4);
+  Sender hostile(port.cell, port.dds, "name0", 4), arm(port.cell, port.dds, "arm", 4);
   port.wait_for(hostile);
   port.wait_for(arm);
   arm.send(1);
@@ -214,7 +214,7 @@ constexpr const char* kPartition = "CLEARANCE_TEST_PARTITION";
 TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
   const char* domain = std::getenv(kDomain);
   if (domain == nullptr) GTEST_SKIP() << "started by another test only";
-  const Scene scene = two_movers();
+  const Cell cell{two_movers()};
   // The type's operations up to its key, and the end: Cyclone's descriptors are lists of these.
   std::vector<std::uint32_t> operations;
   const std::uint32_t* original = clearance_msg_PoseBatch_desc.m_ops;
@@ -237,7 +237,7 @@ TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
   Participant participant({.domain = static_cast<std::uint32_t>(std::atoi(domain)),
                            .partition = std::getenv(kPartition)});
   const dds_entity_t topic = check_dds(
-      dds_create_topic(participant.handle(), &type, scene.topics.poses.c_str(), nullptr, nullptr),
+      dds_create_topic(participant.handle(), &type, cell.topics.poses.c_str(), nullptr, nullptr),
       "topic");
   dds_qos_t* qos = dds_create_qos();
   dds_qset_partition1(qos, std::getenv(kPartition));
@@ -274,7 +274,7 @@ TEST(PoseReader, CountsWhatCannotBeDecodedInHealth) {
 
 TEST(PoseReader, DropsAndCountsWhatNoTickTakes) {
   Port port;
-  Sender sender(port.scene, port.dds, "arm");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   for (std::uint64_t i = 1; i <= PoseReader::kBatches + 10; ++i) {
     sender.send(i);
@@ -291,8 +291,8 @@ TEST(PoseReader, HearsNothingFromAnotherPartition) {
   Port port;
   DdsOptions elsewhere = port.dds;
   elsewhere.partition += "-elsewhere";
-  Sender stranger(port.scene, elsewhere, "stranger");
-  Sender sender(port.scene, port.dds, "arm");
+  Sender stranger(port.cell, elsewhere, "stranger");
+  Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   stranger.send(1);
   sender.send(2);

@@ -30,8 +30,8 @@ TopicKind kind_of() {
 template <class T>
 class Reader {
  public:
-  Reader(Participant& participant, const Scene& scene)
-      : reader_(participant.reader(kind_of<T>(), scene.topics.*topic(kind_of<T>()).name)) {}
+  Reader(Participant& participant, const Cell& cell)
+      : reader_(participant.reader(kind_of<T>(), cell.topics.*topic(kind_of<T>()).name)) {}
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
   // The next sample, or null when none comes.
   const T* next() {
@@ -49,14 +49,15 @@ class Reader {
 
 // The publishing side without a tick loop: the test is the tick thread.
 struct Publisher {
-  Scene scene = watched_cell();
+  Cell cell{watched_cell()};
+  Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant participant{dds};
-  PoseReader poses{scene, participant};
+  PoseReader poses{cell, participant};
   ReportQueue queue{scene, {.reports = 16}};
   RecordingHealth recording;
   std::unique_ptr<ReportWriter> reports =
-      std::make_unique<ReportWriter>(scene, participant, queue, poses, recording);
+      std::make_unique<ReportWriter>(cell, participant, queue, poses, recording);
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 
@@ -78,7 +79,7 @@ struct Publisher {
 TEST(ReportWriter, PublishesEveryTickAsItWas) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_Distances> reader(client, publisher.scene);
+  Reader<clearance_msg_Distances> reader(client, publisher.cell);
   ASSERT_TRUE(test::eventually([&] { return test::matched_writers(reader.handle()) == 1; }));
   // A writer that does not know of the reader yet would send it nothing.
   ASSERT_TRUE(test::eventually([&] { return publisher.reports->distance_readers() == 1; }));
@@ -102,15 +103,15 @@ TEST(ReportWriter, PublishesEveryTickAsItWas) {
 TEST(ReportWriter, TellsALateClientNamesAndZones) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_ZoneState> early(client, publisher.scene);
+  Reader<clearance_msg_ZoneState> early(client, publisher.cell);
   publisher.tick(0.0);
   publisher.tick(0.6);  // 0.2 m away: inside the zone
   // Both reports are only queued so far: the client is late when they have been published.
   const clearance_msg_ZoneState* seen = early.next();
   while (seen != nullptr && !seen->active) seen = early.next();
   ASSERT_NE(seen, nullptr);
-  Reader<clearance_msg_Catalogue> catalogue(client, publisher.scene);
-  Reader<clearance_msg_ZoneState> zones(client, publisher.scene);
+  Reader<clearance_msg_Catalogue> catalogue(client, publisher.cell);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.cell);
   const clearance_msg_Catalogue* names = catalogue.next();
   ASSERT_NE(names, nullptr);
   ASSERT_EQ(names->objects._length, 2u);
@@ -125,7 +126,7 @@ TEST(ReportWriter, TellsALateClientNamesAndZones) {
 TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_ZoneState> zones(client, publisher.scene);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.cell);
   const auto expect_next = [&](bool active, std::uint64_t cycle) {
     const clearance_msg_ZoneState* zone = zones.next();
     ASSERT_NE(zone, nullptr);
@@ -146,7 +147,7 @@ TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
 TEST(ReportWriter, SaysHowTheDaemonIs) {
   Publisher publisher;
   Participant client(publisher.dds);
-  Reader<clearance_msg_Health> reader(client, publisher.scene);
+  Reader<clearance_msg_Health> reader(client, publisher.cell);
   LoopStatistics statistics(publisher.scene);
   statistics.cycle = 1000;
   statistics.now_ns = test::kStart;

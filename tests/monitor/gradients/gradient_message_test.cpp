@@ -60,7 +60,8 @@ TEST(GradientMessages, AReplayMakesWhatWasRecorded) {
   const Scene scene = scara_with_gradients();
   const ScratchFolder folder;
   Monitor monitor(scene);
-  Recorder recorder(folder / "run.mcap", scene, kStart);
+  const Cell cell{scene};
+  Recorder recorder(folder / "run.mcap", cell, kStart);
   for (int tick = 0; tick < 100; ++tick) {
     const std::int64_t now = kStart + tick * kTick;
     const auto sent = joints(std::sin(0.01 * tick), 0.002 * tick, 0.1, now);
@@ -71,8 +72,8 @@ TEST(GradientMessages, AReplayMakesWhatWasRecorded) {
                     std::array{SourceUse{batch.source, batch.sequence_number}});
   }
   ASSERT_TRUE(recorder.close()) << recorder.error();
-  ReportRecorder again(folder / "again.mcap", scene);
-  const OfflineReplay replay = replay_offline(scene, folder / "run.mcap", {},
+  ReportRecorder again(folder / "again.mcap", cell);
+  const OfflineReplay replay = replay_offline(cell, folder / "run.mcap", {},
                                               [&](const ReplayedTick& tick) { again.add(tick); });
   ASSERT_TRUE(replay.ok()) << replay.text();
   ASSERT_TRUE(again.close());

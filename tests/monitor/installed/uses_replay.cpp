@@ -7,11 +7,11 @@
 
 int main(int, char** argv) {
   const clearance::CellResult cell = clearance::read_cell(argv[1]);
-  const auto& scene = std::get<clearance::Scene>(cell);
+  const auto& read = std::get<clearance::Cell>(cell);
   const clearance::OfflineReplay held =
-      clearance::replay_offline(scene, argv[2], {.expect_min_distance = 0.25});
+      clearance::replay_offline(read, argv[2], {.expect_min_distance = 0.25});
   const clearance::OfflineReplay broken =
-      clearance::replay_offline(scene, argv[2], {.expect_min_distance = 0.35});
+      clearance::replay_offline(read, argv[2], {.expect_min_distance = 0.35});
   std::printf("%s%s", held.text().c_str(), broken.text().c_str());
   return held.ok() && held.ticks == 2 && broken.error.empty() && !broken.ok() ? 0 : 1;
 }

@@ -9,15 +9,9 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-Scene one_mover() {
-  Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)})});
-  scene.objects[0].age_limit_ns = 20 * kMillisecond;
-  return scene;
-}
-
 // How often poses at this interval are found too slow, of 100.
 int found(std::int64_t interval_ns) {
-  SlowInputs slow = SlowInputs::poses(one_mover());
+  SlowIntervals slow({20 * kMillisecond});
   int times = 0;
   for (int i = 1; i <= 100; ++i) {
     const auto interval = slow.note(0, test::kStart + i * interval_ns);
@@ -34,7 +28,7 @@ TEST(SlowInputs, AreFoundOnceAndOnlyWhenTheyAreSlowerThanTheLimit) {
 }
 
 TEST(SlowInputs, AreNotFoundInAPauseOrLostBatches) {
-  SlowInputs slow = SlowInputs::poses(one_mover());
+  SlowIntervals slow({20 * kMillisecond});
   std::int64_t stamp = test::kStart;
   for (int i = 0; i < 1000; ++i) {
     EXPECT_FALSE(slow.note(0, stamp += (i % 5 == 0 ? 10 : 500) * kMillisecond));

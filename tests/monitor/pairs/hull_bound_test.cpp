@@ -76,9 +76,9 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
       object.pose.position = random.in_box(4.0);
     }
     for (PosedPart& part : parts) place(objects[part.object], part);
-    Evaluation evaluation{objects, parts, 1, table, Budget(10)};
-    const double lower = hulls.lower(0, evaluation);
-    EXPECT_EQ(evaluation.budget.left(), 9u);
+    Budget budget(10);
+    const double lower = hulls.lower(0, TickView{objects, parts, 1, table}, budget);
+    EXPECT_EQ(budget.left(), 9u);
     const double truth = two.exact_distance(objects[0].pose.position, objects[1].pose.position);
     EXPECT_LE(lower, truth + 1e-14) << "round " << round;  // adding positions rounds in the oracle
     apart += lower > 0.0;
@@ -109,8 +109,9 @@ TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
 
 // Time runs fast, so that pairs wake and fall asleep all the time.
 TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
-  const auto cell = parse_cell(warehouse_cell({.objects = 120, .seed = 3}), "warehouse.yaml");
-  Scene scene = std::get<Scene>(cell);
+  const auto read = parse_cell(warehouse_cell({.objects = 120, .seed = 3}), "warehouse.yaml");
+  const Cell& cell = std::get<Cell>(read);
+  Scene scene = cell.scene;
   for (Object& object : scene.objects) object.may_jump = true;
   scene.budget = 60;
   scene.refresh_s = 0.2;
@@ -122,7 +123,7 @@ TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
   constexpr int kTicks = 3000;
   for (int t = 0; t < kTicks; ++t) {
     const std::int64_t now = 1'000'000'000 + 1'000'000 * static_cast<std::int64_t>(t);
-    const std::vector<PoseSample> samples = simulated_samples(scene, 0.01 * t, now);
+    const std::vector<PoseSample> samples = simulated_samples(cell.simulation, 0.01 * t, now);
     const Report& report = monitor.tick(samples, now);
     const Report& truth = judge.tick(samples, now);
     ASSERT_TRUE(truth.minimum_certified);

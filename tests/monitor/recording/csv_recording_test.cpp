@@ -20,12 +20,12 @@ class CsvRecording : public testing::Test {
 };
 
 TEST_F(CsvRecording, RecordingHoldsOneBatchATimeWithTheIdsOfTheCell) {
-  const Scene scene = bench_cell();  // hand, tool, box (fixed)
+  const Cell cell{bench_cell()};  // hand, tool, box (fixed)
   write_text(folder / "log.csv",
              std::string(kHeader) +
                  "5,tool,1,2,3,1,0,0,0\n5,box,0,0,0,1,0,0,0\n5,hand,4,5,6,1,0,0,0\n"
                  "6,tool,1,2,3,1,0,0,0\n");
-  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &scene);
+  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &cell);
   EXPECT_EQ("", result.error);
   EXPECT_EQ(4u, result.rows);
   EXPECT_EQ(2u, result.samples);
@@ -91,10 +91,10 @@ TEST_F(CsvRecording, APoseThatTheDaemonWouldRefuseIsRefusedWithItsLine) {
 }
 
 TEST_F(CsvRecording, ObjectThatTheCellLacksIsNamedWithItsLineAndNothingIsWritten) {
-  const Scene scene = bench_cell();
+  const Cell cell{bench_cell()};
   write_text(folder / "log.csv",
              std::string(kHeader) + "5,tool,1,2,3,1,0,0,0\n6,hnad,4,5,6,1,0,0,0\n");
-  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &scene);
+  const CsvRecordingResult result = record_csv(folder / "log.csv", folder / "a.mcap", &cell);
   EXPECT_THAT(result.error,
               HasSubstr("log.csv:3: the cell has no object 'hnad'; did you mean 'hand'?"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.mcap"));

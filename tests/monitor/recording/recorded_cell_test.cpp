@@ -59,7 +59,7 @@ class RecordedCell : public testing::Test {
       for (const CellError& error : *errors) ADD_FAILURE() << error.text;
       return;
     }
-    scene = std::get<Scene>(read);
+    cell = std::get<Cell>(read);
   }
 
   void write(const std::string& name, const std::string& text) {
@@ -69,7 +69,7 @@ class RecordedCell : public testing::Test {
 
   // What became of a recording with these options, where its files are no longer.
   CellResult recorded(const RecordingOptions& options) {
-    Recorder recorder(run, scene, 1000, options);
+    Recorder recorder(run, cell, 1000, options);
     without_files = recorder.without_files();
     EXPECT_TRUE(recorder.close()) << recorder.error();
     std::filesystem::remove_all(folder / "made");
@@ -87,26 +87,27 @@ class RecordedCell : public testing::Test {
 
   ScratchFolder folder;
   std::filesystem::path run = folder / "run.mcap";
-  Scene scene;
+  Cell cell;
   std::string without_files;
 };
 
 TEST_F(RecordedCell, NeedsNoneOfItsFiles) {
-  EXPECT_EQ(6u, scene.files.size());
+  EXPECT_EQ(6u, cell.files.size());
   const CellResult result = recorded({});
   EXPECT_EQ("", without_files);
   ASSERT_EQ("", errors_in(result));
-  const Scene& again = std::get<Scene>(result);
+  const Scene& scene = cell.scene;
+  const Scene& again = std::get<Cell>(result).scene;
   EXPECT_EQ(scene.revision, again.revision);
   EXPECT_EQ(scene.objects.size(), again.objects.size());
   EXPECT_EQ(scene.pairs.size(), again.pairs.size());
-  EXPECT_FALSE(std::filesystem::exists(again.file)) << "left behind";
+  EXPECT_FALSE(std::filesystem::exists(std::get<Cell>(result).file)) << "left behind";
 }
 
 TEST_F(RecordedCell, NeedsNoneOfItsFilesUncompressedEither) {
   const CellResult result = recorded({.compress = false});
   ASSERT_EQ("", errors_in(result));
-  EXPECT_EQ(scene.revision, std::get<Scene>(result).revision);
+  EXPECT_EQ(cell.scene.revision, std::get<Cell>(result).scene.revision);
   EXPECT_EQ(6u, read_first_attachments(run).found.size());
 }
 
@@ -125,8 +126,8 @@ TEST_F(RecordedCell, HasNoneWhereNoneWereAskedFor) {
 TEST_F(RecordedCell, IsInEveryFileOfSeveral) {
   {
     RecordingWriter writer(run, Topics{}, {.roll_ns = 10});
-    ASSERT_EQ("", writer.attach(scene));
-    writer.catalogue(*make_catalogue(scene), 0);
+    ASSERT_EQ("", writer.attach(cell));
+    writer.catalogue(*make_catalogue(cell), 0);
     for (std::int64_t t = 1; t < 30; ++t) {
       writer.write(TopicKind::kPoses, t, t, *make_batch(0));
       static_cast<void>(writer.roll(t));
@@ -151,7 +152,7 @@ TEST_F(RecordedCell, IsRefusedWhereAFileWouldStandElsewhere) {
       const auto channel = writer.add_channel(topic_schema(TopicKind::kCatalogue),
                                               "clearance/catalogue", kCdrEncoding);
       CdrEncoder encoder;
-      writer.write(channel, 1, 1, encoder.encode(*make_catalogue(scene)));
+      writer.write(channel, 1, 1, encoder.encode(*make_catalogue(cell)));
       ASSERT_TRUE(writer.close());
     }
     const auto cell = recorded_cell(run, outline(run));
@@ -162,7 +163,7 @@ TEST_F(RecordedCell, IsRefusedWhereAFileWouldStandElsewhere) {
 
 TEST_F(RecordedCell, OfADamagedAttachmentIsRefused) {
   {
-    Recorder recorder(run, scene, 1000, {.compress = false});
+    Recorder recorder(run, cell, 1000, {.compress = false});
     ASSERT_TRUE(recorder.close());
   }
   std::string bytes;

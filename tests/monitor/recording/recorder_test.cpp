@@ -17,8 +17,8 @@ using testing::HasSubstr;
 
 TEST(Recorder, PutsWhatATickUsedInFrontOfItsReportAndNothingElse) {
   const ScratchFolder folder;
-  const Scene scene = bench_cell();
-  record_run(scene, folder / "a.mcap");
+  const Cell cell{bench_cell()};
+  record_run(cell, folder / "a.mcap");
   std::vector<std::pair<std::string, std::uint64_t>> since_report;
   for (const Kept& message : messages_of(folder / "a.mcap")) {
     if (message.kind == TopicKind::kPoses) {
@@ -40,9 +40,10 @@ TEST(Recorder, PutsWhatATickUsedInFrontOfItsReportAndNothingElse) {
 
 TEST(Recorder, BatchesOfLaterTicksWaitForTheirReport) {
   const ScratchFolder folder;
-  const Scene scene = bench_cell();
+  const Cell cell{bench_cell()};
+  const Scene& scene = cell.scene;
   Monitor monitor(scene);
-  Recorder recorder(folder / "a.mcap", scene, kStart);
+  Recorder recorder(folder / "a.mcap", cell, kStart);
   const auto batch = [&scene](std::uint64_t number) {
     return PoseBatch{SourceName("arm"), number, scene.revision, {sample(0, at(0, 0, 1), kStart)}};
   };
@@ -63,9 +64,10 @@ TEST(Recorder, BatchesOfLaterTicksWaitForTheirReport) {
 
 TEST(Recorder, CrashCostsNoMoreThanTheLastFifthOfASecond) {
   const ScratchFolder folder;
-  const Scene scene = bench_cell();
+  const Cell cell{bench_cell()};
+  const Scene& scene = cell.scene;
   Monitor monitor(scene);
-  Recorder recorder(folder / "a.mcap", scene, kStart);
+  Recorder recorder(folder / "a.mcap", cell, kStart);
   for (int tick = 0; tick < 1000; ++tick)
     recorder.report(monitor.tick({}, kStart + tick * kTick), {});
   RecordingReader reader(folder / "a.mcap");  // while it is still being written
@@ -78,9 +80,9 @@ TEST(Recorder, CrashCostsNoMoreThanTheLastFifthOfASecond) {
 
 TEST(Recorder, KeepsTheCellAndTheBuildAsMetadata) {
   const ScratchFolder folder;
-  Scene scene = bench_cell();
-  scene.yaml = "name: bench\n";
-  record_run(scene, folder / "a.mcap", {.ticks = 1});
+  Cell cell{bench_cell()};
+  cell.yaml = "name: bench\n";
+  record_run(cell, folder / "a.mcap", {.ticks = 1});
   McapReader reader(folder / "a.mcap");
   ASSERT_TRUE(reader.summary());
   const McapMap& about = reader.summary()->metadata.at(std::string(kRecordingMetadata));
@@ -96,8 +98,8 @@ TEST(Recorder, KeepsTheCellAndTheBuildAsMetadata) {
 TEST(Recorder, ExistingFileIsKept) {
   const ScratchFolder folder;
   write_text(folder / "a.mcap", "precious");
-  const Scene scene = bench_cell();
-  const Recorder recorder(folder / "a.mcap", scene, kStart);
+  const Cell cell{bench_cell()};
+  const Recorder recorder(folder / "a.mcap", cell, kStart);
   EXPECT_THAT(recorder.error(), HasSubstr("File exists"));
   EXPECT_EQ("precious", read_text(folder / "a.mcap"));
 }

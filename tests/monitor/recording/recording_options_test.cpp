@@ -16,7 +16,7 @@ class RecordingOptionsTest : public OfflineReplayTest {
  protected:
   void record(RecordingOptions options, int ticks = 400) {
     options.overwrite = true;
-    record_run(scene, run, {.ticks = ticks}, options);
+    record_run(cell, run, {.ticks = ticks}, options);
   }
   std::size_t count(TopicKind kind) {
     return static_cast<std::size_t>(std::ranges::count(messages_of(run), kind, &Kept::kind));
@@ -61,8 +61,8 @@ TEST_F(RecordingOptionsTest, ThinnedReportsAreComparedAllTheSame) {
   Kept& thin = messages[report_of(messages, 33)];
   thin = altered<clearance_msg_Distances>(
       thin, [](clearance_msg_Distances& report) { report.minimum.lower -= 1e-9; });
-  RecordingWriter writer(run, scene.topics, {.pairs_every = 10});
-  writer.describe(*make_catalogue(scene));
+  RecordingWriter writer(run, cell.topics, {.pairs_every = 10});
+  writer.describe(*make_catalogue(cell));
   for (const Kept& message : messages) {
     writer.write(message.kind, message.log_ns, message.publish_ns,
                  std::span<const std::byte>(message.cdr));
@@ -103,7 +103,7 @@ TEST_F(RecordingOptionsTest, FilesFollowEachOtherAndReplayAsOne) {
   EXPECT_TRUE(whole.ok()) << whole.text();
   EXPECT_EQ(400u, whole.compared);
   // Each for itself: names, zones, and bounds that can be compared.
-  const OfflineReplay third = replay_offline(scene, files[2], {.compare = Comparison::kBounds});
+  const OfflineReplay third = replay_offline(cell, files[2], {.compare = Comparison::kBounds});
   EXPECT_TRUE(third.ok()) << third.text();
   EXPECT_GE(third.compared, 95u);
   McapReader reader(files[2]);
@@ -126,7 +126,7 @@ TEST_F(RecordingOptionsTest, ANewFileBeginsWhenOneIsLarge) {
 TEST_F(RecordingOptionsTest, TheNextFileReplacesNoneUnlessTheFirstMay) {
   write_text(folder / "run-2.mcap", "precious");
   const RecordingOptions rolled{.overwrite = false, .roll_ns = 100 * kTick};
-  record_run(scene, run, {.ticks = 150}, rolled);
+  record_run(cell, run, {.ticks = 150}, rolled);
   EXPECT_EQ("precious", read_text(folder / "run-2.mcap"));
   EXPECT_TRUE(is_taken(folder / "run-3.mcap"));
   record({.roll_ns = 100 * kTick}, 150);

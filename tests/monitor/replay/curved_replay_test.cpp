@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "config/cell/cell_file.hpp"
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -18,22 +18,23 @@ namespace {
 using test::kStart;
 using test::kTick;
 
-Scene round_arm() {
-  return std::get<Scene>(
+Cell round_arm() {
+  return std::get<Cell>(
       read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells/round_arm.yaml"));
 }
 
 // Records ticks of the cell's own motion, as the daemon does, from `start_s` on. Returns the least
 // distance that was reported.
-double record(const Scene& scene, const std::filesystem::path& file, double start_s, int ticks) {
-  Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart);
+double record(const Cell& cell, const std::filesystem::path& file, double start_s, int ticks) {
+  Monitor monitor(cell.scene);
+  Recorder recorder(file, cell, kStart);
   std::vector<PoseAt> poses;
   double least = kInfinity;
   for (int tick = 0; tick < ticks; ++tick) {
     const std::int64_t now_ns = kStart + tick * kTick;
-    poses_at(scene, start_s + 1e-9 * static_cast<double>(tick * kTick), poses);
-    PoseBatch batch{SourceName("arm"), static_cast<std::uint64_t>(tick) + 1, scene.revision, {}};
+    poses_at(cell.simulation, start_s + 1e-9 * static_cast<double>(tick * kTick), poses);
+    PoseBatch batch{
+        SourceName("arm"), static_cast<std::uint64_t>(tick) + 1, cell.scene.revision, {}};
     for (const PoseAt& pose : poses) {
       batch.samples.push_back(test::sample(pose.object, pose.world_from_object, now_ns));
       batch.samples.back().twist = pose.twist;
@@ -51,16 +52,16 @@ double record(const Scene& scene, const std::filesystem::path& file, double star
 
 TEST(CurvedReplay, GivesTheRecordedReportsBitForBitAndMeetsExpectations) {
   const test::ScratchFolder folder;
-  const Scene scene = round_arm();
+  const Cell cell = round_arm();
   // Around where the tool comes nearest to the table.
-  const double least = record(scene, folder / "run.mcap", 0.05, 400);
+  const double least = record(cell, folder / "run.mcap", 0.05, 400);
   EXPECT_GT(least, 0.02);
   const OfflineReplay same =
-      replay_offline(scene, folder / "run.mcap",
+      replay_offline(cell, folder / "run.mcap",
                      {.compare = Comparison::kBits, .expect_min_distance = 0.99 * least});
   EXPECT_TRUE(same.ok()) << same.text();
   const OfflineReplay nearer =
-      replay_offline(scene, folder / "run.mcap", {.expect_min_distance = 1.01 * least});
+      replay_offline(cell, folder / "run.mcap", {.expect_min_distance = 1.01 * least});
   EXPECT_FALSE(nearer.ok());
 }
 

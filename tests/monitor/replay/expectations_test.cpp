@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using ReplayExpectations = OfflineReplayTest;
 
 TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBroken) {
-  record_run(scene, run, {.nearest = 0.08});
+  record_run(cell, run, {.nearest = 0.08});
   EXPECT_TRUE(replay({.expect_min_distance = 0.0799}).ok());
   const OfflineReplay result = replay({.expect_min_distance = 0.09});
   ASSERT_EQ(1u, result.failures.size()) << result.text();
@@ -26,12 +26,13 @@ TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBrok
 }
 
 // The hand goes to and fro past the box, 1.2 m a tick; y: how far it keeps from the box's middle.
-void record_darts(const Scene& scene, const std::filesystem::path& file, double y) {
-  Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart);
+void record_darts(const Cell& cell, const std::filesystem::path& file, double y) {
+  Monitor monitor(cell.scene);
+  Recorder recorder(file, cell, kStart);
   for (int tick = 0; tick < 6; ++tick) {
     const std::int64_t now_ns = kStart + tick * kTick;
-    PoseBatch batch{SourceName("arm"), static_cast<std::uint64_t>(tick + 1), scene.revision, {}};
+    PoseBatch batch{
+        SourceName("arm"), static_cast<std::uint64_t>(tick + 1), cell.scene.revision, {}};
     batch.samples.push_back(sample(0, at(tick % 2 == 0 ? -0.6 : 0.6, y, 0), now_ns));
     batch.samples.push_back(sample(1, at(0, 3, 3), now_ns));
     recorder.poses(batch);
@@ -42,7 +43,7 @@ void record_darts(const Scene& scene, const std::filesystem::path& file, double 
 }
 
 TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMinimumDistance) {
-  record_darts(scene, run, 0.0);
+  record_darts(cell, run, 0.0);
   const OfflineReplay result = replay({.expect_min_distance = 0.2});
   ASSERT_EQ(1u, result.failures.size()) << result.text();
   EXPECT_EQ(2u, result.failures[0].tick.cycle);
@@ -53,16 +54,16 @@ TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMini
 
 // 0.45 m at the nearest; the displacement of the hand alone would decide nothing.
 TEST_F(ReplayExpectations, WhatPassesByBetweenTwoTicksIsLookedAtCloserBeforeItIsJudged) {
-  record_darts(scene, run, 0.6);
+  record_darts(cell, run, 0.6);
   const OfflineReplay near = replay({.compare = Comparison::kBits, .expect_min_distance = 0.44});
   EXPECT_TRUE(near.ok()) << near.text();
   EXPECT_THAT(replay({.expect_min_distance = 0.46}).text(), HasSubstr("hand - box was no more"));
 }
 
 TEST_F(ReplayExpectations, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
-  record_run(scene, run, {.nearest = 0.11});
+  record_run(cell, run, {.nearest = 0.11});
   EXPECT_TRUE(replay({.expect_no_zone = {"stop"}}).ok());
-  record_run(scene, folder / "near.mcap", {.nearest = 0.05});
+  record_run(cell, folder / "near.mcap", {.nearest = 0.05});
   run = folder / "near.mcap";
   const OfflineReplay result = replay({.expect_no_zone = {"stop"}});
   ASSERT_EQ(1u, result.failures.size());
@@ -71,7 +72,7 @@ TEST_F(ReplayExpectations, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
 }
 
 TEST_F(ReplayExpectations, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
-  record_run(scene, run);
+  record_run(cell, run);
   EXPECT_THAT(replay({.expect_no_zone = {"halt"}}).error,
               HasSubstr("the cell has no zone 'halt'; its zones are 'stop'"));
 }
@@ -79,7 +80,7 @@ TEST_F(ReplayExpectations, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
 TEST_F(ReplayExpectations, ExpectationsFailWhenAnObjectIsNeverSeen) {
   scene.objects.push_back(moving("ghost", {ball(0.1)}));
   scene.pairs.push_back({0, 3, false});
-  record_run(scene, run);
+  record_run(cell, run);
   const OfflineReplay result = replay({.expect_min_distance = 0.01});
   ASSERT_EQ(1u, result.failures.size());
   EXPECT_THAT(result.failures[0].what, HasSubstr("never gives a usable pose of 'ghost'"));

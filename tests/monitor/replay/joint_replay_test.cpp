@@ -77,9 +77,10 @@ TEST(JointStates, NamesOfNoUseAreLeftOutAndUnknownOnesAreOfNoVariable) {
 }
 
 // The arm and its finger come from two drivers, with now and then an unknown name and a bad number.
-void record_joints(const Scene& scene, const std::filesystem::path& file) {
+void record_joints(const Cell& cell, const std::filesystem::path& file) {
+  const Scene& scene = cell.scene;
   Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart);
+  Recorder recorder(file, cell, kStart);
   SourceNumbers numbers(scene);
   Random random(3);
   std::uint64_t sequence[2] = {0, 0};
@@ -111,15 +112,15 @@ void record_joints(const Scene& scene, const std::filesystem::path& file) {
 }
 
 TEST(JointStates, ARecordingReplaysBitForBitAndTwiceToTheSameBytes) {
-  const Scene scene = scara_cell();
+  const Cell cell{scara_cell()};
   const ScratchFolder folder;
-  record_joints(scene, folder / "run.mcap");
+  record_joints(cell, folder / "run.mcap");
   const auto kinds = messages_of(folder / "run.mcap");
   EXPECT_GT(std::ranges::count(kinds, TopicKind::kJointStates, &Kept::kind), 200);
   for (const char* name : {"a.mcap", "b.mcap"}) {
-    ReportRecorder out(folder / name, scene);
+    ReportRecorder out(folder / name, cell);
     const OfflineReplay replay =
-        replay_offline(scene, folder / "run.mcap", {.compare = Comparison::kBits},
+        replay_offline(cell, folder / "run.mcap", {.compare = Comparison::kBits},
                        [&out](const ReplayedTick& tick) { out.add(tick); });
     EXPECT_TRUE(replay.ok()) << replay.text();
     EXPECT_EQ(replay.compared, 300u);

@@ -17,11 +17,12 @@ namespace clearance::test {
 class OfflineReplayTest : public testing::Test {
  protected:
   ScratchFolder folder;
-  Scene scene = bench_cell();
+  Cell cell{bench_cell()};
+  Scene& scene = cell.scene;
   std::filesystem::path run = folder / "run.mcap";
 
   OfflineReplay replay(const OfflineReplayOptions& options = {}) {
-    return replay_offline(scene, run, options);
+    return replay_offline(cell, run, options);
   }
   // Writes the run again with its messages changed as a whole.
   void rewrite(const std::function<void(std::vector<Kept>&)>& change) {

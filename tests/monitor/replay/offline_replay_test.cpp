@@ -19,7 +19,7 @@ using testing::IsEmpty;
 using testing::Not;
 
 TEST_F(OfflineReplayTest, GivesTheRecordedReportsBitForBit) {
-  record_run(scene, run);
+  record_run(cell, run);
   const OfflineReplay result = replay({.compare = Comparison::kBits});
   EXPECT_TRUE(result.ok()) << result.text();
   EXPECT_EQ("", result.text());
@@ -29,7 +29,7 @@ TEST_F(OfflineReplayTest, GivesTheRecordedReportsBitForBit) {
 }
 
 TEST_F(OfflineReplayTest, WhatIsUnknownIsTheSameWhateverItsBits) {
-  record_run(scene, run);
+  record_run(cell, run);
   int unknown = 0;
   rewrite([&](std::vector<Kept>& messages) {
     Kept& first = messages[report_of(messages, 1)];
@@ -43,11 +43,11 @@ TEST_F(OfflineReplayTest, WhatIsUnknownIsTheSameWhateverItsBits) {
 }
 
 TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
-  record_run(scene, run);
+  record_run(cell, run);
   for (const char* name : {"a.mcap", "b.mcap"}) {
-    ReportRecorder out(folder / name, scene);
+    ReportRecorder out(folder / name, cell);
     ASSERT_TRUE(
-        replay_offline(scene, run, {}, [&out](const ReplayedTick& tick) { out.add(tick); }).ok());
+        replay_offline(cell, run, {}, [&out](const ReplayedTick& tick) { out.add(tick); }).ok());
     ASSERT_TRUE(out.close());
   }
   EXPECT_EQ(read_text(folder / "a.mcap"), read_text(folder / "b.mcap"));
@@ -56,7 +56,7 @@ TEST_F(OfflineReplayTest, SameRecordingTwiceGivesIdenticalBytes) {
 }
 
 TEST_F(OfflineReplayTest, ADifferenceNamesTheBuildsWhereTheyAreNotTheSame) {
-  record_run(scene, run);
+  record_run(cell, run);
   EXPECT_EQ(kBuild, outline(run).build);
   std::vector<Kept> messages = messages_of(run);
   Kept& report = messages[report_of(messages, 5)];
@@ -82,7 +82,7 @@ TEST_F(OfflineReplayTest, ADifferenceNamesTheBuildsWhereTheyAreNotTheSame) {
 }
 
 TEST_F(OfflineReplayTest, AZoneThatDiffersNamesTheBuildsToo) {
-  record_run(scene, run);
+  record_run(cell, run);
   std::vector<Kept> messages = messages_of(run);
   std::erase_if(messages, [](const Kept& message) { return message.kind == TopicKind::kZones; });
   write_messages(run, messages, "0.0.1");
@@ -101,7 +101,7 @@ void separate(Scene& scene) {
 
 TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffers) {
   separate(scene);
-  record_run(scene, run);
+  record_run(cell, run);
   EXPECT_EQ("", replay({.compare = Comparison::kBits}).text());
   std::vector<Kept> messages = messages_of(run);
   EXPECT_EQ(200, std::ranges::count(messages, TopicKind::kSeparation, &Kept::kind));
@@ -120,7 +120,7 @@ TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffe
 // Recorded over DDS, a topic may come after another.
 TEST_F(OfflineReplayTest, FindsASeparationBehindItsReport) {
   separate(scene);
-  record_run(scene, run);
+  record_run(cell, run);
   std::vector<Kept> messages = messages_of(run);
   for (std::size_t i = 0; i + 1 < messages.size(); ++i) {
     if (messages[i].kind == TopicKind::kSeparation) std::swap(messages[i], messages[i + 1]), ++i;
@@ -136,10 +136,10 @@ TEST_F(OfflineReplayTest, FindsASeparationBehindItsReport) {
 }
 
 TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {
-  record_run(scene, run);
+  record_run(cell, run);
   int ticks = 0;
   const OfflineReplay result = replay_offline(
-      scene, run, {.expect_min_distance = 0.01, .stop = [&ticks] { return ticks == 50; }},
+      cell, run, {.expect_min_distance = 0.01, .stop = [&ticks] { return ticks == 50; }},
       [&ticks](const ReplayedTick&) { ++ticks; });
   EXPECT_TRUE(result.stopped);
   EXPECT_EQ(50, ticks);
@@ -149,7 +149,7 @@ TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {
 }
 
 TEST_F(OfflineReplayTest, StoppedBeforeTheFirstTickItFindsNoFault) {
-  record_run(scene, run);
+  record_run(cell, run);
   const OfflineReplay result =
       replay({.start_s = 0.1, .compare = Comparison::kBits, .stop = [] { return true; }});
   EXPECT_TRUE(result.stopped);
@@ -157,7 +157,7 @@ TEST_F(OfflineReplayTest, StoppedBeforeTheFirstTickItFindsNoFault) {
 }
 
 TEST_F(OfflineReplayTest, NamesTheFirstTickAndFieldThatDiffers) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     for (const int tick : {58, 60}) {
       Kept& message = messages[report_of(messages, tick)];
@@ -175,7 +175,7 @@ TEST_F(OfflineReplayTest, NamesTheFirstTickAndFieldThatDiffers) {
 }
 
 TEST_F(OfflineReplayTest, BoundsThatOverlapAreTheSameWhereOnlyTheCertainIsCompared) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     Kept& message = messages[report_of(messages, 58)];
     message = altered<clearance_msg_Distances>(
@@ -196,7 +196,7 @@ TEST_F(OfflineReplayTest, BoundsThatOverlapAreTheSameWhereOnlyTheCertainIsCompar
 }
 
 TEST_F(OfflineReplayTest, FindsTheBatchesThatStandFarBehindTheirReport) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     for (Kept& message : messages) {
       if (message.kind == TopicKind::kPoses) message.log_ns += 100 * kTick;
@@ -208,7 +208,7 @@ TEST_F(OfflineReplayTest, FindsTheBatchesThatStandFarBehindTheirReport) {
 }
 
 TEST_F(OfflineReplayTest, UsesNoBatchThatNoReportNames) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([this](std::vector<Kept>& messages) {
     const auto first = std::ranges::find(messages, TopicKind::kPoses, &Kept::kind);
     messages.insert(first + 1,
@@ -223,7 +223,7 @@ TEST_F(OfflineReplayTest, UsesNoBatchThatNoReportNames) {
 }
 
 TEST_F(OfflineReplayTest, BatchThatWasLostIsToldAndChangesTheReplay) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     std::size_t at = report_of(messages, 40);
     while (messages[at].kind != TopicKind::kPoses ||
@@ -238,7 +238,7 @@ TEST_F(OfflineReplayTest, BatchThatWasLostIsToldAndChangesTheReplay) {
 }
 
 TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
-  record_run(scene, run, {.nearest = 0.05});
+  record_run(cell, run, {.nearest = 0.05});
   std::uint64_t cycle = 0;
   rewrite([&cycle](std::vector<Kept>& messages) {
     auto zone = std::ranges::find_if(messages, [](const Kept& message) {
@@ -256,10 +256,10 @@ TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
 }
 
 TEST_F(OfflineReplayTest, WindowIsWhatIsHandedOutButAllIsRun) {
-  record_run(scene, run);
+  record_run(cell, run);
   std::vector<std::uint64_t> cycles;
   const OfflineReplay result =
-      replay_offline(scene, run, {.start_s = 0.05, .end_s = 0.06, .compare = Comparison::kBits},
+      replay_offline(cell, run, {.start_s = 0.05, .end_s = 0.06, .compare = Comparison::kBits},
                      [&cycles](const ReplayedTick& tick) { cycles.push_back(tick.report.cycle); });
   EXPECT_TRUE(result.ok()) << result.text();
   ASSERT_EQ(11u, cycles.size());
@@ -269,7 +269,7 @@ TEST_F(OfflineReplayTest, WindowIsWhatIsHandedOutButAllIsRun) {
 }
 
 TEST_F(OfflineReplayTest, RecordingCutOffIsReplayedUpToThere) {
-  record_run(scene, run, {.ticks = 1000});
+  record_run(cell, run, {.ticks = 1000});
   const std::string whole = read_text(run);
   write_text(run, whole.substr(0, whole.size() / 2));
   const OfflineReplay result = replay({.compare = Comparison::kBits});
@@ -280,13 +280,13 @@ TEST_F(OfflineReplayTest, RecordingCutOffIsReplayedUpToThere) {
 }
 
 TEST_F(OfflineReplayTest, AnotherCellIsServedByName) {
-  record_run(scene, run);
+  record_run(cell, run);
   Scene other = cell_of({fixed("table", {floor()}, at(0, 0, -1)),
                          moving("Tool", {capsule(0.2, 0.02)}), moving("hand", {ball(0.05)})});
   other.revision = 99;
   for (Object& object : other.objects) object.max_speed = 2.0;
   std::vector<double> seen;
-  const OfflineReplay result = replay_offline(other, run, {}, [&seen](const ReplayedTick& tick) {
+  const OfflineReplay result = replay_offline({other}, run, {}, [&seen](const ReplayedTick& tick) {
     seen.push_back(tick.monitor.pair(1).distance);  // table - hand
   });
   EXPECT_TRUE(result.ok());
@@ -296,21 +296,21 @@ TEST_F(OfflineReplayTest, AnotherCellIsServedByName) {
   EXPECT_THAT(result.notes,
               Contains(HasSubstr("object 'Tool' of the cell is not in the recording")));
   EXPECT_NEAR(1.0 + 0.1 + 0.08, *std::ranges::min_element(seen), 1e-9);
-  EXPECT_THAT(replay_offline(other, run, {.compare = Comparison::kBits}).error,
+  EXPECT_THAT(replay_offline({other}, run, {.compare = Comparison::kBits}).error,
               HasSubstr("another cell"));
 }
 
 TEST_F(OfflineReplayTest, CellOfOtherObjectsIsAnError) {
-  record_run(scene, run);
+  record_run(cell, run);
   Scene other = cell_of({moving("cart", {ball(0.1)}), fixed("hand", {ball(0.1)}, at(0, 0, 3))});
   other.revision = 99;
-  const OfflineReplay result = replay_offline(other, run);
+  const OfflineReplay result = replay_offline({other}, run);
   EXPECT_THAT(result.error, HasSubstr("no object that moves in this cell"));
   EXPECT_THAT(result.error, HasSubstr("object 'tool' of the recording is not in the cell"));
 }
 
 TEST_F(OfflineReplayTest, DaemonThatWasStartedAnewBeginsWithAMonitorThatKnowsNothing) {
-  record_run(scene, run, {.ticks = 60});
+  record_run(cell, run, {.ticks = 60});
   rewrite([](std::vector<Kept>& messages) {
     std::vector<Kept> again = messages;
     for (Kept& message : again) message.log_ns += 1000 * kTick;
@@ -323,7 +323,7 @@ TEST_F(OfflineReplayTest, DaemonThatWasStartedAnewBeginsWithAMonitorThatKnowsNot
 }
 
 TEST_F(OfflineReplayTest, RecordingThatBeginsLateIsComparedInWhatIsCertain) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     messages.erase(messages.begin() + 1,
                    messages.begin() + static_cast<std::ptrdiff_t>(report_of(messages, 50)) + 1);
@@ -341,7 +341,7 @@ TEST_F(OfflineReplayTest, TicksThatTheDaemonCountsOtherwiseAreNamedByBoth) {
 }
 
 TEST_F(OfflineReplayTest, TicksWhosePosesWereLostAreNotComparedInWhatIsCertain) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {
     std::size_t place = report_of(messages, 50);
     while (messages[place].kind != TopicKind::kPoses) --place;
@@ -361,7 +361,7 @@ TEST_F(OfflineReplayTest, TicksWhosePosesWereLostAreNotComparedInWhatIsCertain) 
 }
 
 TEST_F(OfflineReplayTest, WindowWithoutATickIsNoProof) {
-  record_run(scene, run);
+  record_run(cell, run);
   for (const OfflineReplayOptions& options : {OfflineReplayOptions{.start_s = 100.0},
                                               {.start_s = 100.0, .expect_min_distance = 0.01},
                                               {.start_s = 100.0, .compare = Comparison::kBits}}) {
@@ -380,7 +380,7 @@ TEST_F(OfflineReplayTest, PoseLogWithoutReportsTicksOnceADistinctTime) {
   ASSERT_EQ("", record_csv(folder / "log.csv", run, nullptr).error);
   std::vector<std::int64_t> times;
   std::vector<double> distances;
-  const OfflineReplay result = replay_offline(scene, run, {}, [&](const ReplayedTick& tick) {
+  const OfflineReplay result = replay_offline(cell, run, {}, [&](const ReplayedTick& tick) {
     times.push_back(tick.report.now_ns);
     distances.push_back(tick.report.minimum.distance);
   });
@@ -394,11 +394,11 @@ TEST_F(OfflineReplayTest, PoseLogWithoutReportsTicksOnceADistinctTime) {
 }
 
 TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
-  record_run(scene, run, {.ticks = 5});
+  record_run(cell, run, {.ticks = 5});
   for (const bool all : {false, true}) {
     ReportCsv csv(folder / "t.csv", scene, all);
     ASSERT_TRUE(
-        replay_offline(scene, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); }).ok());
+        replay_offline(cell, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); }).ok());
     ASSERT_TRUE(csv.close());
     const std::string text = read_text(folder / "t.csv");
     EXPECT_EQ(1 + 5 * (all ? 3 : 2), std::ranges::count(text, '\n'));
@@ -418,7 +418,7 @@ TEST_F(OfflineReplayTest, UnreadableRecordingIsAnError) {
 }
 
 TEST_F(OfflineReplayTest, ProgressRunsFromNothingToAll) {
-  record_run(scene, run, {.ticks = 1000});
+  record_run(cell, run, {.ticks = 1000});
   std::vector<double> shares;
   ASSERT_TRUE(replay({.progress = [&shares](double share) { shares.push_back(share); }}).ok());
   EXPECT_TRUE(std::ranges::is_sorted(shares));

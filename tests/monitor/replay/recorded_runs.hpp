@@ -40,10 +40,10 @@ struct Run {
 };
 
 // Source 'arm' sends the hand, 'cell' the tool; each has none, one or two batches a tick.
-inline void record_run(const Scene& scene, const std::filesystem::path& file, const Run& run = {},
+inline void record_run(const Cell& cell, const std::filesystem::path& file, const Run& run = {},
                        const RecordingOptions& options = {.overwrite = false}) {
-  Monitor monitor(scene);
-  Recorder recorder(file, scene, kStart, options);
+  Monitor monitor(cell.scene);
+  Recorder recorder(file, cell, kStart, options);
   Random random(run.seed);
   std::uint64_t sequence[2] = {0, 0};
   for (int tick = 0; tick < run.ticks; ++tick) {
@@ -54,7 +54,7 @@ inline void record_run(const Scene& scene, const std::filesystem::path& file, co
       const int batches = tick == 0 ? 1 : static_cast<int>(random.uniform(0.0, 3.0));
       for (int i = 0; i < batches; ++i) {
         PoseBatch batch{
-            SourceName(source == 0 ? "arm" : "cell"), ++sequence[source], scene.revision, {}};
+            SourceName(source == 0 ? "arm" : "cell"), ++sequence[source], cell.scene.revision, {}};
         Pose pose = source == 0 ? hand_at(tick, run.ticks, run.nearest) : random.pose(0.01);
         if (source == 1) pose.position += Vec3(0.0, 1.0, 0.5);
         batch.samples.push_back(sample(source, pose, now_ns - 100'000 + i));

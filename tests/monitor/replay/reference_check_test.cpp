@@ -29,7 +29,7 @@ class Reference : public testing::Test {
       log += time + ",tool,0,9,0,1,0,0,0\n";
     }
     write_text(folder / "log.csv", log);
-    EXPECT_EQ("", record_csv(folder / "log.csv", folder / "run.mcap", &scene).error);
+    EXPECT_EQ("", record_csv(folder / "log.csv", folder / "run.mcap", &cell).error);
   }
   static std::int64_t time_ns(int tick) { return kStart + tick * kTick; }
   static std::string row(int tick, const std::string& pair, const std::string& distance) {
@@ -37,12 +37,13 @@ class Reference : public testing::Test {
   }
   OfflineReplay held_against(const std::string& rows, std::optional<double> tolerance = 1e-9) {
     write_text(folder / "ref.csv", "t_ns,object_a,object_b,distance\n" + rows);
-    return replay_offline(scene, folder / "run.mcap",
+    return replay_offline(cell, folder / "run.mcap",
                           {.reference = folder / "ref.csv", .tolerance = tolerance});
   }
 
   ScratchFolder folder;
-  Scene scene = bench_cell();
+  Cell cell{bench_cell()};
+  Scene& scene = cell.scene;
 };
 
 TEST_F(Reference, ThatIsMetEverywhereIsCounted) {

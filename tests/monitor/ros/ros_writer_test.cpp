@@ -18,16 +18,18 @@ using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
 using Float64 = std_msgs_msg_dds__Float64_;
 
 // A ball that comes to a post at x = 1; all four outputs.
-Scene told_cell() {
-  Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
-                               test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
+Cell told_cell() {
+  Cell cell;
+  Scene& scene = cell.scene;
+  scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
+                         test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
   scene.name = "told";
   scene.pairs[0].publish = true;
   scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
   for (const RosOutput& output : kRosOutputs)
-    scene.ros.outputs.*output.topic = "/told" + std::string(output.standard_topic);
-  scene.ros.markers_hz = 1000.0;
-  return scene;
+    cell.ros.outputs.*output.topic = "/told" + std::string(output.standard_topic);
+  cell.ros.markers_hz = 1000.0;
+  return cell;
 }
 
 template <class T>
@@ -63,13 +65,14 @@ class RosWriterTest : public testing::Test {
     ros.statistics(statistics);
   }
 
-  Scene scene = told_cell();
+  Cell cell = told_cell();
+  Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant participant{dds}, client{dds};
-  PoseReader poses{scene, participant};
+  PoseReader poses{cell, participant};
   ReportQueue published{scene, {}};
   RecordingHealth recording;
-  RosWriter ros{scene, participant, poses, published, recording};
+  RosWriter ros{cell, participant, poses, published, recording};
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 };

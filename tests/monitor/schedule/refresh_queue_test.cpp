@@ -24,14 +24,19 @@ class RefreshQueueTest : public testing::Test {
   void regain(std::uint32_t object) {
     objects[object].may_have_moved = 0.0;
     queue.regain(object);
-    queue.bring_back(by_object, objects, table);
+    queue.bring_back(by_object, TickView{objects, parts, 0, table});
   }
-  // Takes everyone off the head, in a tick of its own each.
+  void refresh(std::uint32_t pair, std::uint64_t cycle) {
+    table.refreshed_cycle[pair] = cycle;
+    queue.move_to_back(pair);
+  }
+  void set_aside(std::uint32_t pair, std::uint32_t object) { queue.set_aside(pair, object, table); }
+  // The pairs in the order in which they come to the head; each is refreshed in a tick of its own.
   std::vector<std::uint32_t> order() {
     std::vector<std::uint32_t> pairs;
-    for (std::uint64_t cycle = 100; queue.refreshed_cycle(queue.stalest()) < 100; ++cycle) {
+    for (std::uint64_t cycle = 100; table.refreshed_cycle[queue.stalest()] < 100; ++cycle) {
       pairs.push_back(queue.stalest());
-      queue.refreshed(queue.stalest(), cycle);
+      refresh(queue.stalest(), cycle);
     }
     return pairs;
   }
@@ -46,51 +51,48 @@ class RefreshQueueTest : public testing::Test {
 
 using Pairs = std::vector<std::uint32_t>;
 
-TEST_F(RefreshQueueTest, NobodyIsStalestInAnEmptyOne) {
-  EXPECT_EQ(queue.stalest(), kNoIndex);
-  EXPECT_EQ(queue.refreshed_cycle(3), 0u);
-}
+TEST_F(RefreshQueueTest, NobodyIsStalestInAnEmptyOne) { EXPECT_EQ(queue.stalest(), kNoIndex); }
 
 TEST_F(RefreshQueueTest, WhoWasRefreshedForAnyReasonGoesToTheBack) {
-  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
-  EXPECT_EQ(queue.oldest(), 1u);
-  queue.refreshed(0, 7);
-  queue.refreshed(3, 8);
-  EXPECT_EQ(queue.oldest(), 2u);
+  for (std::uint32_t pair = 0; pair < 6; ++pair) refresh(pair, pair + 1);
+  EXPECT_EQ(queue.oldest(table), 1u);
+  refresh(0, 7);
+  refresh(3, 8);
+  EXPECT_EQ(queue.oldest(table), 2u);
   EXPECT_EQ(order(), (Pairs{1, 2, 4, 5, 0, 3}));
 }
 
 TEST_F(RefreshQueueTest, WhoNeverWasComesFirst) {
-  queue.refreshed(0, 1);
-  queue.enter(5);
-  queue.enter(5);
-  EXPECT_EQ(queue.oldest(), 0u);
+  refresh(0, 1);
+  queue.enter(5, table);
+  queue.enter(5, table);
+  EXPECT_EQ(queue.oldest(table), 0u);
   EXPECT_EQ(order(), (Pairs{5, 0}));
 }
 
 TEST_F(RefreshQueueTest, PairsThatComeBackIntoSightComeFirst) {
-  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
+  for (std::uint32_t pair = 0; pair < 6; ++pair) refresh(pair, pair + 1);
   lose(0);
-  queue.set_aside(0, 0);
-  queue.set_aside(1, 0);
-  EXPECT_EQ(queue.oldest(), 3u);
-  queue.refreshed(2, 9);
+  set_aside(0, 0);
+  set_aside(1, 0);
+  EXPECT_EQ(queue.oldest(table), 3u);
+  refresh(2, 9);
   regain(0);
-  EXPECT_EQ(queue.oldest(), 1u);
+  EXPECT_EQ(queue.oldest(table), 1u);
   EXPECT_EQ(order(), (Pairs{0, 1, 3, 4, 5, 2}));
 }
 
 TEST_F(RefreshQueueTest, APairComesBackWhenBothOfItsObjectsHave) {
-  for (std::uint32_t pair = 0; pair < 6; ++pair) queue.refreshed(pair, pair + 1);
+  for (std::uint32_t pair = 0; pair < 6; ++pair) refresh(pair, pair + 1);
   lose(0);
   lose(1);
-  queue.set_aside(0, 0);
+  set_aside(0, 0);
   regain(0);
   EXPECT_EQ(queue.stalest(), 1u) << "object 1 is still out of sight";
-  EXPECT_EQ(queue.oldest(), 2u);
+  EXPECT_EQ(queue.oldest(table), 2u);
   regain(1);
   EXPECT_EQ(queue.stalest(), 0u);
-  EXPECT_EQ(queue.oldest(), 1u);
+  EXPECT_EQ(queue.oldest(table), 1u);
 }
 
 }  // namespace

@@ -42,9 +42,10 @@ class TwoOnTheirWay {
   }
 
   SweptBounds decide(double level, std::uint32_t queries = 1000) {
-    Evaluation evaluation{objects_, parts_, 2, table_, Budget(queries)};
-    const SweptBounds bounds = SweptSearch(0, evaluation).decide(level, evaluation);
-    queries_ = queries - evaluation.budget.left();
+    const TickView view{objects_, parts_, 2, table_};
+    Budget budget(queries);
+    const SweptBounds bounds = SweptSearch(0, view).decide(level, budget);
+    queries_ = queries - budget.left();
     return bounds;
   }
   [[nodiscard]] std::uint32_t queries() const { return queries_; }

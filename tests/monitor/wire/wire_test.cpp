@@ -179,7 +179,6 @@ Scene small_scene() {
   Scene scene;
   scene.name = "small";
   scene.revision = 77;
-  scene.yaml = "name: small\n";
   scene.objects.resize(3);
   scene.objects[0].name = "floor";
   scene.objects[0].fixed = true;
@@ -231,7 +230,8 @@ TEST(Convert, ReportThatDoesNotFitSaysSo) {
 }
 
 TEST(Convert, CatalogueNamesEveryObjectPartPairAndZone) {
-  const Sample<clearance_msg_Catalogue> catalogue = make_catalogue(small_scene());
+  const Sample<clearance_msg_Catalogue> catalogue =
+      make_catalogue({.scene = small_scene(), .yaml = "name: small\n"});
   EXPECT_STREQ("small", catalogue->scene);
   EXPECT_EQ(77u, catalogue->scene_revision);
   ASSERT_EQ(3u, catalogue->objects._length);

@@ -1,12 +1,10 @@
 // Positions and velocities along a chain follow from the forward kinematics of its joints, link by
 // link from the base. Everything is evaluated in closed form at the time asked for, without a
 // state.
-#include "config/scene/simulation.hpp"
+#include "config/cell/simulation.hpp"
 
 #include <cmath>
 #include <numbers>
-
-#include "config/scene/scene.hpp"
 
 namespace clearance {
 namespace {
@@ -67,9 +65,9 @@ PoseAt mover_at(const SimulatedMover& mover, double t_s) {
 
 // Chains are evaluated from the base outwards, so each link needs only the frame of the link
 // before.
-void poses_at(const Scene& scene, double t_s, std::vector<PoseAt>& poses) {
+void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& poses) {
   poses.clear();
-  for (const SimulatedChain& chain : scene.simulation.chains) {
+  for (const SimulatedChain& chain : simulation.chains) {
     MovingFrame frame{chain.world_from_base, {}};
     for (const SimulatedJoint& joint : chain.joints) {
       frame = link_frame(frame, joint, t_s);
@@ -78,7 +76,7 @@ void poses_at(const Scene& scene, double t_s, std::vector<PoseAt>& poses) {
       }
     }
   }
-  for (const SimulatedMover& mover : scene.simulation.movers) poses.push_back(mover_at(mover, t_s));
+  for (const SimulatedMover& mover : simulation.movers) poses.push_back(mover_at(mover, t_s));
 }
 
 }  // namespace clearance

@@ -1,6 +1,6 @@
 // The simulated motion of a cell's objects: the `simulation:` section of a cell file.
 //
-// Serial chains whose joints swing sinusoidally, and free movers. The monitor never uses it;
+// Serial chains whose joints swing sinusoidally, and free movers. The tick never uses it;
 // the simulated robot, the tests and the benchmarks do. Positions are functions of time alone: any
 // instant can be asked for.
 #pragma once
@@ -12,8 +12,6 @@
 #include "core/pose.hpp"
 
 namespace clearance {
-
-struct Scene;
 
 // value(t) = centre + amplitude * sin(2 pi frequency_hz t + phase); rad for angles, m for lengths.
 struct Swing {
@@ -71,6 +69,6 @@ struct PoseAt {
 // Replaces `poses` by the pose of every object that the simulation moves, `t_s` seconds after its
 // start: chains in the order of the file, then movers. Deterministic; allocates only when `poses`
 // has to grow.
-void poses_at(const Scene& scene, double t_s, std::vector<PoseAt>& poses);
+void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& poses);
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
-// What holds of pairs that nobody looked at, and that the check of the invariant can fail.
-#include "monitor/broad_phase/unseen_pairs.hpp"
+// Bounds of the pairs that a tick does not update; and the check of the invariant can fail.
+#include "monitor/broad_phase/untouched_pairs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,18 +9,19 @@
 namespace clearance {
 namespace {
 
-TEST(UnseenPairs, AreAtLeastTheHorizonApartLessWhatMovedUnseen) {
-  const UnseenPairs unseen{.any = true, .horizon = 0.5, .most_unseen = 0.1, .most_displaced = 0.2};
-  EXPECT_NEAR(unseen.all().now, 0.4, 1e-12);
-  EXPECT_LE(unseen.all().now, 0.4);
-  EXPECT_NEAR(unseen.all().since, 0.3, 1e-12);
-  EXPECT_EQ(unseen.waiting().now, kInfinity) << "none waits";
+TEST(UntouchedPairs, AreNoNearerThanTheHorizonLessTheUnobservedMotion) {
+  const UntouchedPairs untouched{
+      .any = true, .horizon = 0.5, .most_unobserved = 0.1, .most_displaced = 0.2};
+  EXPECT_NEAR(untouched.all().now, 0.4, 1e-12);
+  EXPECT_LE(untouched.all().now, 0.4);
+  EXPECT_NEAR(untouched.all().since, 0.3, 1e-12);
+  EXPECT_EQ(untouched.waiting().now, kInfinity) << "no pair waits";
 }
 
-TEST(UnseenPairs, ThatWaitBoundAllOfThem) {
-  const UnseenPairs unseen{.any = true, .horizon = 0.5, .waiting_lower = 0.25};
-  EXPECT_NEAR(unseen.waiting().now, 0.25, 1e-12);
-  EXPECT_NEAR(unseen.all().now, 0.25, 1e-12);
+TEST(UntouchedPairs, ThatWaitBoundAllOfThem) {
+  const UntouchedPairs untouched{.any = true, .horizon = 0.5, .waiting_lower = 0.25};
+  EXPECT_NEAR(untouched.waiting().now, 0.25, 1e-12);
+  EXPECT_NEAR(untouched.all().now, 0.25, 1e-12);
 }
 
 TEST(BroadPhaseInvariant, FailsForACulledPairThatIsNearerThanTheHorizon) {
@@ -33,7 +34,7 @@ TEST(BroadPhaseInvariant, FailsForACulledPairThatIsNearerThanTheHorizon) {
   const ZoneLevels levels(scene);
   BroadPhase broad_phase(scene, parts, levels, {0.0, 0.0}, {}, 100);
   const std::vector<std::uint32_t> changed{0, 1};
-  broad_phase.begin(objects, changed, table);
+  broad_phase.begin(OpenTick(objects, parts, 1, table), changed);
   broad_phase.clear_activated();
   broad_phase.move_horizon(0.5);
   EXPECT_TRUE(broad_phase.may_be_culled(0, 0.1)) << "it is active";

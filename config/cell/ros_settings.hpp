@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "config/scene/ros_stamps.hpp"
+
 namespace clearance {
 
 // Topics as ROS 2 calls them, "/diagnostics"; an empty one is not written.
@@ -26,10 +28,6 @@ inline constexpr std::array<RosOutput, 4> kRosOutputs = {{
     {"minimum_distance", &RosOutputs::minimum_distance, "/clearance/minimum_distance"},
     {"speed_scaling", &RosOutputs::speed_scaling, "/clearance/speed_scaling"},
 }};
-
-// When a message of ROS 2 held: as its header says, or when it was sent, by the clock of the
-// machine that sent it.
-enum class RosStamps : std::uint8_t { kMessage, kSent };
 
 struct RosSettings {
   RosOutputs outputs;

@@ -1,0 +1,42 @@
+// What holds of every known pair whose bounds a tick did not update: the one place for it.
+//
+// After the broad phase every known pair is one of three:
+//   updated: its bounds are of this tick (Culling::updated());
+//   culled:  D >= H, and D - U >= Z, also at every instant since the last tick (README.md here);
+//   waiting: so much motion came in one tick that there was no time for the pair: only D >= W.
+// D is the pair's distance for the poses in use, H the horizon, Z the level that the pair's zones
+// watch for, U the unobserved motion of its objects, W the bound of all pairs that wait.
+#pragma once
+
+#include <algorithm>
+
+#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/zones/zone_hysteresis.hpp"
+
+namespace clearance {
+
+struct UntouchedPairs {
+  bool any = false;                  // a pair is culled or waiting
+  double horizon = -kInfinity;       // H, m
+  double waiting_lower = kInfinity;  // W, m; infinity: no pair waits
+  // Of any two objects together, m: U, and how far they may have been from where they are now at
+  // any instant since the last tick.
+  double most_unobserved = 0.0, most_displaced = 0.0;
+
+  // Lower bounds for where the objects may be, margins not subtracted: of the pairs that wait,
+  // which may be in zones, ...
+  [[nodiscard]] Clearance waiting() const noexcept { return less_motion(waiting_lower); }
+  // ... and of all.
+  [[nodiscard]] Clearance all() const noexcept {
+    return less_motion(std::min(horizon, waiting_lower));
+  }
+
+ private:
+  [[nodiscard]] Clearance less_motion(double lower) const noexcept {
+    if (lower == kInfinity) return {};
+    return {.now = rounded_down(lower - most_unobserved),
+            .since = rounded_down(lower - most_displaced)};
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,43 @@
+// What the stages of a tick read, and what those stages change that bring pairs up to date.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/pairs/pair_table.hpp"
+
+namespace clearance {
+
+// What stages read: every object and part as placed in this tick, and what is known of every pair.
+struct TickView {
+  const std::vector<TrackedObject>& objects;
+  const std::vector<PosedPart>& parts;
+  std::uint64_t cycle;  // counts ticks from 1
+  const PairTable& pairs;
+};
+
+// A tick whose pairs are still being carried and evaluated. Functions that take this one write to
+// the table; functions that take a TickView do not.
+struct OpenTick : TickView {
+  PairTable& table;  // the same as `pairs`
+
+  OpenTick(const std::vector<TrackedObject>& the_objects, const std::vector<PosedPart>& the_parts,
+           std::uint64_t the_cycle, PairTable& the_table) noexcept
+      : TickView{the_objects, the_parts, the_cycle, the_table}, table(the_table) {}
+};
+
+// Both objects' poses are known.
+[[nodiscard]] inline bool is_known(std::uint32_t pair, const TickView& view) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  return view.objects[entry.object_a].known() && view.objects[entry.object_b].known();
+}
+// The pair's bounds are of this tick.
+[[nodiscard]] inline bool is_carried(std::uint32_t pair, const TickView& view) noexcept {
+  return view.pairs.entries[pair].carried_cycle == view.cycle;
+}
+// All part pairs that matter to the pair's distance were evaluated in this tick.
+[[nodiscard]] inline bool is_evaluated(std::uint32_t pair, const TickView& view) noexcept {
+  return view.pairs.entries[pair].evaluated_cycle == view.cycle;
+}
+
+}  // namespace clearance
