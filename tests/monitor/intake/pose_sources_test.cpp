@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-using News = Admission::News;
+using Admitted = Admission::News;
 
 constexpr std::int64_t kBegin = 1'000'000'000'000, kSecond = 1'000'000'000, kOneMs = 1'000'000;
 
@@ -30,7 +30,7 @@ TEST(PoseSources, LeaveANameToItsWriterAsLongAsThatOneSends) {
     EXPECT_NE(send(sources, "arm", 7, at, i).tally, nullptr);
     const Admission second = send(sources, "arm", 8, at, 1'000'000'000 + i);
     EXPECT_EQ(second.tally, nullptr);
-    EXPECT_EQ(second.news, i == 1 ? News::kFirstRefusal : News::kNothing);
+    EXPECT_EQ(second.news, i == 1 ? Admitted::kFirstRefusal : Admitted::kNothing);
     EXPECT_EQ(second.former_writer, 7u);
   }
   ASSERT_EQ(sources.tallies().size(), 1u);
@@ -46,7 +46,7 @@ TEST(PoseSources, GiveANameToAnotherWriterAfterASecondOfSilence) {
   EXPECT_EQ(send(sources, "arm", 8, kSecond - 1).tally, nullptr);
   const Admission taken = send(sources, "arm", 8, kSecond, 1'968'028'530);
   ASSERT_NE(taken.tally, nullptr);
-  EXPECT_EQ(taken.news, News::kTakenOver);
+  EXPECT_EQ(taken.news, Admitted::kTakenOver);
   EXPECT_EQ(taken.former_writer, 7u);
   EXPECT_EQ(taken.tally->lost, 0u) << "the numbers of two writers say nothing about loss";
   EXPECT_EQ(send(sources, "arm", 7, kSecond + kOneMs).tally, nullptr) << "it is the other's now";
@@ -56,7 +56,7 @@ TEST(PoseSources, GiveANameToAnotherWriterAtOnceWhenItsOwnHasLeft) {
   PoseSources sources;
   send(sources, "arm", 7, 0);
   sources.keep(std::vector<std::uint64_t>{8});
-  EXPECT_EQ(send(sources, "arm", 8, kOneMs).news, News::kTakenOver);
+  EXPECT_EQ(send(sources, "arm", 8, kOneMs).news, Admitted::kTakenOver);
 }
 
 TEST(PoseSources, CountGapsButNeitherARestartNorANewNumberingAsLoss) {
@@ -85,7 +85,7 @@ TEST(PoseSources, GiveThePlaceOfASourceWhoseWriterHasLeftToAnother) {
     if (i != 3) still.push_back(i);
   sources.keep(still);
   const Admission late = send(sources, "late", 99, 2 * kOneMs);
-  EXPECT_EQ(late.news, News::kNewSource);
+  EXPECT_EQ(late.news, Admitted::kNewSource);
   EXPECT_EQ(late.place_of.view(), "source3");
   EXPECT_EQ(sources.departed().batches, 0u);
   EXPECT_EQ(sources.tallies().size(), kMaxSources);
