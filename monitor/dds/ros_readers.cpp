@@ -34,7 +34,8 @@ void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const N
       intake.take({.topic = topic,
                    .cdr = sample.bytes(),
                    .sent_ns = sample.source_ns() > 0 ? sample.source_ns() : now.realtime_ns,
-                   .writer = sample.writer()},
+                   .writer = sample.writer(),
+                   .bytes = CdrBytes::kOfReader},
                   now);
     }
     taken.clear();

@@ -20,7 +20,7 @@ std::optional<Decoder::Wanted> OwnPoses::wants(const TopicName& topic) {
 }
 
 bool OwnPoses::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
-  if (!decoder_.decode(message.cdr, message_)) return false;
+  if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   const std::size_t sent = message_->poses._length;
   message_->poses._length = static_cast<std::uint32_t>(std::min(sent, most_));
   from_wire(*message_, batch_);
@@ -33,7 +33,7 @@ std::optional<Decoder::Wanted> OwnJointStates::wants(const TopicName& topic) {
 }
 
 bool OwnJointStates::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
-  if (!decoder_.decode(message.cdr, message_)) return false;
+  if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   from_wire(*message_, names_, batch_);
   const std::size_t used = std::min(batch_.joints.size(), most_);
   const std::size_t cut = batch_.joints.size() - used;

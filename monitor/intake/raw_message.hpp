@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "monitor/wire/cdr.hpp"
+
 namespace clearance {
 
 // As ROS 2 names both, or as the cell names a topic of ours.
@@ -25,6 +27,7 @@ struct RawMessage {
   // CLOCK_REALTIME of who sent it; out of a log, when it was recorded.
   std::int64_t sent_ns = 0;
   std::uint64_t writer = 0;  // who sent it, any number of its own; out of a log 0
+  CdrBytes bytes = CdrBytes::kUnchecked;
 };
 
 // The time at which something is looked at. Out of a log, both are the time of recording.

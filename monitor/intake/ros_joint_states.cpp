@@ -122,7 +122,7 @@ void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
 
 bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now&,
                             TopicCounts& counts) {
-  if (!decoder_.decode(message.cdr, states_)) return false;
+  if (!decoder_.decode(message.cdr, states_, message.bytes)) return false;
   Topic& topic = topics_[port];
   Writer& writer = writer_of(topic, message.writer);
   note_unused(topic, writer);

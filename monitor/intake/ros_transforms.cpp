@@ -89,7 +89,7 @@ void RosTransforms::keep(std::span<const std::uint64_t> writers) {
 
 bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const Now& now,
                            TopicCounts& counts) {
-  if (!decoder_.decode(message.cdr, message_)) return false;
+  if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   const Topic& topic = topics_[port];
   for (std::uint32_t i = 0; i < message_->transforms._length; ++i) {
     take(message_->transforms._buffer[i], topic, message, now, counts);

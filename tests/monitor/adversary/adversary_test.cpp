@@ -36,7 +36,7 @@ constexpr HardCell kThinBodies{"ThinBodies", test::thin_bodies, &test::kClosedFo
 constexpr HardCell kCapsules{"Capsules", test::capsules, &test::kClosedForm, 2.5, 200, 400};
 constexpr HardCell kPolyhedra{"Polyhedra", test::polyhedra, &test::kBruteForce, 1.0, 400, 60};
 
-class Adversaries : public testing::TestWithParam<std::tuple<Cell, Style, std::uint32_t>> {};
+class Adversaries : public testing::TestWithParam<std::tuple<HardCell, Style, std::uint32_t>> {};
 
 std::string name_of(const testing::TestParamInfo<Adversaries::ParamType>& info) {
   return (std::ostringstream() << std::get<1>(info.param) << "WithBudget"
