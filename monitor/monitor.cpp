@@ -247,7 +247,8 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
 // not have it, except in the first tick.
 void Monitor::State::add_presence_changes() noexcept {
   for (const std::uint32_t object : presence_changed) {
-    if (!inputs.objects[object].seen && inputs.cycle > 1) displaced.changed.push_back(object);
+    if (!inputs.objects[object].input.has_value && inputs.cycle > 1)
+      displaced.changed.push_back(object);
   }
   presence_changed.clear();
 }

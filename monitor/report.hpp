@@ -31,7 +31,6 @@ enum class PairStatus : std::uint8_t {
   // The pair rests on no input: it makes no zone active, and the minimum and lower_all leave it
   // out.
   kAbsent = 7,
-  kCount,
 };
 // A word for each enumerator; "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;

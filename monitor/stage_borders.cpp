@@ -11,8 +11,8 @@ bool is_usable(const Pose& pose) noexcept {
 }
 
 void check_object(const TrackedObject& object) noexcept {
-  CLEARANCE_INVARIANT(!object.absent || !object.seen);
-  if (!object.seen) return;
+  CLEARANCE_INVARIANT(!object.absent || !object.input.has_value);
+  if (!object.input.has_value) return;
   CLEARANCE_INVARIANT(is_usable(object.pose));
   CLEARANCE_INVARIANT(object.displacement >= 0.0);
   CLEARANCE_INVARIANT(object.accumulated_last_tick <= object.accumulated);
@@ -40,7 +40,7 @@ void check_displaced(std::span<const std::uint32_t> changed,
   if constexpr (!kInvariantsChecked) return;
   for (const std::uint32_t i : changed) {
     check_object(view.objects[i]);
-    if (!view.objects[i].seen) continue;
+    if (!view.objects[i].input.has_value) continue;
     for (std::uint32_t part = first_part[i]; part < first_part[i + 1]; ++part)
       CLEARANCE_INVARIANT(view.parts[part].placed);
   }
