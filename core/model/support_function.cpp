@@ -90,12 +90,28 @@ double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcep
   return steepest / cone.least;
 }
 
+// The same from a direction beside `across` along which all rays have negative derivatives beyond
+// rounding: then it is the tilt against that direction. Tried: the direction past the steepest ray.
+double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
+  const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
+  const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
+  if (steepest == cone.rays.end()) return kInfinity;
+  const Vec3 way = cone.across_lines(*steepest);
+  const double step = (std::max(0.0, across.dot(way)) + 2.0 * kSlopeError) / way.squaredNorm();
+  const Vec3 past = cone.across_lines(across - step * way);
+  for (const Vec3& ray : cone.rays) {
+    if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
+  }
+  return (across - past).norm();
+}
+
 // An upper bound of the directional derivative along m of any unit direction of the cone: along its
 // lines, and beside them as its rays have across the lines.
-double cone_derivative(const RecessionCone& cone, const Vec3& m) noexcept {
+double cone_derivative(const RecessionCone& cone, const Vec3& m,
+                       double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
   const Vec3 across = cone.across_lines(m);
   const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  return derivative_by_rays(cone, across) + of_lines;
+  return of_rays(cone, across) + of_lines;
 }
 
 // The same from the facets: no direction of the cone has a positive derivative along their normals,
@@ -147,8 +163,11 @@ Support support(const ConvexBody& body, const Vec3& m) noexcept {
 double reach_along_rays(const ConvexBody& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const RecessionCone& cone = body.recession_cone;
-  double rate = cone_derivative(cone, m);
-  if (rate > kSlopeError) rate = std::min(rate, derivative_by_facets(body, m));
+  double rate = cone_derivative(cone, m, derivative_by_rays);
+  if (rate > kSlopeError) {
+    rate = std::min(
+        {rate, cone_derivative(cone, m, derivative_past_steepest), derivative_by_facets(body, m)});
+  }
   return rate * (within + body.bounding_radius);
 }
 
