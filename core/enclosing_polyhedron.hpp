@@ -1,10 +1,11 @@
 // A coarser model of a body or of several: one convex polyhedron of few facets that holds them all.
 //
-// Few of the planes that bound the hull of the bodies, each pushed out to the farthest that any of
-// them reaches, rounding included: what lies inside all these half-spaces cannot leave a point of
-// the bodies out, whichever planes were chosen. Chosen greedily: again and again the planes that
-// cut off the vertices which stick out most (an outer sandwich algorithm; G. Rote, "The convergence
-// rate of the sandwich algorithm", 1992). Load time only: allocates, may take milliseconds.
+// It keeps few of the planes that bound the hull of the bodies, each pushed out to the largest
+// support value of the bodies, rounding included. So the half-spaces hold every point of the
+// bodies, whichever planes were chosen. The choice is greedy: in every round, the planes that cut
+// off the vertices which stick out most. This is an outer sandwich algorithm: G. Rote, "The
+// convergence rate of the sandwich algorithm", 1992. Load time only: allocates, may take
+// milliseconds.
 #pragma once
 
 #include <optional>
@@ -31,11 +32,11 @@ struct EnclosingOptions {
 [[nodiscard]] std::optional<ConvexBody> enclosing_polyhedron(std::span<const PlacedShape> bodies,
                                                              const EnclosingOptions& options = {});
 
-// How far a model that holds all bodies reaches beyond them, at most: no point of `model` is
-// farther from the nearest of the bodies, m. So no distance from the model is smaller by more than
-// this than the distance from the bodies. Of one body to a rounding: the farthest point is a
-// vertex then. Of several within 2 %, unless that takes too long: tetrahedra are split where the
-// vertices leave the most open. `model`: bounded and solid; `bodies`: at least one.
+// The excess of a model that holds all bodies, m: no point of `model` is farther from the nearest
+// of the bodies. So no distance from the model is smaller by more than this than the distance from
+// the bodies. For one body it is exact to a rounding: the farthest point is a vertex then. For
+// several it is within 2 %, unless that takes too long: tetrahedra are split where the vertices
+// leave the most open. `model`: bounded and solid; `bodies`: at least one.
 [[nodiscard]] double excess(const ConvexBody& model, std::span<const PlacedShape> bodies);
 
 // The same of a sphere, from the body that reaches deepest around its centre; exact for one body.

@@ -94,7 +94,7 @@ HWY_INLINE FlatMeeting meet_flat(const ConvexBody& body, const ConvexBody& other
     const double radius = body.curved.discs[at].radius;
     within = x * x + y * y <= radius * radius;
   } else {
-    found.edge = side_beyond(body, body.facets[at], found.below);
+    found.edge = crossed_side(body, body.facets[at], found.below);
     within = found.edge == kNone;
   }
   if (above || !within) found.end = within ? FlatEnd::kClosest : FlatEnd::kBeside;

@@ -46,7 +46,8 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
   found.upper = end.upper;
   found.error = rounding_error(
       {&a, a.bounding_radius}, {&b, b.bounding_radius},
-      {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.apart}, end.upper, size);
+      {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation_length}, end.upper,
+      size);
   found.size = size;
   found.radius_a = a.radius;
   found.radius_b = b.radius;
@@ -66,12 +67,12 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {
-    if (!(a_from_b.apart > 0.0)) return false;
+    if (!(a_from_b.translation_length > 0.0)) return false;
     x = a_from_b.translation;
     state.active.count = 0;
   }
   if (HWY_UNLIKELY(state.active.count == 0)) x = start(a, b, a_from_b, x, state.active);
-  const double size = a.bounding_radius + b.bounding_radius + a_from_b.apart;
+  const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
   const auto run = [&](const auto& round_a, const auto& round_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(round_a)>, std::remove_cvref_t<decltype(round_b)>> pair(
         a, b, a_from_b, round_a, round_b, 0x1p-50 * size, x, state.active);

@@ -139,7 +139,7 @@ HWY_INLINE OwnSupport polyhedron_support(const ConvexBody& body, const SidePiece
     if (!active.has(found.missing)) return found;
     found.missing = kNone;
   }
-  found.reach = std::max(found.reach, support(body, vec3(m)).reach);
+  found.reach = std::max(found.reach, support(body, vec3(m)).value);
   return found;
 }
 
