@@ -32,15 +32,4 @@ struct EnclosingOptions {
 [[nodiscard]] std::optional<ConvexBody> enclosing_polyhedron(std::span<const PlacedShape> bodies,
                                                              const EnclosingOptions& options = {});
 
-// The excess of a model that holds all bodies, m: no point of `model` is farther from the nearest
-// of the bodies. So no distance from the model is smaller by more than this than the distance from
-// the bodies. For one body it is exact to a rounding: the farthest point is a vertex then. For
-// several it is within 2 %, unless that takes too long: tetrahedra are split where the vertices
-// leave the most open. `model`: bounded and solid; `bodies`: at least one.
-[[nodiscard]] double excess(const ConvexBody& model, std::span<const PlacedShape> bodies);
-
-// The same of a sphere, from the body that reaches deepest around its centre; exact for one body.
-[[nodiscard]] double excess_of_sphere(const Vec3& centre, double radius,
-                                      std::span<const PlacedShape> bodies);
-
 }  // namespace clearance

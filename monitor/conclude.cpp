@@ -37,7 +37,11 @@ Conclusion conclude(const Published& published, const Displacements& displaced,
     const PairBounds bounds =
         bounds_in_tick(pair, SweptPrecision::kByRelativeDisplacement, crossings, view);
     write_pair(pair, bounds, view, reports[i]);
-    if (is_carried(pair, view)) add(pair, bounds);
+    if (is_carried(pair, view)) {
+      add(pair, bounds);
+    } else {  // a published pair that the broad phase does not know of is carried in every tick
+      CLEARANCE_INVARIANT(!is_known(pair, view) || !culling.broad_phase().left_out(pair));
+    }
   }
   for (const std::uint32_t pair : culling.updated()) {
     CLEARANCE_INVARIANT(is_carried(pair, view));
@@ -53,7 +57,7 @@ Conclusion conclude(const Published& published, const Displacements& displaced,
   const UntouchedPairs untouched = culling.untouched(displaced);
   if (untouched.any) conclusion.minimum.add_rest(untouched.all().now, untouched.all().since);
   const std::span<const TrackedObject> objects(view.objects);
-  zones.finish(displaced.any_lost ? objects : objects.first(0), untouched.waiting(), view.cycle);
+  zones.finish(objects, untouched.waiting(), displaced.any_lost, view.cycle);
   zones.explain(objects);
   return conclusion;
 }

@@ -1,6 +1,6 @@
-// What must hold wherever the tick comes by, whatever it was told: checked in tests, and wherever
-// the build is configured with CLEARANCE_INVARIANTS=ON. monitor/broad_phase/README.md says what is
-// checked and what it costs.
+// What must hold at the borders of the tick's stages, whatever the inputs are: checked in tests and
+// wherever the build is configured with CLEARANCE_INVARIANTS=ON, which is the default. README.md
+// here has the table of what is checked, and what it costs.
 #pragma once
 
 namespace clearance {
@@ -9,6 +9,13 @@ namespace clearance {
 inline constexpr bool kInvariantsChecked = true;
 #else
 inline constexpr bool kInvariantsChecked = false;
+#endif
+
+// Debug and sanitizer builds, where time does not matter, check more.
+#ifdef CLEARANCE_MORE_INVARIANTS
+inline constexpr bool kMoreInvariantsChecked = true;
+#else
+inline constexpr bool kMoreInvariantsChecked = false;
 #endif
 
 // Names what does not hold on standard error and ends the program: no figure of it can be trusted.

@@ -25,12 +25,14 @@
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/gradients/differentiate.hpp"
+#include "monitor/invariant.hpp"
 #include "monitor/objects/displacements.hpp"
 #include "monitor/objects/ingest.hpp"
+#include "monitor/objects/presence.hpp"
 #include "monitor/pairs/pair_table.hpp"
-#include "monitor/pairs/worker_pool.hpp"
 #include "monitor/schedule/scheduler.hpp"
 #include "monitor/separation/separations.hpp"
+#include "monitor/stage_borders.hpp"
 #include "monitor/swept/zone_crossings.hpp"
 #include "monitor/zones/zone_levels.hpp"
 #include "monitor/zones/zones.hpp"
@@ -57,27 +59,28 @@ struct Monitor::State {
   const std::vector<std::uint32_t> moving;      // objects that are not fixed
   const std::vector<std::uint32_t> first_part;  // by object
   const Published published;
-  WorkerPool pool;
 
-  Inputs inputs;                 // ingest and displace
-  Displacements displaced;       // displace
-  std::vector<PosedPart> parts;  // pose
-  PairTable table;               // cull, evaluate and refresh
-  Scheduler scheduler;           // schedule, evaluate and refresh
-  Culling culling;               // cull, evaluate, refresh and cull again
-  Evaluated evaluated;           // refresh
-  ZoneCrossings crossings;       // cross and sweep
-  Zones zones;                   // conclude
-  Conclusion conclusion;         // conclude
+  Inputs inputs;                                // ingest and displace
+  std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
+  Displacements displaced;                      // displace
+  std::vector<PosedPart> parts;                 // pose
+  PairTable table;                              // cull, evaluate and refresh
+  Scheduler scheduler;                          // schedule, evaluate and refresh
+  Culling culling;                              // cull, evaluate, refresh and cull again
+  Evaluated evaluated;                          // refresh
+  ZoneCrossings crossings;                      // cross and sweep
+  Zones zones;                                  // conclude
+  Conclusion conclusion;                        // conclude
   const Separations separations;
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
-  State(const Scene& the_scene, const MonitorOptions& options);
+  explicit State(const Scene& the_scene);
 
   [[nodiscard]] TickView view() const noexcept {
     return {inputs.objects, parts, inputs.cycle, table};
   }
+  void add_presence_changes() noexcept;
   void count_pairs() noexcept;
   void finish_report(std::uint32_t queries) noexcept;
   void write_minimum() noexcept;
@@ -85,8 +88,7 @@ struct Monitor::State {
   [[nodiscard]] PairReport pair_report(std::uint32_t pair) const noexcept;
 };
 
-Monitor::Monitor(const Scene& scene, const MonitorOptions& options)
-    : state_(std::make_unique<State>(scene, options)) {}
+Monitor::Monitor(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
 Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples,
@@ -94,11 +96,15 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   State& s = *state_;
   ingest(samples, joints, time, s.scene, s.inputs);
   displace(s.scene, s.moving, s.inputs, s.displaced);
+  s.add_presence_changes();
   pose_parts(s.inputs.objects, s.displaced.changed, s.first_part, s.parts);
 
   const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table);
+  check_displaced(s.displaced.changed, s.first_part, tick);
+
   Budget budget(s.scene.budget);
   s.culling.cull(s.displaced.changed, s.evaluated.smallest_upper, tick, budget);
+  check_updated(s.culling, tick);
   const Schedule schedule = s.scheduler.schedule(s.culling, tick, budget);
   const std::uint32_t kept_for_refresh = budget.reserve(schedule.kept);
   const bool urgent_done = s.scheduler.evaluate_urgent(schedule, s.culling, tick, budget);
@@ -115,11 +121,29 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
   s.differentiation.differentiate(s.report.pairs, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
+  check_report(s.report);
   return s.report;
 }
 
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept {
   clearance::refuse(object, cause, state_->inputs);
+}
+
+bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
+  State& s = *state_;
+  if (object >= s.scene.objects.size() || s.scene.objects[object].fixed) return false;
+  TrackedObject& state = s.inputs.objects[object];
+  if (state.absent == absent) return true;
+  if (absent) {
+    make_absent(state);
+    s.culling.forget_object(object, s.table);
+  } else {
+    make_present(state);
+  }
+  if (std::ranges::find(s.presence_changed, object) == s.presence_changed.end())
+    s.presence_changed.push_back(object);
+  s.zones.count_absent(s.inputs.objects);
+  return true;
 }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
@@ -128,7 +152,7 @@ SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
   const State& s = *state_;
   const PairBounds known = s.bounds(pair);
   SweptBounds bounds{known.swept_lower, known.swept_upper};
-  if (known.status == PairStatus::kUnknown || bounds.lower >= level) return bounds;
+  if (!is_known(known.status) || bounds.lower >= level) return bounds;
   Budget unlimited(std::numeric_limits<std::uint32_t>::max());
   const SweptBounds found = swept_bounds_of(pair, level, s.view(), unlimited);
   bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
@@ -142,6 +166,7 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
           .stale = state.late,
           .contradicted = state.contradicted,
           .follows_joints = state.follows_joints,
+          .absent = state.absent,
           .source = state.owner.source(),
           .other_source = state.owner.other_source()};
 }
@@ -173,18 +198,17 @@ std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].stamp_ns;
 }
 
-Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
+Monitor::State::State(const Scene& the_scene)
     : scene(the_scene),
       zone_levels(the_scene),
       share(refresh_share(the_scene)),
       moving(moving_objects(the_scene)),
       first_part(first_parts(the_scene)),
       published(published_pairs(the_scene)),
-      pool(options.workers, options.on_worker_start),
       inputs(initial_inputs(the_scene)),
       parts(parts_of(the_scene)),
       table(the_scene, parts),
-      scheduler(the_scene, share, parts, table, zone_levels, pool),
+      scheduler(the_scene, share, parts, table, zone_levels),
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
               scheduler.left_out(), share),
       crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
@@ -192,8 +216,10 @@ Monitor::State::State(const Scene& the_scene, const MonitorOptions& options)
       separations(the_scene, zone_levels),
       differentiation(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
-  for (std::size_t i = 0; i < spheres.size(); ++i) inputs.objects[i].reach = spheres[i].reach;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    inputs.objects[i].reach = spheres[i].bounding_radius;
   displaced.changed.reserve(scene.objects.size());
+  presence_changed.reserve(scene.objects.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
@@ -217,13 +243,26 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   write_minimum();
 }
 
+// An object that has become absent, or present without a pose yet, has not moved: `changed` does
+// not have it, except in the first tick.
+void Monitor::State::add_presence_changes() noexcept {
+  for (const std::uint32_t object : presence_changed) {
+    if (!inputs.objects[object].seen && inputs.cycle > 1) displaced.changed.push_back(object);
+  }
+  presence_changed.clear();
+}
+
 void Monitor::State::count_pairs() noexcept {
   const auto known = static_cast<std::uint32_t>(culling.known_pairs().known());
   const auto fresh = static_cast<std::uint32_t>(culling.known_pairs().fresh());
+  const auto present = static_cast<std::uint32_t>(culling.known_pairs().present());
   report.evaluated = conclusion.evaluated;
   report.carried = fresh - conclusion.evaluated;
   report.stale = known - fresh;
-  report.unknown = report.pairs_total - known;
+  report.unknown = present - known;
+  // Every pair is counted once, and none twice: the differences above are not negative.
+  CLEARANCE_INVARIANT(conclusion.evaluated <= fresh && fresh <= known && known <= present);
+  CLEARANCE_INVARIANT(absent_pairs(report) == report.pairs_total - present);
 }
 
 void Monitor::State::write_minimum() noexcept {

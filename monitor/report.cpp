@@ -18,6 +18,8 @@ const char* name(PairStatus status) noexcept {
       return "stale";
     case PairStatus::kUnknown:
       return "unknown";
+    case PairStatus::kAbsent:
+      return "absent";
   }
   return "";
 }
@@ -48,6 +50,8 @@ const char* name(SeparationValidity validity) noexcept {
       return "assumed";
     case SeparationValidity::kMeasured:
       return "measured";
+    case SeparationValidity::kAbsent:
+      return "absent";
   }
   return "";
 }

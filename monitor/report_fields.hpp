@@ -16,7 +16,7 @@
 
 namespace clearance {
 
-// What the number in a field stands for.
+// The meaning of the number in a field.
 enum class Meaning : std::uint8_t {
   kFigure,      // itself: a count, a length, a time, a flag
   kCycle,       // a tick, which a replay may count from another start; 0: never
@@ -29,7 +29,7 @@ enum class Meaning : std::uint8_t {
   kDelivery,  // who published the message, when, and from which inputs: no result of the tick
 };
 
-// What a visitor is told beside the values.
+// The visitor gets this beside the values.
 struct Field {
   std::string_view name;
   Meaning meaning = Meaning::kFigure;
@@ -59,7 +59,7 @@ struct PairFields {
   }
 };
 
-// What ZoneReport and ZoneState on the wire share.
+// ZoneReport and ZoneState on the wire share these.
 struct PublishedZoneFields {
   template <class Visit, class... Zone>
   static constexpr void for_each(Visit&& visit, Zone&... zone) {
@@ -126,7 +126,7 @@ struct GradientFields {
   }
 };
 
-// What every message of a tick repeats of its report.
+// Every message of a tick repeats these of its report.
 struct TickFields {
   template <class Visit, class... Report>
   static constexpr void for_each(Visit&& visit, Report&... report) {
@@ -136,7 +136,7 @@ struct TickFields {
   }
 };
 
-// What Report and Distances on the wire share, in the order in which a person looks for a cause:
+// Report and Distances on the wire share these, in the order in which a person looks for a cause:
 // time and scene, then counts, then distances.
 struct DistanceFields {
   template <class Visit, class... Report>

@@ -21,7 +21,7 @@
 #include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
 #include "tests/shared/scratch_folder.hpp"
-#include "tools/distance/case.hpp"
+#include "tools/cases/case.hpp"
 
 namespace clearance {
 namespace {

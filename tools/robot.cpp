@@ -1,6 +1,6 @@
-// clearance-robot: a simulated robot. Publishes at a fixed rate what moves in a cell: poses, as its
-// `simulation:` section says, and the joints of its robots, through their ranges or after a log. On
-// request it measures how soon the daemon's answer is back.
+// clearance-robot: a simulated robot. At a fixed rate it publishes the poses of a cell's
+// `simulation:` section and the joints of its robots, through their ranges or along a log. On
+// request it measures the latency of the daemon's answer.
 #include <fmt/format.h>
 
 #include <spdlog/spdlog.h>
@@ -25,9 +25,9 @@
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
 #include "tools/robot/joint_log_motion.hpp"
-#include "tools/robot/joint_sweep.hpp"
 #include "tools/robot/latency_meter.hpp"
 #include "tools/robot/simulated_robot.hpp"
+#include "tools/shared/joint_sweep.hpp"
 
 namespace clearance {
 namespace {
@@ -120,7 +120,7 @@ Histogram send_all(SimulatedRobot& robot, const Arguments& arguments,
 int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
               StopSignal& signal) {
   use_precise_timers();
-  // Inherited by every thread made from here on, Cyclone's as well.
+  // Every later thread inherits this, Cyclone's as well.
   if (arguments.priority > 0) {
     if (const Refusal refusal = use_fifo_scheduling(arguments.priority)) {
       spdlog::warn("{}", *refusal);

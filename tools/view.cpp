@@ -17,7 +17,7 @@
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/loop/ports.hpp"
-#include "tools/replay/progress_bar.hpp"
+#include "tools/shared/progress_bar.hpp"
 #include "tools/view/browser.hpp"
 #include "tools/view/live_source.hpp"
 #include "tools/view/offline_recording.hpp"
@@ -32,12 +32,12 @@ using view::Server;
 using view::Source;
 
 constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
-constexpr std::size_t kMostCurves = 64;  // of pairs, that a page may ask for at once
+constexpr std::size_t kMostCurves = 64;  // pairs that a page may ask for at once
 
 constexpr const char* kFooter =
-    R"(Open the address that it prints in a browser; Ctrl-C ends it. Foxglove, Lichtblick and others of
-their protocol connect to the same address, as ws:// instead of http://. Everybody who reaches the
-port may look, and move a recording's time; nobody can change anything else.
+    R"(Open the printed address in a browser; Ctrl-C ends the program. Foxglove, Lichtblick and other
+viewers of their protocol connect to the same address with ws:// instead of http://. Every viewer
+that reaches the port may watch and move a recording's time, and can change nothing else.
 
 Exit status:
   0  stopped by SIGINT or SIGTERM, or all screenshots are written
@@ -60,7 +60,7 @@ struct Arguments {
   std::uint16_t port = 8765;
   std::vector<std::string> screenshots;
   std::vector<double> at_s;
-  std::string query;  // of the page that is photographed
+  std::string query;  // of the page in pictures
   int width = 1440, height = 900;
   bool force = false;
   DdsArguments dds;
@@ -73,7 +73,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
                      "Show this recording (MCAP) with a time line, instead of a daemon");
   app.add_flag("--offline", arguments.offline,
                "Compute the reports from the recording's poses with this cell, instead of showing "
-               "those that it holds")
+               "the recorded ones")
       ->needs(replay);
   app.add_option("--host", arguments.host,
                  "Address to serve on; any other than loopback opens it to the network")
@@ -85,14 +85,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
       app.add_option("--screenshot", arguments.screenshots,
                      "Write a picture of the page (PNG) by Debian's chromium, and end; repeatable")
           ->group(kPictures);
-  app.add_option("--at", arguments.at_s,
-                 "Of a recording: its time, s after the first report; one for each --screenshot. "
-                 "Live: so many seconds after the page is there")
+  app.add_option(
+         "--at", arguments.at_s,
+         "Time of a picture, s: after the first report of a recording, or after the page is "
+         "loaded; one for each --screenshot")
       ->check(number_from_zero())
       ->needs(screenshot)
       ->group(kPictures);
   app.add_option("--query", arguments.query,
-                 "What the page's address says of selection and looks, e.g. 'theme=light'")
+                 "The query of the page's address, which selects and styles, e.g. 'theme=light'")
       ->needs(screenshot)
       ->group(kPictures);
   app.add_option("--width", arguments.width, "Pixels")
@@ -108,7 +109,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-// Null, after saying why, when the recording cannot be shown.
+// Returns null and says why when the recording cannot be shown.
 std::unique_ptr<Source> recording_source(const Cell& cell, const Arguments& arguments,
                                          std::optional<TemporaryFolder>& scratch,
                                          StopSignal& stop) {
@@ -185,7 +186,7 @@ view::Content content_of(const Cell& cell, Source& source) {
                                      const nlohmann::json& value) { source.set(name, value); }};
 }
 
-// One frame: everything new goes out, then the server works until the next is due.
+// One frame: sends everything new, then lets the server work until the next frame is due.
 class Frames {
  public:
   Frames(Server& server, Source& source) : server_(server), source_(source) {}

@@ -1,4 +1,4 @@
-// clearance-watch: shows what the daemon publishes, live in a terminal.
+// clearance-watch: shows the daemon's reports live in a terminal.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -75,7 +75,7 @@ class Display {
       std::fflush(stdout);
     }
   }
-  [[nodiscard]] bool quit() const { return screen_ && screen_->quit_key(); }
+  [[nodiscard]] bool quit() { return screen_ && screen_->quit_key(); }
   void close() { screen_.reset(); }
 
  private:

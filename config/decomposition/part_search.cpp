@@ -227,7 +227,7 @@ void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
 std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   const double overlap = kOverlap * limits_.tolerance;
   std::vector<Vec3> points;
-  for (const Cell& cell : piece.cells) {
+  for (const ConvexCell& cell : piece.cells) {
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       const auto polygon = clipped(mesh_.triangle(i), cell, overlap);
       points.insert(points.end(), polygon.begin(), polygon.end());

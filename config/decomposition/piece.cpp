@@ -64,7 +64,7 @@ std::vector<Vec3> Outline::points() const {
 }
 
 // A corner is where three planes meet and no other plane cuts it off.
-std::vector<Vec3> Cell::corners_within(const OpenSpace& space, double margin) const {
+std::vector<Vec3> ConvexCell::corners_within(const OpenSpace& space, double margin) const {
   std::vector<Vec3> corners;
   const double slack = 1e-6 * space.spacing();
   for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -102,7 +102,7 @@ void Piece::finish(std::span<const OpenPoint> open_before, double spacing) {
 }
 
 // Clips plane by plane (I. Sutherland and G. Hodgman, 1974).
-std::vector<Vec3> clipped(const Triangle& triangle, const Cell& cell, double margin) {
+std::vector<Vec3> clipped(const Triangle& triangle, const ConvexCell& cell, double margin) {
   std::vector<Vec3> polygon(triangle.begin(), triangle.end()), kept;
   for (const HalfSpace& plane : cell.planes) {
     const double limit = plane.offset + margin;

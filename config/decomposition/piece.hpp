@@ -32,7 +32,7 @@ class Outline {
 };
 
 // A convex cell: the piece of the mesh, and of the space that it encloses, between these planes.
-struct Cell {
+struct ConvexCell {
   std::vector<HalfSpace> planes;  // n.x <= d; those of the mesh's box first
 
   // Returns those corners of the cell, widened by `margin`, that lie in space that the mesh
@@ -41,10 +41,10 @@ struct Cell {
 };
 
 struct Piece {
-  std::vector<Cell> cells;      // several after joining
-  std::vector<Vec3> points;     // of the mesh and of enclosed corners
-  Outline outline;              // of the points
-  std::vector<HalfSpace> hull;  // of the outline
+  std::vector<ConvexCell> cells;  // several after joining
+  std::vector<Vec3> points;       // of the mesh and of enclosed corners
+  Outline outline;                // of the points
+  std::vector<HalfSpace> hull;    // of the outline
   // The open points in the hull, or so near to it that a thin hull holds some.
   std::vector<OpenPoint> open;
   double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
@@ -55,6 +55,7 @@ struct Piece {
 };
 
 // Returns the part of the triangle in the cell widened by `margin`: a convex polygon.
-[[nodiscard]] std::vector<Vec3> clipped(const Triangle& triangle, const Cell& cell, double margin);
+[[nodiscard]] std::vector<Vec3> clipped(const Triangle& triangle, const ConvexCell& cell,
+                                        double margin);
 
 }  // namespace clearance

@@ -194,7 +194,7 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
       "mm: raise {} in {}",
       path_of(use).filename().string(), counted(parts.shapes.size(), "part"), 1e3 * parts.error,
       1e3 * use.limits.tolerance, limits,
-      advice_ == Advice::kCell ? "the cell" : "a cell, which clearance-scene --from-urdf writes"));
+      advice_ == Advice::kCell ? "the cell" : "a cell, which clearance-scene import writes"));
 }
 
 std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {

@@ -1,5 +1,4 @@
-// The text is taken character by character; a byte that begins no character of UTF-8 is escaped
-// alone.
+// Goes character by character; a byte that begins no UTF-8 character is escaped alone.
 #include "config/text/printable.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// Returns how many bytes the character has that begins a text of well-formed UTF-8.
+// The length in bytes of the first character of a well-formed UTF-8 text.
 std::size_t length_of(char first) {
   const auto byte = static_cast<unsigned char>(first);
   if (byte < 0xC0) return 1;

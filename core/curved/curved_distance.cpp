@@ -2,20 +2,90 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "core/curved/conclusion.hpp"
-#include "core/curved/depth.hpp"
-#include "core/curved/direction_search.hpp"
-#include "core/curved/half_space.hpp"
-#include "core/curved/newton.hpp"
-#include "core/curved/start.hpp"
-#include "core/numerics/error_constants.hpp"
+#include "core/curved/thorough.hpp"
+#include "core/curved/tracking.hpp"
+#include "core/gjk/simplex.hpp"
+#include "core/model/bad_pose.hpp"
 
 namespace clearance {
+
 namespace {
 
-// `depth`: the bodies without radii overlap by at least this, where that is known; m.
+// ---- the first direction of the search ----
+constexpr int kStartRounds = 24;
+
+// A point of the Minkowski difference B - A.
+struct StartPoint {
+  SupportPair at;
+  Vector<double> difference;
+
+  [[nodiscard]] bool operator==(const StartPoint& other) const noexcept {
+    return at.points == other.at.points;
+  }
+};
+using StartSimplex = Simplex<StartPoint, double>;
+
+// Each pair of parts once.
+ActiveParts active_parts(const StartSimplex& simplex) noexcept {
+  ActiveParts found;
+  for (std::size_t i = 0; i < simplex.size() && found.count < found.pairs.size(); ++i) {
+    const auto end = found.pairs.begin() + static_cast<std::ptrdiff_t>(found.count);
+    const PartPair& parts = simplex.point(i).at.parts;
+    if (std::find(found.pairs.begin(), end, parts) == end) found.pairs[found.count++] = parts;
+  }
+  return found;
+}
+
+// ---- half-spaces: one support point decides ----
+// As kUlpsOfA and its like, for the body, the plane's offset and the offset of the origins. The
+// facet's normal is rounded, too, which adds 1 to each.
+constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOrigins = 13;
+
+double half_space_error(double bounding_radius, double plane, const RelativePose& pose) noexcept {
+  const double offset = pose.translation.norm();
+  return kUlp * (kUlpsOfBody * bounding_radius + kUlpsOfPlane * plane + kUlpsOfOrigins * offset) +
+         pose.translation_error + pose.rotation_error * kRoundedUp * (bounding_radius + offset) +
+         kUnderflow;
+}
+
+// A or B is a half-space, and the other body is bounded.
+DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
+                                   const RelativePose& a_from_b,
+                                   CurvedTrackingState& state) noexcept {
+  const bool of_a = a.is_half_space();
+  const ConvexBody &plane = of_a ? a : b, &body = of_a ? b : a;
+  const Facet& facet = plane.facets.front();
+  const Mat3& r = a_from_b.rotation;
+  const BodyView view{&body, body.bounding_radius};
+  const auto nearest = [&](const Vec3& m) {
+    return support_point(view, farthest_part(view, m), m);
+  };
+  CurvedConclusion found;
+  Vec3 to_body = facet.normal, point;  // frame A
+  if (of_a) {
+    point = r * nearest(-(r.transpose() * facet.normal)) + a_from_b.translation;
+    found.lower = facet.normal.dot(point) - facet.offset;
+  } else {
+    to_body = r * facet.normal;
+    point = nearest(-to_body);
+    found.lower = to_body.dot(point - a_from_b.translation) - facet.offset;
+  }
+  const Vec3 on_plane = point - found.lower * to_body;
+  found.upper = found.lower;
+  found.normal = of_a ? to_body : Vec3(-to_body);
+  found.point_on_a = of_a ? on_plane : point;
+  found.point_on_b = of_a ? point : on_plane;
+  found.radius_a = a.radius;
+  found.radius_b = b.radius;
+  found.error = half_space_error(body.bounding_radius, std::abs(facet.offset), a_from_b);
+  found.size = body.bounding_radius + std::abs(facet.offset) + a_from_b.translation.norm();
+  state.point_on_b_in_b = r.transpose() * (found.point_on_b - a_from_b.translation);
+  return conclude(found);
+}
+
+// ---- the search and the depth ----
+// `depth`: a lower bound of the depth of the bodies without radii, m; -infinity: none is known.
 CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   const CurvedBounds& bounds = pair.bounds;
   CurvedConclusion found;
@@ -32,84 +102,75 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   return found;
 }
 
-// A point of both: of bodies that overlap by little, and of which no common point has been found,
-// halfway between the deepest ones.
-void keep_points(const CurvedPair& pair, double depth, CurvedTrackingState& state) noexcept {
-  const CurvedBounds& bounds = pair.bounds;
-  const bool common = !(depth > 0.0) || bounds.upper <= pair.gap_tolerance() ||
-                      bounds.deepest.difference().norm() > 2.0 * bounds.upper;
-  const PointPair& points = common ? bounds.points : bounds.deepest;
-  state.own_point_on_b = (depth > 0.0 ? bounds.deepest : bounds.points).own_b;
-  state.shared = common ? between(points.a, points.b, pair.a.body->radius, pair.b.body->radius)
-                        : Vec3(0.5 * (points.a + points.b));
-}
-
-DistanceResult of_unknown() noexcept {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  DistanceResult r;
-  r.distance = kNaN;
-  r.lower = -kInfinity;
-  r.upper = kInfinity;
-  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kNaN);
-  return r;
-}
-
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
   CurvedPair pair(a, b, a_from_b);
-  // The search has no flats.
-  const PiecePair& first = state.active.pieces[0];
-  if (first.a >= pieces_of(a) || first.b >= pieces_of(b)) state.active.count = 0;
+  // The search knows no planar faces.
+  const PartPair& first = state.active.pairs[0];
+  if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
   int supports = 0;
   if (!state.normal.isZero()) {
-    supports += search_direction(pair, state.normal.normalized(), state.active).supports;
+    supports += search_direction(pair, state.normal.normalized(), state.active);
   }
-  if (!pair.is_tight()) {
+  if (!pair.is_converged()) {
     CurvedStart start = start_direction(pair);
-    state.active = start.pieces;
-    if (!start.meet) {
-      supports += search_direction(pair, start.normal, state.active).supports;
-    }
+    state.active = start.active;
+    if (!start.meet) supports += search_direction(pair, start.normal, state.active);
   }
   double deep = -kInfinity;
-  const bool meet = !pair.is_tight() && pair.bounds.lower < 0.0;
-  if (meet && depth) {
+  if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) {
     const DepthBounds found = bound_depth(pair);
     deep = found.lower;
     supports += found.supports;
   }
   state.normal = pair.bounds.normal;
-  keep_points(pair, deep, state);
+  state.point_on_b_in_b = (deep > 0.0 ? pair.bounds.deepest : pair.bounds.points).b_in_b;
   DistanceResult r = conclude(conclusion_of(pair, deep));
   r.iterations = static_cast<std::uint16_t>(supports);
   return r;
 }
 
-// What Newton's method has left open.
-DistanceResult otherwise(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                         CurvedTrackingState& state, bool depth) noexcept {
-  if (!a.bounded() && !b.bounded()) return of_unknown();
-  if (a.is_half_space() || b.is_half_space()) return distance_of_half_space(a, b, a_from_b, state);
-  return searched(a, b, a_from_b, state, depth);
-}
-
 }  // namespace
 
-DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
-                               const RelativePose& a_from_b, CurvedTrackingState& state,
-                               bool depth) noexcept {
-  forget_nonsense(state, a, b);
-  DistanceResult r;
-  if (!newton_distance(a, b, a_from_b, state, r)) r = otherwise(a, b, a_from_b, state, depth);
-  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
-  return r;
+CurvedStart start_direction(CurvedPair& pair) noexcept {
+  CurvedStart start;
+  start.normal = unit_along(pair.translation());
+  if (!(start.normal.norm() > 0.5)) start.normal = Vec3::UnitX();
+  StartSimplex simplex;
+  for (int round = 0; round < kStartRounds; ++round) {
+    const SupportPair found = pair.support(start.normal);
+    if (!simplex.add({found, vector_of<double>(found.points.gap())})) break;
+    const Vec3 closest = rounded(simplex.reduce().point);
+    (void)pair.add_points(simplex.mean([](const StartPoint& p) { return p.at.points.a; }),
+                          simplex.mean([](const StartPoint& p) { return p.at.points.b_in_b; }));
+    start.meet = simplex.holds_origin();
+    if (start.meet || pair.bounds.lower > 0.5 * pair.bounds.upper) break;
+    const Vec3 next = unit_along(closest);
+    if (!(next.norm() > 0.5)) break;
+    start.normal = next;
+  }
+  start.normal = pair.bounds.normal;
+  start.active = active_parts(simplex);
+  return start;
+}
+
+DistanceResult thorough_distance(const ConvexBody& a, const ConvexBody& b,
+                                 const RelativePose& a_from_b, CurvedTrackingState& state,
+                                 bool depth) noexcept {
+  return a.is_half_space() || b.is_half_space() ? half_space_distance(a, b, a_from_b, state)
+                                                : searched(a, b, a_from_b, state, depth);
 }
 
 DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                bool depth) noexcept {
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   CurvedTrackingState tracked = read(state, a, b);
-  const DistanceResult r = curved_distance(a, b, a_from_b, tracked, depth);
+  DistanceResult r;
+  if (!newton_distance(a, b, a_from_b, tracked, r)) {
+    r = thorough_distance(a, b, a_from_b, tracked, depth);
+  }
+  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
   write(tracked, a, b, state);
   return r;
 }

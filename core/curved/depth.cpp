@@ -1,24 +1,21 @@
-#include "core/curved/depth.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/curved/direction_search.hpp"
-#include "core/curved/symmetric_depth.hpp"
+#include "core/curved/thorough.hpp"
 
 namespace clearance {
 namespace {
 
-// Of one pass, and of all: near-symmetric pairs would take more than anyone waits for.
+// The limits of one pass and of all passes. Nearly symmetric pairs would take far more.
 constexpr int kSupportsOfPass = 2500, kSupports = 6000;
-// By the pair's size: the tolerance, and what less fine ones are tried where that takes too long.
+// By the pair's size: the tolerance, and coarser ones for pairs for which it takes too long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
 
-// A direction, how far the bodies reach past each other along it, and the point of A - B that does;
-// both less the rolling balls, without which they are less round.
+// A direction, the support value of A - B along it, and the support point. The rolling balls are
+// taken off both, since bodies that are less round need fewer triangles.
 struct Corner {
   Vec3 normal;
   double past;
@@ -29,13 +26,13 @@ struct Triangle {
   std::array<Corner, 3> corners;
 };
 
-// The least of what A - B reaches along any direction of the triangle is no less than this. A point
-// of it, p, reaches n.p, which on a triangle of directions is least at a corner where it is
-// positive at all of them; p is any mean of the three corners' points. The best mean is the first
-// player's strategy in the game of the matrix n_i.p_k; any will do.
-class TriangleGame {
+// A lower bound of the support value of A - B over all directions of a triangle. For any mean p of
+// the corners' support points, the support value along n is at least n.p. If n.p is positive at all
+// corners, its minimum over the triangle is at a corner. The best p is the first player's strategy
+// in the matrix game n_i.p_k (von Neumann 1928), found by trying all subsets of the points.
+class TriangleBound {
  public:
-  explicit TriangleGame(const Triangle& t) noexcept {
+  explicit TriangleBound(const Triangle& t) noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) m_[i][k] = t.corners[i].normal.dot(t.corners[k].point);
     }
@@ -57,7 +54,7 @@ class TriangleGame {
   }
   [[nodiscard]] Vec3 row(std::size_t i) const noexcept { return {m_[i][0], m_[i][1], m_[i][2]}; }
 
-  // Means of two points where two corners are equal.
+  // Means of two points for which two corners are equal.
   void two(std::size_t k, std::size_t l) noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
@@ -81,10 +78,14 @@ class TriangleGame {
   double best_ = -kInfinity;
 };
 
+double rolling_ball(const BodyView& view) noexcept {
+  return visit(view, [](const auto& body) { return body.rolling_ball(); });
+}
+
 class DepthSearch {
  public:
   explicit DepthSearch(CurvedPair& pair) noexcept
-      : pair_(pair), ball_(rolling_ball(*pair.a.body) + rolling_ball(*pair.b.body)) {}
+      : pair_(pair), ball_(rolling_ball(pair.a) + rolling_ball(pair.b)) {}
 
   DepthBounds run() noexcept {
     descend(pair_.bounds.normal);
@@ -100,16 +101,15 @@ class DepthSearch {
   [[nodiscard]] double depth() const noexcept { return -pair_.bounds.lower; }
 
   void descend(const Vec3& n) noexcept {
-    ActivePieces none;
-    found_.supports += search_direction(pair_, n, none).supports;
+    ActiveParts none;
+    found_.supports += search_direction(pair_, n, none);
   }
 
-  // The balls that roll inside both make one inside A - B that touches the deepest point there; a
-  // ball around the origin that lies in it is as large as the depth where that is no larger than
-  // both: no other direction need be looked at.
+  // The balls that roll inside both bodies make a ball inside A - B that touches its deepest point.
+  // The largest ball around the origin inside that ball bounds the depth from below.
   double by_rolling_ball() noexcept {
     const Vec3 n = pair_.bounds.normal;
-    const Vec3 middle = -pair_.support(n).points.difference() - ball_ * n;
+    const Vec3 middle = -pair_.support(n).points.gap() - ball_ * n;
     ++found_.supports;
     return ball_ - middle.norm();
   }
@@ -117,10 +117,10 @@ class DepthSearch {
   Corner corner(const Vec3& n) noexcept {
     const SupportPair at = pair_.support(n);
     ++found_.supports;
-    return {n, -at.apart - taken_off_, -at.points.difference() - taken_off_ * n};
+    return {n, -at.value - taken_off_, -at.points.gap() - taken_off_ * n};
   }
 
-  // True: the depth is certainly no less than the best known, less the tolerance.
+  // True: the depth is certified to be at least the best known, less the tolerance.
   bool pass(double tolerance) noexcept {
     for (int start = 0; start < 32; ++start) {
       const double before = depth();
@@ -155,7 +155,7 @@ class DepthSearch {
     while (count_ > 0) {
       if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
       const Triangle t = stack_[--count_];
-      const double least = TriangleGame(t).value();
+      const double least = TriangleBound(t).value();
       if (least > 0.0 && least + taken_off_ >= best - tolerance) continue;
       if (found_.supports >= limit || count_ + 2 > stack_.size()) return PassEnd::kLimit;
       halve(t);
@@ -163,7 +163,7 @@ class DepthSearch {
     return PassEnd::kCovered;
   }
 
-  // Along the longest side; the part with the lesser corner comes first.
+  // Halves along the longest side. The half with the lesser corner comes first.
   void halve(const Triangle& t) noexcept {
     std::size_t from = 0;
     double longest = -1.0;

@@ -1,6 +1,6 @@
-// Newton's method on the direction along which two bodies are farthest apart, with the pieces that
-// are active there: from the last direction of a tracked pair mostly two steps. Compiled once a
-// vector width: see core/numerics/vec4-inl.hpp.
+// Newton's method on the direction along which the distance of two bodies is greatest, with the
+// parts that are active there: the fast effort. From the last direction of a tracked pair it mostly
+// takes two steps. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_NEWTON) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON
 #undef CLEARANCE_CORE_NEWTON
@@ -11,64 +11,63 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/curved/flat-inl.hpp"
 #include "core/curved/newton_step-inl.hpp"
-#include "core/curved/own_support-inl.hpp"
+#include "core/curved/planar_face-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Looks at a direction, the last one of which certifies; a tracked query takes three.
-inline constexpr int kLooks = 12;
+// Evaluated directions, planar faces among them; a tracked query takes three.
+inline constexpr int kIterations = 12;
 // The witness points are along the direction to this, or to rounding.
 inline constexpr double kAlong = 0x1p-34;
-// A longer step, of a unit direction, may lead to other pieces. By its square.
+// After a longer step of a unit direction, other parts may be farther. By its square.
 inline constexpr double kLongStep = 0x1p-10;
-// Of bodies that touch nearly: after a step this short the next one is rounding. By its square.
+// Bodies that nearly touch: after a step this short, the next one is rounding. By its square.
 inline constexpr double kFinalStep = 0x1p-52;
-// By squares: see kNearAxis.
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 
-// What a query with certified bounds has found, but for rounding and the radii.
+// Certified bounds and their witnesses, without rounding errors and radii.
 struct NewtonEnd {
   double lower, upper;
-  Vec4 normal;             // frame A, unit
-  Vec4 on_a, own_b, on_b;  // closest points; own_b: frame B
+  Vec4 normal;                 // frame A, unit
+  Vec4 on_a, on_b_in_b, on_b;  // closest points; on_b_in_b: frame B
   int supports = 0;
 };
 
-enum class Next { kLook, kTight, kGiveUp };
+enum class Next { kIterate, kCertified, kGiveUp };
 
-template <class RoundnessA, class RoundnessB>
+template <class SquaresA, class SquaresB>
 class Newton {
  public:
-  HWY_INLINE Newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
-                    const RoundnessA& round_a, const RoundnessB& round_b, double tolerance, Vec4 x,
-                    ActivePieces& active)
+  HWY_INLINE Newton(const Side& a, const Side& b, const RelativePose4& a_from_b,
+                    const SquaresA& squares_a, const SquaresB& squares_b, double tolerance, Vec4 x,
+                    ActiveParts& active)
       : a_(a),
         b_(b),
         a_from_b_(a_from_b),
         tolerance_(tolerance),
         x_(x),
         active_(active),
-        pieces_(a, b, a_from_b, active),
-        step_(round_a, round_b) {}
+        parts_(a, b, a_from_b, active),
+        step_(squares_a, squares_b) {}
 
-  // True: the bounds are tight. `active` is where it ended, whatever came of it.
+  // True: the bounds have converged. `active` holds the last active parts in either case.
   HWY_INLINE bool run() {
-    Next next = Next::kLook;
-    if (HWY_UNLIKELY(pieces_.has_flat())) {
-      next = try_flat();
+    Next next = Next::kIterate;
+    if (HWY_UNLIKELY(parts_.has_planar_face())) {
+      next = try_face();
     } else {
-      pieces_.place_all();
+      parts_.place_all();
     }
-    while (next == Next::kLook && end.supports < kLooks) next = look();
-    return next == Next::kTight;
+    while (next == Next::kIterate && end.supports < kIterations) next = iterate();
+    return next == Next::kCertified;
   }
 
-  // For the next query: of about unit length, which takes less time to know than the unit normal.
+  // The next query's first direction: of about unit length, which is known sooner than the unit
+  // normal.
   [[nodiscard]] HWY_INLINE Vec4 next_start() const {
-    const bool nearly_unit = !was_flat_ && std::abs(step_.square - 1.0) < 0.25;
+    const bool nearly_unit = !ended_on_face_ && std::abs(step_.square - 1.0) < 0.25;
     return HWY_LIKELY(nearly_unit) ? (1.5 - 0.5 * step_.square) * x_ : end.normal;
   }
 
@@ -76,173 +75,170 @@ class Newton {
 
  private:
   // ---- one direction ----
-  HWY_INLINE Next look() {
+  HWY_INLINE Next iterate() {
     ++end.supports;
-    step_.see(pieces_, x_);
+    step_.evaluate(parts_, x_);
     if (HWY_UNLIKELY(is_near_axis())) return try_cap(x_);
-    step_.solve(pieces_, x_);
+    step_.solve(parts_, x_);
     const Vec4 step = step_.next - x_;
     const double square = dot(step, step);
     if (HWY_UNLIKELY(!(square < kInfinity))) return Next::kGiveUp;
     if (HWY_UNLIKELY(passes_axis())) {
       if (!cap_tried_) return try_cap(step_.next);
       stop_before_axis(step);
-      return Next::kLook;
+      return Next::kIterate;
     }
     x_ = step_.next;
-    // The next step would be about the square of this one.
+    // Convergence is quadratic: the next step would be about the square of this one.
     if (square * step_.trace <= kAlong * step_.least || square <= kFinalStep * step_.square) {
       return certify();
     }
     if (square > kLongStep * step_.square) grow();
-    return Next::kLook;
+    return Next::kIterate;
   }
 
-  // Pieces that are farther out along a direction that is still on its way.
+  // Adds the parts that are farther along a direction that is not the best one yet.
   HWY_NOINLINE void grow() {
     const Vec4 n = over(x_, norm(x_));
-    const OwnSupport a = own_support(a_, pieces_.side(true), n);
-    const OwnSupport b = own_support(b_, pieces_.side(false), -direction_to_b(a_from_b_, n));
-    if (a.missing != kNone || b.missing != kNone) pieces_.add(a.missing, b.missing);
+    const BodySupport a = body_support(a_, parts_.side(true), n);
+    const BodySupport b = body_support(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
+    if (a.missing != kNone || b.missing != kNone) parts_.add(a.missing, b.missing);
   }
 
   HWY_INLINE Next certify() {
     const Vec4 n = over(x_, norm(x_));
-    const OwnSupport a = own_support(a_, pieces_.side(true), n);
-    const OwnSupport b = own_support(b_, pieces_.side(false), -direction_to_b(a_from_b_, n));
+    const BodySupport a = body_support(a_, parts_.side(true), n);
+    const BodySupport b = body_support(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
     if (HWY_UNLIKELY(!a.known || !b.known)) return try_cap(x_);
-    const Vec4 on_b = point_to_a(a_from_b_, b.point), difference = on_b - a.point;
-    end.lower = (dot(n, a_from_b_.translation) - a.reach) - b.reach;
-    end.upper = norm(difference);
+    const Vec4 on_b = point_to_a(a_from_b_, b.point), gap = on_b - a.point;
+    end.lower = (dot(n, a_from_b_.translation) - a.value) - b.value;
+    end.upper = norm(gap);
     end.normal = n;
     end.on_a = a.point;
-    end.own_b = b.point;
+    end.on_b_in_b = b.point;
     end.on_b = on_b;
     const bool complete =
-        (a.missing == kNone || a_.is_curved()) && (b.missing == kNone || b_.is_curved());
+        (a.missing == kNone || a_.is_round()) && (b.missing == kNone || b_.is_round());
     if (HWY_LIKELY(complete && end.upper - end.lower <= tolerance_)) {
-      const Vec4 across = difference - spread(dot(n, difference)) * n;
+      const Vec4 across = gap - spread(dot(n, gap)) * n;
       const double limit = std::max(4.0 * kAlong * end.upper, 8.0 * tolerance_);
       if (HWY_LIKELY(dot(across, across) <= limit * limit)) {
         if (HWY_UNLIKELY(active_.count == 3)) to_facet();
-        return Next::kTight;
+        return Next::kCertified;
       }
     }
-    if (a.missing != kNone || b.missing != kNone) pieces_.add(a.missing, b.missing);
-    return Next::kLook;
+    if (a.missing != kNone || b.missing != kNone) parts_.add(a.missing, b.missing);
+    return Next::kIterate;
   }
 
-  // ---- flats ----
-  template <class Roundness>
-  [[nodiscard]] static HWY_INLINE bool is_cone(const ConvexBody& body) {
-    return Roundness::kRound && body.curved.kind == CurvedShape::Kind::kTruncatedCone;
-  }
+  // ---- planar faces ----
+  [[nodiscard]] HWY_INLINE bool caps_of_a() const { return SquaresA::kRound && a_.round.has_caps; }
+  [[nodiscard]] HWY_INLINE bool caps_of_b() const { return SquaresB::kRound && b_.round.has_caps; }
   [[nodiscard]] HWY_INLINE bool is_near_axis() const {
     const double least = kNearAxisSquare * step_.square;
-    return (is_cone<RoundnessA>(a_) && !(step_.seen_a.square > least)) ||
-           (is_cone<RoundnessB>(b_) && !(step_.seen_b.square > least));
+    return (caps_of_a() && !(step_.round_a.square > least)) ||
+           (caps_of_b() && !(step_.round_b.square > least));
   }
-  // Beyond an axis the rim jumps to the other side: the cap may be what is closest.
+  // Past an axis the support point of a rim jumps to its other side: the cap may be closest.
   [[nodiscard]] HWY_INLINE bool passes_axis() const {
-    return (is_cone<RoundnessA>(a_) && dot(step_.seen_a.squared, step_.next) <= 0.0) ||
-           (is_cone<RoundnessB>(b_) && dot(step_.seen_b.squared, step_.next) <= 0.0);
+    return (caps_of_a() && dot(step_.round_a.squared, step_.next) <= 0.0) ||
+           (caps_of_b() && dot(step_.round_b.squared, step_.next) <= 0.0);
   }
   void stop_before_axis(Vec4 step) {
     double part = 1.0;
-    const auto look = [&](bool cone, const RoundView& seen) HWY_ATTR {
-      const double along = -dot(seen.squared, step);
-      if (cone && along > 0.0) part = std::min(part, 0.5 * seen.square / along);
+    const auto limit = [&](bool caps, const RoundSupport& round) HWY_ATTR {
+      const double along = -dot(round.squared, step);
+      if (caps && along > 0.0) part = std::min(part, 0.5 * round.square / along);
     };
-    look(is_cone<RoundnessA>(a_), step_.seen_a);
-    look(is_cone<RoundnessB>(b_), step_.seen_b);
+    limit(caps_of_a(), step_.round_a);
+    limit(caps_of_b(), step_.round_b);
     x_ = x_ + part * step;
   }
-  // Of the cone whose axis is nearer to x; once a query.
+  // Tries a cap once a query: the cap of the cone whose axis is nearer to x.
   HWY_NOINLINE Next try_cap(Vec4 x) {
     if (cap_tried_) return Next::kGiveUp;
     cap_tried_ = true;
     const Vec4 m = -direction_to_b(a_from_b_, x);
     const auto across = [](Vec4 v)
                             HWY_ATTR { return lane(v, 0) * lane(v, 0) + lane(v, 1) * lane(v, 1); };
-    const bool a = is_cone<RoundnessA>(a_), b = is_cone<RoundnessB>(b_);
-    const bool of_a = a && (!b || across(x) <= across(m));
-    const std::int32_t cap = lane(of_a ? x : m, 2) > 0.0 ? 3 : 2;
-    PiecePair& pieces = active_.pieces[0];
+    const bool of_a = caps_of_a() && (!caps_of_b() || across(x) <= across(m));
+    const std::int32_t end_of_axis = lane(of_a ? x : m, 2) > 0.0 ? 1 : 0;
+    PartPair& pair = active_.pairs[0];
     active_.count = 1;
-    (of_a ? pieces.a : pieces.b) = cap;
-    return try_flat();
+    (of_a ? pair.a : pair.b) = first_planar_face(of_a ? a_.body : b_.body) + end_of_axis;
+    return try_face();
   }
-  HWY_INLINE Next try_flat() {
+  HWY_INLINE Next try_face() {
     ++end.supports;
-    return active_.pieces[0].a >= first_flat(a_) ? try_flat_of<true>() : try_flat_of<false>();
+    return active_.pairs[0].a >= first_planar_face(a_.body) ? try_face_of<true>()
+                                                            : try_face_of<false>();
   }
   template <bool kOfA>
-  HWY_INLINE Next try_flat_of() {
-    const ConvexBody &body = kOfA ? a_ : b_, &other = kOfA ? b_ : a_;
-    PiecePair& pieces = active_.pieces[0];
-    std::int32_t &flat = kOfA ? pieces.a : pieces.b, &piece = kOfA ? pieces.b : pieces.a;
+  HWY_INLINE Next try_face_of() {
+    const Side &side = kOfA ? a_ : b_, &other = kOfA ? b_ : a_;
+    PartPair& pair = active_.pairs[0];
+    std::int32_t &face = kOfA ? pair.a : pair.b, &part = kOfA ? pair.b : pair.a;
     active_.count = 1;
-    const FlatMeeting met = meet_flat<kOfA>(body, other, a_from_b_, flat, piece);
-    if (HWY_UNLIKELY(met.end == FlatEnd::kUnknown)) return Next::kGiveUp;
-    piece = met.piece;
-    const Vec4 normal = flat_of(body, flat).normal;
+    const FaceMeeting met = meet_face<kOfA>(side, other, a_from_b_, face, part);
+    if (HWY_UNLIKELY(met.end == FaceEnd::kUnknown)) return Next::kGiveUp;
+    part = met.part;
+    const Vec4 normal = planar_face(side, face).normal;
     end.normal = kOfA ? normal : -direction_to_a(a_from_b_, normal);
-    if (HWY_UNLIKELY(met.end == FlatEnd::kBeside)) {
-      leave_flat<kOfA>(met);
-      return Next::kLook;
+    if (HWY_UNLIKELY(met.end == FaceEnd::kBeside)) {
+      leave_face<kOfA>(met);
+      return Next::kIterate;
     }
-    was_flat_ = true;
+    ended_on_face_ = true;
     end.lower = met.lower;
     end.upper = met.upper;
-    end.on_a = kOfA ? met.below : met.own;
-    end.own_b = kOfA ? met.own : met.below;
-    end.on_b = point_to_a(a_from_b_, end.own_b);
-    return end.upper - end.lower <= tolerance_ ? Next::kTight : Next::kGiveUp;
+    end.on_a = kOfA ? met.below : met.on_other;
+    end.on_b_in_b = kOfA ? met.on_other : met.below;
+    end.on_b = point_to_a(a_from_b_, end.on_b_in_b);
+    return end.upper - end.lower <= tolerance_ ? Next::kCertified : Next::kGiveUp;
   }
-  // To the edge or the rim beside which the nearest point is.
+  // Goes on from the edge or the rim past which the nearest point lies.
   template <bool kOfA>
-  HWY_NOINLINE void leave_flat(const FlatMeeting& met) {
-    const ConvexBody& body = kOfA ? a_ : b_;
-    std::int32_t& flat = kOfA ? active_.pieces[0].a : active_.pieces[0].b;
-    if (body.is_curved()) {
-      flat -= first_flat(body);
-      const Disc& disc = body.curved.discs[static_cast<std::size_t>(flat)];
+  HWY_NOINLINE void leave_face(const FaceMeeting& met) {
+    const Side& side = kOfA ? a_ : b_;
+    std::int32_t& face = kOfA ? active_.pairs[0].a : active_.pairs[0].b;
+    if (side.is_round()) {
+      face -= first_planar_face(side.body);
+      const Disc& disc = side.round.parts[face];
       const double x = lane(met.below, 0), y = lane(met.below, 1);
       const double part = disc.radius / std::sqrt(x * x + y * y);
       const Vec4 out = met.above - vec4(part * x, part * y, disc.height, 0.0);
       x_ = kOfA ? out : -direction_to_a(a_from_b_, out);
       cap_tried_ = true;
     } else {
-      const Edge& edge = body.edges[static_cast<std::size_t>(met.edge)];
+      const Edge& edge = side.body.edges[static_cast<std::size_t>(met.edge)];
       active_.count = 2;
-      active_.pieces[1] = active_.pieces[0];
-      flat = edge.vertex[0];
-      (kOfA ? active_.pieces[1].a : active_.pieces[1].b) = edge.vertex[1];
+      active_.pairs[1] = active_.pairs[0];
+      face = edge.vertex[0];
+      (kOfA ? active_.pairs[1].a : active_.pairs[1].b) = edge.vertex[1];
       x_ = end.normal;
     }
-    pieces_.place_all();
+    parts_.place_all();
   }
-  // Three vertices of a facet are its flat.
+  // Replaces three vertices of a facet by the facet.
   HWY_NOINLINE void to_facet() {
-    const bool of_a = !RoundnessA::kRound;
-    if (of_a == !RoundnessB::kRound) return;
-    const ConvexBody& body = of_a ? a_ : b_;
-    const SidePieces other = pieces_.side(!of_a);
+    const bool of_a = !SquaresA::kRound;
+    if (of_a == !SquaresB::kRound) return;
+    const SideParts other = parts_.side(!of_a);
     if (other.number(0) != other.number(1) || other.number(0) != other.number(2)) return;
-    const std::int32_t facet = facet_of(body, pieces_.side(of_a));
+    const std::int32_t facet = facet_of(of_a ? a_.body : b_.body, parts_.side(of_a));
     if (facet == kNone) return;
     active_.count = 1;
-    (of_a ? active_.pieces[0].a : active_.pieces[0].b) = facet;
+    (of_a ? active_.pairs[0].a : active_.pairs[0].b) = facet;
   }
 
-  const ConvexBody &a_, &b_;
+  const Side &a_, &b_;
   const RelativePose4& a_from_b_;
   const double tolerance_;
   Vec4 x_;
-  ActivePieces& active_;
-  PlacedPieces pieces_;
-  NewtonStep<RoundnessA, RoundnessB> step_;
-  bool cap_tried_ = false, was_flat_ = false;
+  ActiveParts& active_;
+  PlacedParts parts_;
+  NewtonStep<SquaresA, SquaresB> step_;
+  bool cap_tried_ = false, ended_on_face_ = false;
 };
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -1,40 +1,33 @@
-// Compiled once a vector width.
+// The fast effort as one query. Compiled once a vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/curved/newton.cpp"
 #include "core/numerics/simd_targets.hpp"
 // That comes first.
-#include "core/curved/conclusion.hpp"
-#include "core/curved/curved_pair.hpp"
+#include "core/curved/bounds.hpp"
+#include "core/curved/curved_distance.hpp"
 #include "core/curved/newton-inl.hpp"
-#include "core/curved/newton.hpp"
+#include "core/curved/tracking.hpp"
+#include "core/model/bad_pose.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The piece that reaches farthest along m (unit); of a truncated cone whose axis that is, the cap.
-HWY_INLINE std::int32_t first_piece(const ConvexBody& body, const Vec3& m) {
-  switch (body.curved.kind) {
-    case CurvedShape::Kind::kNone:
-      return support(body, m).anchor;
-    case CurvedShape::Kind::kEllipsoid:
-      return 0;
-    case CurvedShape::Kind::kTruncatedCone:
-      break;
-  }
-  const double across = std::sqrt(m.x() * m.x() + m.y() * m.y());
-  const auto& [low, high] = body.curved.discs;
-  const bool is_high =
-      high.height * m.z() + high.radius * across > low.height * m.z() + low.radius * across;
-  return (across > kNearAxis ? 0 : 2) + (is_high ? 1 : 0);
+// The part that is farthest along m (unit), or a cap where m is nearly the axis.
+HWY_INLINE std::int32_t first_part(const Side& side, Vec4 m) {
+  if (!side.is_round()) return support(side.body, vec3(m)).anchor;
+  const double length = norm(side.semi_axes() * m);
+  const std::int32_t part = farthest_part(side.round, lane(m, 2), length).number;
+  return side.round.has_caps && !(length > kNearAxis) ? first_planar_face(side.body) + part : part;
 }
-inline HWY_NOINLINE Vec4 start(const ConvexBody& a, const ConvexBody& b,
-                               const RelativePose4& a_from_b, Vec4 x, ActivePieces& active) {
+inline HWY_NOINLINE Vec4 start(const Side& a, const Side& b, const RelativePose4& a_from_b, Vec4 x,
+                               ActiveParts& active) {
   const Vec4 n = over(x, norm(x));
-  PiecePair& pieces = active.pieces[0];
-  pieces = {first_piece(a, vec3(n)), first_piece(b, vec3(-direction_to_b(a_from_b, n)))};
+  PartPair& pair = active.pairs[0];
+  pair = {first_part(a, n), first_part(b, -direction_to_b(a_from_b, n))};
   active.count = 1;
-  // Parallel caps are left to the search; here one of the rims may do.
-  if (pieces.a >= first_flat(a) && pieces.b >= first_flat(b)) pieces.b -= first_flat(b);
+  // Parallel caps are left to the search; here one of the rims may be enough.
+  const std::int32_t face_of_b = first_planar_face(b.body);
+  if (pair.a >= first_planar_face(a.body) && pair.b >= face_of_b) pair.b -= face_of_b;
   return n;
 }
 
@@ -54,12 +47,9 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
   found.normal = vec3(end.normal);
   found.point_on_a = vec3(end.on_a);
   found.point_on_b = vec3(end.on_b);
-  state.own_point_on_b = vec3(end.own_b);
+  state.point_on_b_in_b = vec3(end.on_b_in_b);
   r = conclude(found);
   r.iterations = static_cast<std::uint16_t>(end.supports);
-  if (HWY_UNLIKELY(!(r.lower > 0.0))) {
-    state.shared = between(found.point_on_a, found.point_on_b, a.radius, b.radius);
-  }
 }
 
 HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
@@ -71,19 +61,22 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
     x = a_from_b.translation;
     state.active.count = 0;
   }
-  if (HWY_UNLIKELY(state.active.count == 0)) x = start(a, b, a_from_b, x, state.active);
+  const Side side_a = side_of(a), side_b = side_of(b);
+  // The thorough effort answers bodies whose smooth parts are not round.
+  if (a.is_curved() != side_a.is_round() || b.is_curved() != side_b.is_round()) return false;
+  if (HWY_UNLIKELY(state.active.count == 0)) x = start(side_a, side_b, a_from_b, x, state.active);
   const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
-  const auto run = [&](const auto& round_a, const auto& round_b) HWY_ATTR {
-    Newton<std::remove_cvref_t<decltype(round_a)>, std::remove_cvref_t<decltype(round_b)>> pair(
-        a, b, a_from_b, round_a, round_b, 0x1p-50 * size, x, state.active);
-    if (!pair.run()) return false;
-    state.normal = vec3(pair.next_start());
-    conclude(a, b, a_from_b, pair.end, size, state, r);
+  const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
+    Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
+        newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x, state.active);
+    if (!newton.run()) return false;
+    state.normal = vec3(newton.next_start());
+    conclude(a, b, a_from_b, newton.end, size, state, r);
     return true;
   };
-  if (!a.is_curved()) return run(NoRoundness(), roundness_of_b(b, a_from_b.rotation));
-  if (!b.is_curved()) return run(roundness_of_a(a), NoRoundness());
-  return run(roundness_of_a(a), roundness_of_b(b, a_from_b.rotation));
+  if (!a.is_curved()) return run(NoSquares(), squares_of_b(side_b, a_from_b.rotation));
+  if (!b.is_curved()) return run(squares_of_a(side_a), NoSquares());
+  return run(squares_of_a(side_a), squares_of_b(side_b, a_from_b.rotation));
 }
 
 bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
@@ -91,14 +84,23 @@ bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const Relative
   return newton(a, b, pose4_of(a_from_b), state, r);
 }
 
-DistanceResult newton_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state,
-                               OtherDistance otherwise) {
+inline HWY_NOINLINE DistanceResult open_distance(const ConvexBody& a, const ConvexBody& b,
+                                                 const RelativePose& a_from_b,
+                                                 CurvedTrackingState& tracked,
+                                                 TrackingState& state) {
+  if (!is_good(a_from_b)) return of_bad_pose(state);
+  const DistanceResult r = thorough_distance(a, b, a_from_b, tracked, true);
+  write(tracked, a, b, state);
+  return r;
+}
+
+DistanceResult distance_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                                 const Pose& world_from_b, TrackingState& state) {
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   CurvedTrackingState tracked = read(state, a, b);
   DistanceResult r;
   if (HWY_UNLIKELY(!newton(a, b, a_from_b, tracked, r))) {
-    return otherwise(a, b, pose_of(a_from_b), state, true);
+    return open_distance(a, b, pose_of(a_from_b), tracked, state);
   }
   write(tracked, a, b, state);
   return r;
@@ -111,16 +113,15 @@ HWY_AFTER_NAMESPACE();
 namespace clearance {
 
 HWY_EXPORT(newton_of_relative);
-HWY_EXPORT(newton_of_poses);
+HWY_EXPORT(distance_of_poses);
 
 bool newton_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                      CurvedTrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_relative)(a, b, a_from_b, state, result);
 }
-DistanceResult newton_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state,
-                               OtherDistance otherwise) noexcept {
-  return HWY_DYNAMIC_DISPATCH(newton_of_poses)(a, b, world_from_a, world_from_b, state, otherwise);
+DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                               const Pose& world_from_b, TrackingState& state) noexcept {
+  return HWY_DYNAMIC_DISPATCH(distance_of_poses)(a, b, world_from_a, world_from_b, state);
 }
 
 }  // namespace clearance

@@ -1,39 +1,23 @@
-#include "core/curved/symmetric_depth.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "core/curved/thorough.hpp"
+
 namespace clearance {
 namespace {
 
-constexpr double kTolerance = 0x1p-49;  // of the pair's size
+constexpr double kSectionTolerance = 0x1p-49;  // of the pair's size
 constexpr int kMostArcs = 1000;
 
 // ---- balls ----
-// Inside the body, around `centre`.
-struct InnerBall {
-  Vec3 centre = Vec3::Zero();
-  double radius = 0.0;
-};
-InnerBall inner_ball(const ConvexBody& body) noexcept {
-  switch (body.curved.kind) {
-    case CurvedShape::Kind::kNone:
-      return {body.interior, body.inner_radius};
-    case CurvedShape::Kind::kEllipsoid:
-      return {Vec3::Zero(), body.curved.semi_axes.minCoeff()};
-    case CurvedShape::Kind::kTruncatedCone:
-      break;
-  }
-  const auto& [low, high] = body.curved.discs;
-  if (low.radius != high.radius) return {};
-  return {Vec3(0.0, 0.0, 0.5 * (low.height + high.height)),
-          std::min(low.radius, 0.5 * (high.height - low.height))};
+Ball inscribed_ball(const BodyView& view) noexcept {
+  return visit(view, [](const auto& body) { return body.inscribed_ball(); });
 }
 
 double by_balls(const CurvedPair& pair) noexcept {
-  const InnerBall a = inner_ball(*pair.a.body), b = inner_ball(*pair.b.body);
+  const Ball a = inscribed_ball(pair.a), b = inscribed_ball(pair.b);
   return a.radius + b.radius - (pair.point_to_a(b.centre) - a.centre).norm();
 }
 
@@ -41,59 +25,45 @@ double by_balls(const CurvedPair& pair) noexcept {
 // h_A + h_B is a sum of square roots of linear functions of the squares of n's coordinates, which
 // is concave: over the simplex of these squares it is least at a corner.
 double by_semi_axes(const CurvedPair& pair) noexcept {
-  const CurvedShape &a = pair.a.body->curved, &b = pair.b.body->curved;
-  if (a.kind != CurvedShape::Kind::kEllipsoid || b.kind != a.kind) return -kInfinity;
+  const auto semi_axes = [](const auto& body) { return body.semi_axes(); };
+  const Vec3 *a = visit(pair.a, semi_axes), *b = visit(pair.b, semi_axes);
+  if (a == nullptr || b == nullptr) return -kInfinity;
   double least = kInfinity, off = 0.0;
   for (int i = 0; i < 3; ++i) {
     int axis = 0;
     const double along = pair.rotation().row(i).cwiseAbs().maxCoeff(&axis);
-    least = std::min(least, a.semi_axes[i] + b.semi_axes[axis]);
+    least = std::min(least, (*a)[i] + (*b)[axis]);
     for (int k = 0; k < 3; ++k) {
       const double entry = std::abs(pair.rotation()(i, k));
       off += k == axis ? 1.0 - along : entry;
     }
   }
-  return least - pair.translation().norm() - off * pair.b.reach;
+  return least - pair.translation().norm() - off * pair.b.bounding_radius;
 }
 
 // ---- solids of revolution ----
-constexpr int kAnyAxis = 3;
-// Around which of its axes; kAnyAxis: a sphere; kNone: around none.
-int axis_of(const ConvexBody& body) noexcept {
-  if (body.curved.kind == CurvedShape::Kind::kTruncatedCone) return 2;
-  if (body.curved.kind == CurvedShape::Kind::kNone) return kNone;
-  const Vec3& s = body.curved.semi_axes;
-  if (s.x() == s.y()) return s.y() == s.z() ? kAnyAxis : 2;
-  if (s.y() == s.z()) return 0;
-  return s.x() == s.z() ? 1 : kNone;
-}
+constexpr int kAnyAxis = BodyDefaults::kAnyAxis, kNoAxis = BodyDefaults::kNoAxis;
 
-// In a half-plane that the axis bounds: x along the axis, y away from it.
+// A body's section by a half-plane that the axis bounds.
 struct Section {
-  const CurvedShape& shape;
-  int axis;
+  const BodyView& view;
 
+  [[nodiscard]] int axis() const noexcept {
+    return visit(view, [](const auto& body) { return body.axis_of_revolution(); });
+  }
   [[nodiscard]] Vec2 support(const Vec2& n) const noexcept {
-    if (shape.kind == CurvedShape::Kind::kTruncatedCone) {
-      const Vec2 low(shape.discs[0].height, shape.discs[0].radius);
-      const Vec2 high(shape.discs[1].height, shape.discs[1].radius);
-      return n.dot(high) > n.dot(low) ? high : low;
-    }
-    const int along = axis == kAnyAxis ? 0 : axis;
-    const Vec2 semi_axes(shape.semi_axes[along], shape.semi_axes[(along + 1) % 3]);
-    const Vec2 scaled = semi_axes.cwiseProduct(n);
-    return semi_axes.cwiseProduct(scaled) / scaled.norm();
+    return visit(view, [&](const auto& body) { return body.section_support(n); });
   }
 };
 
-// Of A - B: a direction, unit, and the point farthest along it.
+// A direction (unit) and the support point of A - B along it.
 struct SectionCorner {
   Vec2 normal, point;
 };
 
-// Directions from one end of the axis to the other, in arcs that are halved until each has nothing
-// less than the best but for the tolerance. Any mean p of an arc's two points bounds it by the
-// lesser of n.p at its ends, as a triangle of directions does (depth.hpp).
+// Arcs cover the directions from one end of the axis to the other. They are halved until the bound
+// of each is within the tolerance of the best value. For any mean p of the support points at an
+// arc's ends, the lesser of n.p at the ends is a bound, as for triangles of directions (depth.cpp).
 class SectionSearch {
  public:
   SectionSearch(const Section& a, const Section& b, double apart, bool opposite) noexcept
@@ -151,16 +121,17 @@ class SectionSearch {
 };
 
 double by_sections(const CurvedPair& pair) noexcept {
-  const int of_a = axis_of(*pair.a.body), of_b = axis_of(*pair.b.body);
-  if (of_a == kNone || of_b == kNone) return -kInfinity;
-  // Frame A, and how far off B's own axis is, as a sine.
+  const Section section_a{pair.a}, section_b{pair.b};
+  const int of_a = section_a.axis(), of_b = section_b.axis();
+  if (of_a == kNoAxis || of_b == kNoAxis) return -kInfinity;
+  // The axis in frame A. `tilt`: the sine of the angle to B's axis.
   Vec3 axis = pair.translation();
   if (of_a != kAnyAxis) {
     axis = Vec3::Unit(of_a);
   } else if (of_b != kAnyAxis) {
     axis = pair.rotation().col(of_b);
   } else if (axis.isZero(0.0)) {
-    return -kInfinity;  // spheres around one centre: by_balls() has it
+    return -kInfinity;  // by_balls() answers spheres around one centre
   } else {
     axis = unit_along(axis);
   }
@@ -173,19 +144,12 @@ double by_sections(const CurvedPair& pair) noexcept {
   const double along = axis.dot(pair.translation());
   const double aside = (pair.translation() - along * axis).norm();
   if (!(tilt < 0.5)) return -kInfinity;
-  SectionSearch search({pair.a.body->curved, of_a}, {pair.b.body->curved, of_b}, along,
-                       cosine < 0.0);
+  SectionSearch search(section_a, section_b, along, cosine < 0.0);
   // An angle is no more than 1.05 times its sine, up to 30 degrees.
-  return search.run(kTolerance * pair.size) - aside - 1.05 * tilt * pair.b.reach;
+  return search.run(kSectionTolerance * pair.size) - aside - 1.05 * tilt * pair.b.bounding_radius;
 }
 
 }  // namespace
-
-double rolling_ball(const ConvexBody& body) noexcept {
-  if (body.curved.kind != CurvedShape::Kind::kEllipsoid) return 0.0;
-  const double least = body.curved.semi_axes.minCoeff();
-  return least * (least / body.curved.semi_axes.maxCoeff());
-}
 
 double least_symmetric_depth(const CurvedPair& pair) noexcept {
   if (!pair.a.body->bounded() || !pair.b.body->bounded()) return -kInfinity;

@@ -3,62 +3,55 @@
 
 #include <cmath>
 
-#include "core/curved/active_pieces.hpp"
-#include "core/curved/piece.hpp"
+#include "core/curved/body_view.hpp"
 #include "core/distance_result.hpp"
+#include "core/pose.hpp"
 
 namespace clearance {
 
 // A hint and never a fact.
 struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A, of about unit length; 0: none
-  ActivePieces active;         // such as the bodies have; or one flat and the other body's piece
-  // Of the last query: the point of B without its radius, in frame B; and where the bodies overlap,
-  // a point of both, frame A.
-  Vec3 own_point_on_b = Vec3::Zero(), shared = Vec3::Zero();
+  ActiveParts active;          // pairs of parts; or one pair with a planar face in place of a part
+  Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
 };
 
-// Has the body this piece or flat?
-[[nodiscard]] inline bool has_piece(const ConvexBody& body, std::int32_t number) noexcept {
-  if (number < 0) return false;
-  return number < pieces_of(body) || (number >= first_flat(body) && number < end_of_flats(body));
-}
-
-// What is not of these bodies becomes nothing: more than one flat, and flats of several pairs.
+// Drops what the bodies do not have, more than one planar face, and a face among several pairs.
 inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
                             const ConvexBody& b) noexcept {
   if (!(std::abs(state.normal.squaredNorm() - 1.0) < 0.5)) state.normal = Vec3::Zero();
-  ActivePieces& active = state.active;
-  if (active.count > active.pieces.size()) active.count = 0;
-  int flats = 0;
+  ActiveParts& active = state.active;
+  if (active.count > active.pairs.size()) active.count = 0;
+  int faces = 0;
   bool usable = true;
   for (std::size_t i = 0; i < active.count; ++i) {
-    const auto& [of_a, of_b] = active.pieces[i];
-    usable = usable && has_piece(a, of_a) && has_piece(b, of_b);
-    flats += (of_a >= first_flat(a) ? 1 : 0) + (of_b >= first_flat(b) ? 1 : 0);
+    const auto& [part_a, part_b] = active.pairs[i];
+    usable = usable && has_part_or_face(a, part_a) && has_part_or_face(b, part_b);
+    faces += (part_a >= first_planar_face(a) ? 1 : 0) + (part_b >= first_planar_face(b) ? 1 : 0);
   }
-  if (!usable || flats > 1 || (flats == 1 && active.count > 1)) active.count = 0;
+  if (!usable || faces > 1 || (faces == 1 && active.count > 1)) active.count = 0;
 }
 
-// A pair of pieces is one number, since no more than one body is a polyhedron, and the other one
-// has two pieces and two flats at most; three such numbers are in the two features, 21 bits each.
-inline constexpr unsigned kPieceBits = 21;
-inline constexpr std::uint64_t kPieceNumbers = std::uint64_t{1} << kPieceBits;
+// A pair of parts is one number, since no more than one body is a polyhedron, and the other one has
+// at most two parts and two planar faces. The two features hold three such numbers of 21 bits. With
+// one pair only, a tracked query on an edge or a generator would take a step more.
+inline constexpr unsigned kPartBits = 21;
+inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
 
-// 4 p + q and 1, q being the piece of a curved body: of A if B is a polyhedron, else of B. 0: none.
-[[nodiscard]] inline std::uint64_t packed(const PiecePair& pair, bool b_is_curved) noexcept {
+// 4 p + q + 1, where q is the part of a curved body: of A if B is a polyhedron, else of B. 0: none.
+[[nodiscard]] inline std::uint64_t packed(const PartPair& pair, bool b_is_curved) noexcept {
   const std::int32_t p = b_is_curved ? pair.a : pair.b, q = b_is_curved ? pair.b : pair.a;
   const std::uint64_t number =
       4 * static_cast<std::uint64_t>(p) + static_cast<std::uint64_t>(q) + 1;
-  return number < kPieceNumbers ? number : 0;
+  return number < kPartNumbers ? number : 0;
 }
-[[nodiscard]] inline PiecePair unpacked(std::uint64_t number, bool b_is_curved) noexcept {
+[[nodiscard]] inline PartPair unpacked(std::uint64_t number, bool b_is_curved) noexcept {
   const auto p = static_cast<std::int32_t>((number - 1) >> 2);
   const auto q = static_cast<std::int32_t>((number - 1) & 3);
-  return b_is_curved ? PiecePair{p, q} : PiecePair{q, p};
+  return b_is_curved ? PartPair{p, q} : PartPair{q, p};
 }
 
-// Whatever the state says, of these two bodies.
+// Any state gives one that fits these two bodies.
 [[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexBody& a,
                                               const ConvexBody& b) noexcept {
   CurvedTrackingState found;
@@ -69,30 +62,40 @@ inline constexpr std::uint64_t kPieceNumbers = std::uint64_t{1} << kPieceBits;
   };
   std::uint64_t all = bits(state.b.feature) << 32 | bits(state.a.feature);
   const bool b_is_curved = b.is_curved();
-  for (; all % kPieceNumbers != 0 && found.active.count < found.active.pieces.size();
-       all >>= kPieceBits) {
-    found.active.pieces[found.active.count++] = unpacked(all % kPieceNumbers, b_is_curved);
+  for (; all % kPartNumbers != 0 && found.active.count < found.active.pairs.size();
+       all >>= kPartBits) {
+    found.active.pairs[found.active.count++] = unpacked(all % kPartNumbers, b_is_curved);
   }
   forget_nonsense(found, a, b);
   return found;
 }
 
-// Without `shared`. Of two polyhedra, or of one with more than half a million vertices and facets,
-// no pieces may be kept.
+// Two polyhedra, or one with more than half a million vertices and facets, may lose their parts.
 inline void write(const CurvedTrackingState& from, const ConvexBody& a, const ConvexBody& b,
                   TrackingState& state) noexcept {
   std::uint64_t all = 0;
   const bool b_is_curved = b.is_curved();
   if (b_is_curved || a.is_curved()) {
     for (std::size_t i = from.active.count; i-- > 0;) {
-      all = all << kPieceBits | packed(from.active.pieces[i], b_is_curved);
+      all = all << kPartBits | packed(from.active.pairs[i], b_is_curved);
     }
   }
   const auto half = [](std::uint64_t bits) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
   };
   state.a = {FeatureKind::kDirection, false, half(all), from.normal};
-  state.b = {FeatureKind::kDirection, false, half(all >> 32), from.own_point_on_b};
+  state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
 }
+
+// The fast effort (newton.cpp). False: the bodies overlap or nearly touch, or one of them is
+// unbounded, or rounding leaves the bounds too wide, or many parts are equally near. The state is
+// then a hint for thorough_distance(). It must be free of nonsense.
+[[nodiscard]] bool newton_distance(const ConvexBody& a, const ConvexBody& b,
+                                   const RelativePose& a_from_b, CurvedTrackingState& state,
+                                   DistanceResult& result) noexcept;
+// The thorough effort (curved_distance.cpp). `depth`: where the bodies overlap.
+[[nodiscard]] DistanceResult thorough_distance(const ConvexBody& a, const ConvexBody& b,
+                                               const RelativePose& a_from_b,
+                                               CurvedTrackingState& state, bool depth) noexcept;
 
 }  // namespace clearance

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/active_set/certificate.hpp"
-#include "core/gjk/closest_on_simplex.hpp"
+#include "core/gjk/simplex.hpp"
 #include "core/model/support_function.hpp"
 #include "core/vec.hpp"
 
@@ -14,13 +14,21 @@ namespace {
 // Bounds that are wider than promised then say so by the status kIterationLimit.
 constexpr int kRounds = 64;
 
+using Wide = Vector<DoubleDouble>;
+Wide wide(const Vec3& v) noexcept { return vector_of<DoubleDouble>(v); }
+
 // A point of the Minkowski difference B - A, and where it comes from.
 struct DifferenceVertex {
-  Vec3 a;      // in frame A
-  Vec3 own_b;  // in frame B
-  WideVec b;   // the same in frame A
-  WideVec difference;
+  Vec3 a;       // in frame A
+  Vec3 b_in_b;  // in frame B
+  Wide b;       // the same in frame A
+  Wide difference;
+
+  [[nodiscard]] bool operator==(const DifferenceVertex& other) const noexcept {
+    return a == other.a && rounded(b) == rounded(other.b);
+  }
 };
+using WideSimplex = Simplex<DifferenceVertex, DoubleDouble>;
 
 // B - A by its support points, placed in twice the precision: simplices are slender where bodies
 // nearly touch, and differences of their vertices would be left with few digits.
@@ -57,10 +65,10 @@ class WideMinkowskiDifference {
     if (steepest) point += (4.0 * reach / steepest->direction.norm()) * steepest->direction;
     return point;
   }
-  [[nodiscard]] WideVec to_a(const Vec3& v) const noexcept {
+  [[nodiscard]] Wide to_a(const Vec3& v) const noexcept {
     const Mat3& r = pose_.rotation;
-    const WideVec w = wide(v);
-    return WideVec{dot(wide(r.row(0)), w), dot(wide(r.row(1)), w), dot(wide(r.row(2)), w)} +
+    const Wide w = wide(v);
+    return Wide{dot(wide(r.row(0)), w), dot(wide(r.row(1)), w), dot(wide(r.row(2)), w)} +
            wide(pose_.translation);
   }
 
@@ -70,65 +78,18 @@ class WideMinkowskiDifference {
   const Precision& p_;
 };
 
-// The vertices whose hull has the point closest to the origin, four at most.
-class Simplex {
- public:
-  // False when it is there already: no progress is possible.
-  bool add(const DifferenceVertex& c) noexcept {
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (vertices_[i].a == c.a && narrow(vertices_[i].b) == narrow(c.b)) return false;
-    }
-    vertices_[size_++] = c;
-    return true;
-  }
-  // Keeps only what the closest point needs, and returns it.
-  ClosestPoint reduce() noexcept {
-    std::array<WideVec, 4> points;
-    for (std::size_t i = 0; i < size_; ++i) points[i] = vertices_[i].difference;
-    ClosestPoint closest = closest_to_origin(points, size_);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (closest.weights[i].high <= 0.0) continue;
-      vertices_[kept] = vertices_[i];
-      weights_[kept++] = static_cast<double>(closest.weights[i]);
-    }
-    size_ = kept;
-    return closest;
-  }
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] Vec3 point_on_a() const noexcept { return weighted(&DifferenceVertex::a); }
-  // In frame B.
-  [[nodiscard]] Vec3 own_point_on_b() const noexcept { return weighted(&DifferenceVertex::own_b); }
-  [[nodiscard]] Vec3 point_on_b() const noexcept {
-    Vec3 p = Vec3::Zero();
-    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * narrow(vertices_[i].b);
-    return p;
-  }
-
- private:
-  [[nodiscard]] Vec3 weighted(Vec3 DifferenceVertex::*part) const noexcept {
-    Vec3 p = Vec3::Zero();
-    for (std::size_t i = 0; i < size_; ++i) p += weights_[i] * (vertices_[i].*part);
-    return p;
-  }
-
-  std::array<DifferenceVertex, 4> vertices_;
-  std::array<double, 4> weights_{};
-  std::size_t size_ = 0;
-};
-
 // The sides keep their features and take the points: as near to them as the features allow, a
 // tracked query begins there. Of points that are as close to rounding, those are taken that belong
 // to the direction found last, and that one of those that prove as much.
-void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r, const Simplex& simplex,
-                   double length, const Precision& p) noexcept {
+void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
+                   const WideSimplex& simplex, double length, const Precision& p) noexcept {
   if (length > r.distance + p.gap_tolerance) return;
-  a.place(a.feature(), a.index(), simplex.point_on_a());
-  b.place(b.feature(), b.index(), simplex.own_point_on_b());
+  a.place(a.feature(), a.index(), simplex.mean([](const DifferenceVertex& c) { return c.a; }));
+  b.place(b.feature(), b.index(), simplex.mean([](const DifferenceVertex& c) { return c.b_in_b; }));
   r.upper = std::min(r.upper, length + p.error_bound);
   r.distance = length;
   r.point_on_a = a.point_in_a();
-  r.point_on_b = simplex.point_on_b();
+  r.point_on_b = simplex.mean([](const DifferenceVertex& c) { return rounded(c.b); });
 }
 
 }  // namespace
@@ -138,18 +99,17 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
   // The point of the simplex bounds the distance from above, its direction's support values from
   // below: each round's n is the normal at that point (Gilbert, Johnson and Keerthi 1988).
   const WideMinkowskiDifference body(a, b, a_from_b, p);
-  Simplex simplex;
+  WideSimplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.
-  const bool near =
-      a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
-  simplex.add(near ? body.make(a.local_point(), b.local_point())
-                   : body.make(a.body().anchors[0], b.body().anchors[0]));
+  const bool near = a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
+  (void)simplex.add(near ? body.make(a.local_point(), b.local_point())
+                         : body.make(a.body().anchors[0], b.body().anchors[0]));
   for (int round = 0; round < kRounds; ++round) {
-    const ClosestPoint closest = simplex.reduce();
+    const ClosestPoint<DoubleDouble> closest = simplex.reduce();
     const double length = static_cast<double>(sqrt(closest.length2));
     improve_upper(a, b, r, simplex, length, p);
-    if (simplex.size() == 4 || !(length > 0.0)) break;  // the origin is inside
-    const Vec3 n = narrow(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
+    if (simplex.holds_origin() || !(length > 0.0)) break;  // the origin is inside
+    const Vec3 n = rounded(DoubleDouble(1.0) / sqrt(closest.length2) * closest.point);
     const DifferenceVertex next = body.support_point(n);
     const double separated = separation({n}, a, b, p);
     if (separated - p.error_bound > r.lower - p.gap_tolerance)

@@ -92,7 +92,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 // matters less.
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
-  if (!is_good(a_from_b)) return bad_pose_result(state);
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   if (a.is_curved() || b.is_curved())
     return curved_pair_distance(a, b, a_from_b, state, options.depth);
   DistanceResult result;

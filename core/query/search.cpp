@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
 #include "core/curved/curved_distance.hpp"
-#include "core/curved/newton.hpp"
 #include "core/feature_tracking/feature_tracking.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
@@ -146,26 +144,10 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
 
 }  // namespace
 
-bool is_good(const RelativePose& pose) noexcept {
-  return pose.rotation.allFinite() && pose.translation.norm() <= kLargestCoordinate;
-}
-
-DistanceResult bad_pose_result(TrackingState& state) noexcept {
-  state = {};
-  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-  DistanceResult r;
-  r.distance = kNotKnown;
-  r.lower = -kInfinity;
-  r.upper = kInfinity;
-  r.normal = r.point_on_a = r.point_on_b = Vec3::Constant(kNotKnown);
-  r.status = DistanceStatus::kBadPose;
-  return r;
-}
-
 DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                bool depth) noexcept {
-  if (!is_good(a_from_b)) return bad_pose_result(state);
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result = searched(a, b, a_from_b, state, depth);
   add_radii(result, a, b);
   assert(keeps_promises(result));
@@ -175,19 +157,18 @@ DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
 DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
                                     const RelativePose& a_from_b, TrackingState& state,
                                     bool depth) noexcept {
-  if (!is_good(a_from_b)) return bad_pose_result(state);
   return curved_distance(a, b, a_from_b, state, depth);
 }
 
 DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
                                     const Pose& world_from_a, const Pose& world_from_b,
                                     TrackingState& state) noexcept {
-  return newton_distance(a, b, world_from_a, world_from_b, state, &curved_pair_distance);
+  return curved_distance(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult penetrating_distance(const ConvexBody& a, const ConvexBody& b,
                                     const RelativePose& a_from_b, TrackingState& state) noexcept {
-  if (!is_good(a_from_b)) return bad_pose_result(state);
+  if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
   if (track_penetration(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kPenetration;

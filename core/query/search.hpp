@@ -3,15 +3,10 @@
 #pragma once
 
 #include "core/distance_result.hpp"
+#include "core/model/bad_pose.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
-
-// Is it finite, and are the frames no more than kLargestCoordinate from each other?
-[[nodiscard]] bool is_good(const RelativePose& pose) noexcept;
-// The answer for a bad pose. The state is cleared: features that were tracked with such a pose mean
-// nothing, and the pair's next query is cold.
-[[nodiscard]] DistanceResult bad_pose_result(TrackingState& state) noexcept;
 
 // distance() by the active-set iteration from the features of the state on, and by GJK if that
 // certifies too little. If `depth`, bodies that penetrate each other get their penetration depth as

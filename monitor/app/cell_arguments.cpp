@@ -6,21 +6,9 @@
 #include "monitor/app/program.hpp"
 
 namespace clearance {
-namespace {
-
-// NAME=DIRECTORY.
-std::string package_fault(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  return equals != std::string::npos && equals > 0 && equals + 1 < text.size()
-             ? std::string()
-             : fmt::format("found '{}'; expected NAME=DIRECTORY", text);
-}
-
-}  // namespace
-
-// What is said of the robot is a key of the robot in a cell file.
+// Options of the robot are keys of the robot in a cell file.
 void CellArguments::add_to(CLI::App& app, bool from_ros) {
-  auto* what = app.add_option_group("what", "One of");
+  auto* what = app.add_option_group("cell", "One of");
   auto* file = what->add_option("CELL", cell, "The cell file (YAML)");
   what->add_option("--urdf", robot.urdf, "A robot's URDF, xacro expanded, instead of a cell file");
   if (from_ros) {
@@ -40,18 +28,7 @@ void CellArguments::add_to(CLI::App& app, bool from_ros) {
                  "The robot's SRDF, which disables pairs; without it, a link and the next above it "
                  "that has shapes may touch")
       ->excludes(file);
-  app.add_option_function<std::vector<std::string>>(
-         "--package",
-         [this](const std::vector<std::string>& packages) {
-           for (const std::string& text : packages) {
-             const std::size_t equals = text.find('=');
-             robot.packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-           }
-         },
-         "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
-      ->allow_extra_args(false)
-      ->check(package_fault)
-      ->excludes(file);
+  add_packages(app, robot.packages)->excludes(file);
   app.add_option("--age-limit-ms", robot.age_limit_ms,
                  "An older position makes what hangs on the joint stale")
       ->check(finite_number())

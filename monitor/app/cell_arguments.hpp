@@ -1,4 +1,4 @@
-// The cell of a program's command line: a file, or a robot's URDF and SRDF instead of one.
+// The cell on a program's command line: a cell file, or a robot's URDF and SRDF.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,18 +10,18 @@
 namespace clearance {
 
 struct CellArguments {
-  std::string cell;  // empty: the robot
+  std::string cell;  // empty: the robot is used
   SingleRobotOptions robot;
 
-  // A topic of ROS 2, "/robot_description", that has the robot's URDF; empty: none was asked for.
-  // Whoever asks for it fills in robot.urdf.
+  // The ROS 2 topic with the robot's URDF, "/robot_description"; empty: not asked for. The program
+  // that asks for it sets robot.urdf.
   std::string description_topic;
 
-  // CELL, or --urdf with --srdf, --package and --age-limit-ms; one of CELL and --urdf is required.
-  // `from_ros`: or --robot-description.
+  // Adds CELL, and --urdf with --srdf, --package and --age-limit-ms; one of CELL and --urdf is
+  // required. With `from_ros`, --robot-description is a third choice.
   void add_to(CLI::App& app, bool from_ros = false);
   [[nodiscard]] CellResult read() const;
-  // As a person has to be told: the cell file, or the URDF.
+  // The name for messages: the cell file, or the URDF.
   [[nodiscard]] std::string name() const { return cell.empty() ? robot.urdf.string() : cell; }
   // Every file that the command line names.
   [[nodiscard]] std::vector<std::filesystem::path> files() const;

@@ -1,39 +1,44 @@
-// stderr, since stdout belongs to results. The thread that writes may wait in write() for ever;
-// then it is left behind when the program ends, with all that it uses.
+// stderr, since stdout belongs to results. The log's thread may wait in write() for ever; the
+// program then ends without it, and the thread pool is left allocated for it.
+//
+// Logging takes spdlog's mutex for as long as it takes to move one line; the tick thread never
+// logs.
 #include "monitor/app/log.hpp"
 
 #include <poll.h>
 #include <pthread.h>
-#include <spdlog/details/log_msg.h>
+#include <spdlog/async_logger.h>
 #include <spdlog/details/os.h>
+#include <spdlog/details/thread_pool.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/sink.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
-#include <semaphore>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include "config/text/printable.hpp"
-#include "monitor/app/log_queue.hpp"
 
 namespace clearance {
 namespace {
 
+using spdlog::details::log_msg;
+
 constexpr std::size_t kQueuedLines = 1024;
 
-// As spdlog colours them: trace, debug, info, warn, error, critical.
+// The colours that spdlog gives to trace, debug, info, warn, error and critical.
 constexpr std::array kColours = {"\x1b[37m",        "\x1b[36m",        "\x1b[32m",
                                  "\x1b[33m\x1b[1m", "\x1b[31m\x1b[1m", "\x1b[1m\x1b[41m"};
 constexpr std::string_view kPlain = "\x1b[m";
 
-// A descriptor that somebody else made non-blocking is waited for here, too.
+// Another process may have made the descriptor non-blocking; then poll() waits.
 bool write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
@@ -49,136 +54,125 @@ bool write_all(int descriptor, std::string_view text) {
   return true;
 }
 
-// What the log's thread does, and all that it uses.
-class LogWriter {
+// The sinks keep their pattern.
+class Sink : public spdlog::sinks::sink {
+  void flush() override {}
+  void set_pattern(const std::string&) override {}
+  void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
+};
+
+// The far end of the queue: called by the log's thread only. spdlog's own sinks to stderr hold the
+// lock of the FILE while they write, for which print() and exit() would wait.
+class StderrSink final : public Sink {
  public:
-  explicit LogWriter(std::string name)
-      : name_(std::move(name)),
+  explicit StderrSink(spdlog::details::thread_pool& queue)
+      : queue_(queue),
         in_colour_(spdlog::details::os::in_terminal(stderr) &&
                    spdlog::details::os::is_color_terminal()) {}
 
-  // Any thread.
-  void push(LogLine line) noexcept {
-    queue_.push(std::move(line));
-    ready_.release();
+  void log(const log_msg& message) override {
+    note_left_out(message);
+    const std::string_view text(message.payload.data(), message.payload.size());
+    if (!write(message, message.level, printable(text))) ++failed_;
+    ++written_;
   }
-  void close() noexcept {
-    closed_ = true;
-    ready_.release();
-  }
-  [[nodiscard]] std::uint64_t pushed() const noexcept { return queue_.pushed(); }
-  [[nodiscard]] std::uint64_t written() const noexcept { return written_; }
-  [[nodiscard]] bool ended() const noexcept { return ended_; }
-
-  // The thread: until close(), and then until the queue is empty.
-  void run() {
-    pthread_setname_np(pthread_self(), "log");
-    for (bool closed = false; !closed;) {
-      ready_.acquire();
-      closed = closed_;  // asked before the last look, so that nothing is left behind
-      LogLine line;
-      while (queue_.pop(line)) {
-        note_left_out(line.left_out_before, line.time);
-        if (!write(line)) queue_.leave_out(1);
-        ++written_;
-      }
-      note_left_out(queue_.take_left_out(), std::chrono::system_clock::now());
-    }
-    ended_ = true;
+  // Any thread: lines that have left the queue, written or displaced.
+  [[nodiscard]] std::uint64_t finished() const {
+    const std::uint64_t written = written_;
+    return written + queue_.overrun_counter();
   }
 
  private:
-  void note_left_out(std::uint64_t count, std::chrono::system_clock::time_point time) {
-    if (count == 0) return;
-    const std::string text =
-        fmt::format("{} lines are left out here: stderr took them too slowly", count);
-    if (!write({.time = time, .level = spdlog::level::warn, .text = text})) queue_.leave_out(count);
+  void note_left_out(const log_msg& next) {
+    const std::uint64_t left_out = queue_.overrun_counter() + failed_;
+    if (left_out == told_) return;
+    const std::uint64_t count = left_out - told_;
+    const std::string text = fmt::format("{} {} left out here: stderr took them too slowly", count,
+                                         count == 1 ? "line is" : "lines are");
+    if (write(next, spdlog::level::warn, text)) told_ = left_out;
   }
 
-  // False: it could not be written.
-  bool write(const LogLine& line) {
-    const std::string text = printable(line.text);
-    const spdlog::details::log_msg message(line.time, {}, name_, line.level, text);
+  // False: stderr refuses it.
+  bool write(const log_msg& event, spdlog::level::level_enum level, const std::string& text) {
+    const log_msg line(event.time, {}, event.logger_name, level, text);
     spdlog::memory_buf_t formatted;
-    formatter_.format(message, formatted);
+    formatter_.format(line, formatted);
     std::string out(formatted.data(), formatted.size());
-    if (in_colour_ && message.color_range_end > message.color_range_start) {
-      out.insert(message.color_range_end, kPlain);
-      out.insert(message.color_range_start, kColours[static_cast<std::size_t>(line.level)]);
+    if (in_colour_ && line.color_range_end > line.color_range_start) {
+      out.insert(line.color_range_end, kPlain);
+      out.insert(line.color_range_start, kColours[static_cast<std::size_t>(level)]);
     }
     return write_all(STDERR_FILENO, out);
   }
 
-  std::string name_;
+  spdlog::details::thread_pool& queue_;
   bool in_colour_;
   spdlog::pattern_formatter formatter_{"%Y-%m-%d %H:%M:%S.%e %n %^%l%$: %v"};
-  LogQueue queue_{kQueuedLines};
-  std::counting_semaphore<> ready_{0};
+  std::uint64_t failed_ = 0, told_ = 0;
   std::atomic<std::uint64_t> written_{0};
-  std::atomic<bool> closed_{false}, ended_{false};
 };
 
-// Asks every millisecond: it is only done at the end of a program or in front of a message.
-template <class Condition>
-bool comes_true(Condition&& condition) {
-  const auto end = std::chrono::steady_clock::now() + kLogPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
-}
+// The pool that a thread hanging in write() still uses when the program ends.
+std::shared_ptr<spdlog::details::thread_pool>* left_behind = nullptr;
 
-// spdlog's end of the queue. The pattern is the log's and cannot be changed.
-class LogSink final : public spdlog::sinks::sink {
+// The near end, which counts lines: spdlog does not tell whether all of them are written.
+class QueueSink final : public Sink {
  public:
-  explicit LogSink(const std::string& name)
-      : writer_(std::make_shared<LogWriter>(name)),
-        thread_([writer = writer_] { writer->run(); }) {}
-  LogSink(const LogSink&) = delete;
-  LogSink& operator=(const LogSink&) = delete;
-  ~LogSink() override {
-    writer_->close();
-    if (comes_true([this] { return writer_->ended(); })) {
-      thread_.join();
-    } else {
-      thread_.detach();
-    }
+  explicit QueueSink(const std::string& name)
+      : queue_(std::make_shared<spdlog::details::thread_pool>(
+            kQueuedLines, 1, [] { pthread_setname_np(pthread_self(), "log"); })),
+        stderr_(std::make_shared<StderrSink>(*queue_)),
+        logger_(std::make_shared<spdlog::async_logger>(
+            name, stderr_, queue_, spdlog::async_overflow_policy::overrun_oldest)) {
+    logger_->set_level(spdlog::level::trace);
+    // spdlog's own handler prints to stderr, which may take nothing.
+    logger_->set_error_handler([](const std::string&) {});
+  }
+  QueueSink(const QueueSink&) = delete;
+  QueueSink& operator=(const QueueSink&) = delete;
+  // The pool's destructor waits for its thread.
+  ~QueueSink() override {
+    if (!drain()) left_behind = new std::shared_ptr(queue_);
   }
 
-  void log(const spdlog::details::log_msg& message) override {
-    writer_->push({.time = message.time,
-                   .level = message.level,
-                   .text = std::string(message.payload.data(), message.payload.size())});
+  void log(const log_msg& message) override {
+    ++posted_;
+    logger_->log(message.time, message.source, message.level, message.payload);
   }
-  void flush() override {
-    comes_true([this, so_far = writer_->pushed()] { return writer_->written() >= so_far; });
+  // Polls once a millisecond: it is called at the end of a program and before a message.
+  bool drain() const {
+    const auto end = std::chrono::steady_clock::now() + kLogPatience;
+    const std::uint64_t posted = posted_;
+    while (stderr_->finished() < posted) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return true;
   }
-  void set_pattern(const std::string&) override {}
-  void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
 
  private:
-  std::shared_ptr<LogWriter> writer_;
-  std::thread thread_;
+  std::atomic<std::uint64_t> posted_{0};
+  std::shared_ptr<spdlog::details::thread_pool> queue_;
+  std::shared_ptr<StderrSink> stderr_;
+  std::shared_ptr<spdlog::async_logger> logger_;
 };
 
-// Of the program, once it has a log.
-std::weak_ptr<LogSink> the_log;
+// The program's log, from start_log() on.
+std::weak_ptr<QueueSink> the_log;
 
 }  // namespace
 
 void start_log(const std::string& name, const std::string& level) {
-  auto sink = std::make_shared<LogSink>(name);
+  auto sink = std::make_shared<QueueSink>(name);
   the_log = sink;
   auto logger = std::make_shared<spdlog::logger>(name, std::move(sink));
   logger->set_level(spdlog::level::from_str(level));
-  // spdlog's own handler prints to stderr, which may take nothing.
   logger->set_error_handler([](const std::string&) {});
   spdlog::set_default_logger(std::move(logger));
 }
 
 void drain_log() {
-  if (const auto log = the_log.lock()) log->flush();
+  if (const auto log = the_log.lock()) log->drain();
 }
 
 }  // namespace clearance

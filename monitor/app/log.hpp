@@ -1,5 +1,5 @@
-// The log of a program: spdlog, to stderr, by a thread of its own. Nothing that logs ever waits for
-// whoever reads the log.
+// The log of a program: spdlog's asynchronous logger, to stderr. A thread that logs never waits for
+// the reader of the log.
 #pragma once
 
 #include <chrono>
@@ -7,19 +7,19 @@
 
 namespace clearance {
 
-// `level`: trace, debug, info, warn, error or off. `name` starts every line after the time.
+// `level`: trace, debug, info, warn, error or off. `name` stands in every line after the time.
 //
-// A line waits in a bounded queue (log_queue.hpp) until it is written; when stderr takes nothing
-// (a pipe that is full, a terminal that is stopped), lines that find the queue full are left out,
-// and where they are missing a line says how many. Each line is one line of text: what it says is
-// made printable (printable.hpp). At the end, the program waits at most kLogPatience for lines that
-// are still to be written.
+// A line waits in a bounded queue until the log's own thread has written it. When stderr takes
+// nothing (a full pipe, a stopped terminal), each new line displaces the oldest one in the queue,
+// and a line in their place says how many are missing. Each event is one line: its text is made
+// printable (config/text/printable.hpp). At its end, the program waits at most kLogPatience for the
+// queue.
 void start_log(const std::string& name, const std::string& level);
 
 inline constexpr std::chrono::milliseconds kLogPatience{200};
 
-// Waits until what was logged so far is written, at most kLogPatience. For what follows on another
-// way: messages and summaries.
+// Waits until the lines logged so far are written, at most kLogPatience. Messages and summaries,
+// which do not pass through the queue, call it first.
 void drain_log();
 
 }  // namespace clearance

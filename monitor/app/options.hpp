@@ -1,10 +1,12 @@
-// Values that options of the command line accept: each validator names what was found and what is
-// expected.
+// Validators for options of the command line: each names what it found and what it expected.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace clearance {
 
@@ -15,6 +17,10 @@ namespace clearance {
 
 // A whole number in this range, both ends included.
 [[nodiscard]] CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest);
+
+// "--package NAME=DIRECTORY", repeatable: where the package:// of a URDF are.
+CLI::Option* add_packages(CLI::App& app,
+                          std::vector<std::pair<std::string, std::filesystem::path>>& packages);
 
 // "--force", without which no program overwrites a file.
 void add_force(CLI::App& app, bool& force);

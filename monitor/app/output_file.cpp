@@ -25,7 +25,7 @@ bool has_folder(const char* program, const std::filesystem::path& file) {
 // An output that does not exist yet equals no input.
 bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
                             std::initializer_list<std::filesystem::path> inputs) {
-  std::error_code missing;  // a file that does not exist is no other one
+  std::error_code missing;  // a file that does not exist differs from every other file
   for (const std::filesystem::path& input : inputs) {
     if (!std::filesystem::equivalent(output, input, missing)) continue;
     print(stderr, "{}: {} is a file that is read; expected another one to write\n", program,
@@ -45,8 +45,8 @@ bool can_create(const char* program, const std::filesystem::path& file, bool for
   return false;
 }
 
-// A program that is started again after a crash, with the same arguments, finds the file of the run
-// before.
+// A program that starts again after a crash, with the same arguments, finds the file of the earlier
+// run.
 std::optional<std::filesystem::path> free_name(const char* program,
                                                const std::filesystem::path& file, bool force) {
   if (!has_folder(program, file)) return std::nullopt;

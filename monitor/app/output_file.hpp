@@ -1,5 +1,5 @@
-// Files that a program writes: it destroys no input, overwrites nothing unasked, and leaves nothing
-// behind that looks finished and is not. Every refusal goes to stderr as "PROGRAM: what".
+// Files that a program writes. It destroys no input, overwrites nothing unasked, and leaves no
+// unfinished file that looks finished. Every refusal goes to stderr as "PROGRAM: text".
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,22 @@
 
 namespace clearance {
 
-// False, after saying so, when `output` is one of the files that are read: it would be destroyed.
+// Returns false and says so when `output` is also an input, which writing would destroy.
 [[nodiscard]] bool output_is_not_an_input(const char* program, const std::filesystem::path& output,
                                           std::initializer_list<std::filesystem::path> inputs);
 
-// False, after saying so, when the file exists and `force` is not given, or its folder does not
+// Returns false and says so when the file exists without `force`, or when its folder does not
 // exist. An empty name is no file.
 [[nodiscard]] bool can_create(const char* program, const std::filesystem::path& file, bool force);
 
-// Where to write when nothing may be overwritten and the program must start all the same: the file
-// itself, or, when it exists and `force` is not given, the first of NAME-2.EXT, NAME-3.EXT ... that
-// does not. Nothing, after saying so, when its folder does not exist or the file is no regular one.
+// Returns a name to write to for a program that must overwrite nothing and start all the same: the
+// file itself, or, if it exists without `force`, the first free one of NAME-2.EXT, NAME-3.EXT ...
+// Returns nothing and says so when the folder does not exist or the file is no regular one.
 [[nodiscard]] std::optional<std::filesystem::path> free_name(const char* program,
                                                              const std::filesystem::path& file,
                                                              bool force);
 
-// Removes a file that was not written to its end, if it is a regular one, and says what became of
-// it.
+// Removes an unfinished file, if it is a regular one, and says so.
 void remove_unfinished(const char* program, const std::filesystem::path& file);
 
 }  // namespace clearance

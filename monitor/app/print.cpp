@@ -1,4 +1,5 @@
-// Writes no more at a time than what a pipe or a terminal that is ready takes without waiting.
+// Writes at most PIPE_BUF bytes at a time, which a pipe or terminal that is ready takes without
+// waiting.
 #include "monitor/app/print.hpp"
 
 #include <poll.h>
@@ -19,10 +20,10 @@ namespace {
 
 constexpr int kSliceMs = 50, kBriefMs = 500;
 
-// A reader that has kept one message waiting does not get to do so again and again.
+// A reader that has kept one message waiting cannot keep the next ones waiting.
 std::atomic<bool> keeps_waiting{false};
 
-// False: it takes nothing, and the time is over.
+// Returns false when the time is over and the reader still takes nothing.
 bool wait_for_room(int descriptor, Patience patience) {
   const int most = keeps_waiting ? 0 : kBriefMs;
   for (int waited = 0;;) {

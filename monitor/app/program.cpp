@@ -2,6 +2,8 @@
 #include "monitor/app/program.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -9,13 +11,14 @@
 #include <vector>
 
 #include "config/text/printable.hpp"
+#include "monitor/app/help_formatter.hpp"
 #include "monitor/app/print.hpp"
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 
 namespace clearance {
 namespace {
 
-// What CLI11 has to say, through print().
+// Prints CLI11's message through print().
 int say(const CLI::App& app, const CLI::Error& error) {
   std::ostringstream out, err;
   const int status = app.exit(error, out, err);
@@ -38,9 +41,13 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body,
   }
 }
 
-// CLI11 has its own exit codes for mistakes; here they all are kUsage.
+// CLI11 has an exit code for each mistake; here all of them are kUsage.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", std::string("clearance ") + kBuild);
+  app.name(std::filesystem::path(argv[0]).filename());
+  const auto formatter = std::make_shared<HelpFormatter>();
+  app.formatter(formatter);
+  for (CLI::App* subcommand : app.get_subcommands({})) subcommand->formatter(formatter);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

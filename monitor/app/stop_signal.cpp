@@ -1,4 +1,4 @@
-// Blocks the signals in every thread and waits for them with sigtimedwait; a handler is needed only
+// Blocks the signals in every thread and waits for them with sigtimedwait. A handler is needed only
 // where a program must end at once.
 #include "monitor/app/stop_signal.hpp"
 
@@ -13,17 +13,18 @@
 namespace clearance {
 namespace {
 
-// A handler takes no argument of ours, hence the two globals; they are set before it is installed.
+// A handler takes no argument of ours, hence these two globals. They are set before it is
+// installed.
 int status_at_the_end = 0;
 const char* words_at_the_end = "";
 
-// wait() has taken a signal off the pending ones.
+// True when wait() has taken a signal off the pending ones.
 std::atomic<bool> a_signal_came{false};
 
-// How long the last words may wait for their reader.
+// The time that the last words may wait for their reader.
 constexpr int kLastWordsMs = 200;
 
-// Only async-signal-safe calls: poll, write and _exit.
+// This makes async-signal-safe calls only: poll, write and _exit.
 extern "C" void end_now(int) {
   pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
   if (poll(&writable, 1, kLastWordsMs) <= 0) _exit(status_at_the_end);
@@ -39,8 +40,8 @@ StopSignal::StopSignal() {
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals_, &before_);
-  // Whoever reads our output may leave first, and a file may get too large: then a write fails,
-  // that is all.
+  // The reader of our output may leave first, and a file may get too large: then a write fails, and
+  // nothing else happens.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -6,19 +6,19 @@
 
 namespace clearance {
 
-// Made before any other thread: blocks both signals in all of them. The sooner it is made, the
-// shorter is the time in which they end the program in the system's way.
+// Blocks both signals in all threads, so it is made before any other thread. Until it is made, a
+// signal ends the program in the system's default manner.
 class StopSignal {
  public:
   StopSignal();
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  // For work that nobody has to end in order: a signal, also one that has come already, says
-  // `last_words` on stderr and ends the program with `status`. The words must stay.
+  // For work that may stop anywhere: from now on a signal, even one that has already come, writes
+  // `last_words` to stderr and ends the program with `status`. `last_words` must stay valid.
   void end_with(int status, const char* last_words);
 
-  // True: a signal has come, now or before. Waits for one up to the given time.
+  // Waits for a signal up to the given time. Returns true when one has come, now or before.
   bool wait(std::int64_t timeout_ms);
 
  private:
@@ -26,7 +26,7 @@ class StopSignal {
   bool came_ = false;
 };
 
-// True: SIGINT or SIGTERM has come, whether or not wait() has been asked since.
+// Returns true when SIGINT or SIGTERM has come, whether or not wait() was called since.
 [[nodiscard]] bool stop_is_asked_for() noexcept;
 
 }  // namespace clearance

@@ -73,7 +73,8 @@ void BroadPhase::begin(const OpenTick& tick, std::span<const std::uint32_t> chan
     const TrackedObject& object = tick.objects[i];
     if (!object.seen) continue;
     Body& body = bodies_[i];
-    if (!(object.displacement < kInfinity)) jump(i, tick.table);
+    if (body.forgotten || !(object.displacement < kInfinity)) jump(i, tick.table);
+    body.forgotten = false;
     if (body.idle) continue;
     if (object.moved) body.placed = false;
     if (!body.arrival.has_arrived()) arrive(i, object);
@@ -100,9 +101,14 @@ void BroadPhase::arrive(std::uint32_t object, const TrackedObject& state) noexce
   arrived_.push_back(object);
 }
 
+void BroadPhase::forget_object(std::uint32_t object, PairTable& table) noexcept {
+  bodies_[object].forgotten = true;
+  for (const std::uint32_t pair : by_object_.pairs_of(object)) forget_pair(pair, table);
+}
+
 void BroadPhase::jump(std::uint32_t object, PairTable& table) noexcept {
   for (const std::uint32_t pair : by_object_.pairs_of(object)) {
-    forget(pair, table);
+    forget_bounds(pair, table);
     if (is_culled(pair)) activate(pair);
   }
 }

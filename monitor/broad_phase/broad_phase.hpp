@@ -14,6 +14,7 @@
 
 #include "monitor/broad_phase/motion_wheel.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/invariant.hpp"
 #include "monitor/pairs/pairs_by_object.hpp"
 #include "monitor/pairs/tick_view.hpp"
 #include "monitor/zones/zone_levels.hpp"
@@ -40,6 +41,10 @@ class BroadPhase {
   // the last ones are forgotten. The tick's objects stay where they are until the next tick.
   // `changed`: at least the objects that have moved, or whose unobserved motion is not what it was.
   void begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept;
+
+  // Before begin(): an object is not there any more. Forgets its pairs, and activates them when it
+  // is known again.
+  void forget_object(std::uint32_t object, PairTable& table) noexcept;
 
   // Pairs that are activated and not decided about, in this tick's order.
   [[nodiscard]] std::span<const std::uint32_t> activated() const noexcept { return activated_; }
@@ -82,13 +87,14 @@ class BroadPhase {
     std::uint32_t met = 0;  // in its turn it met the objects of a lower rank than this
     [[nodiscard]] bool has_arrived() const noexcept { return rank != ~0u; }
   };
-  static constexpr std::uint32_t kCheckedPerTick = 4;
+  static constexpr std::uint32_t kCheckedPerTick = kMoreInvariantsChecked ? 64 : 4;
   struct Body {
     BoundingSphere sphere;
     Sphere sphere_in_world;                // while `placed`
     const TrackedObject* state = nullptr;  // once it has arrived
     bool placed = false;
     bool fixed = false;
+    bool forgotten = false;       // nothing is known of its pairs until it has a pose again
     bool idle = true;             // all its pairs are left out
     double may_have_moved = 0.0;  // as of the last tick in which it was finite, m
     Arrival arrival;

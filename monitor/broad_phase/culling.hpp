@@ -25,6 +25,11 @@ class Culling {
           const ZoneLevels& zone_levels, std::vector<double> urgent,
           std::span<const std::uint32_t> left_out, const RefreshShare& share);
 
+  // Between ticks: an object is not there any more.
+  void forget_object(std::uint32_t object, PairTable& table) noexcept {
+    broad_phase_.forget_object(object, table);
+  }
+
   // The stage. `changed` is that of Displacements. `last_minimum`: the smallest upper bound of any
   // pair at the last tick, m, which the horizon follows.
   void cull(std::span<const std::uint32_t> changed, double last_minimum, const OpenTick& tick,

@@ -10,7 +10,8 @@
 namespace clearance {
 namespace {
 
-// What is farther ahead is due at this: far beyond any cell, and within the widest ring.
+// A timer that is set for more is due at this displacement: larger than any cell, and within the
+// widest ring.
 constexpr double kFarthest = 512.0;  // m
 
 std::int64_t units(double length) noexcept {

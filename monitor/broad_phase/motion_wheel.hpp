@@ -2,13 +2,13 @@
 // side.
 //
 // A timer on an object's wheel is due before the object has moved farther than the timer was set
-// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing,
-// one that moves costs as much as it has timers due.
+// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing.
+// One that moves costs as much as it has timers due.
 //
 // A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of
-// displacement wide. A timer goes where its bucket is at least three and at most seven ahead, and
-// is never moved from there: what is due early is looked at, and set again, at no more cost than
-// moving it.
+// displacement wide. A timer is put into the level where its bucket is at least three and at most
+// seven ahead, and stays there. To examine a pair that is due early, and to set its timer again,
+// costs no more than to move the timer between levels.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ namespace clearance {
 
 class MotionWheels {
  public:
-  static constexpr double kUnit =
-      0x1p-12;  // m: what a set displacement is at least, and rounded to
+  // The smallest displacement that can be set, and the step of all others, m.
+  static constexpr double kUnit = 0x1p-12;
 
   MotionWheels(std::size_t objects, std::size_t pairs);
 
   // Timer `timer` (2 * pair + side, not set) is due by the time `object` has advanced by
-  // `displacement` more. False, and nothing is set, when that is less than can be told apart.
+  // `displacement` more. False, and nothing is set, when the displacement is too small.
   bool set(std::uint32_t timer, std::uint32_t object, double displacement) noexcept;
 
   // Cancels a timer, set or not.
@@ -35,7 +35,7 @@ class MotionWheels {
     return timers_[timer].before != kNotSet;
   }
 
-  // `object` has moved by no more than `by`, m: >= 0, finite.
+  // `object` has moved by at most `by`, m: >= 0, finite.
   void advance(std::uint32_t object, double by) noexcept;
 
   // Appends to `pairs` those with a due timer on this wheel and cancels both their timers. Stops

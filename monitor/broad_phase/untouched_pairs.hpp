@@ -19,8 +19,8 @@ struct UntouchedPairs {
   bool any = false;                  // a pair is culled or waiting
   double horizon = -kInfinity;       // H, m
   double waiting_lower = kInfinity;  // W, m; infinity: no pair waits
-  // Of any two objects together, m: U, and how far they may have been from where they are now at
-  // any instant since the last tick.
+  // The largest values of any two objects together, m: U, and the distance from where they are now
+  // at any instant since the last tick.
   double most_unobserved = 0.0, most_displaced = 0.0;
 
   // Lower bounds for where the objects may be, margins not subtracted: of the pairs that wait,

@@ -1,10 +1,10 @@
-// A client of the daemon: hears its reports and sends it joints and poses, with the QoS that both
+// A client of the daemon: it receives reports and sends joints and poses, with the QoS that both
 // sides need.
 //
-// find_package(clearance COMPONENTS client), link clearance::client. Messages are the types of
-// idl/clearance.idl as C has them (clearance_msg_Distances, ...); idl/README.md has every field and
-// unit. Constructors throw DdsError; nothing else throws unless it says so. An object is for one
-// thread at a time, and its connection outlives it.
+// Use find_package(clearance COMPONENTS client) and link clearance::client. Messages have the C
+// types of idl/clearance.idl (clearance_msg_Distances, ...); idl/README.md documents every field
+// and unit. Constructors throw DdsError; other functions throw only if they say so. An object is
+// used by one thread at a time, and its connection outlives it.
 #pragma once
 
 #include <chrono>
@@ -29,16 +29,16 @@ class Participant;
 
 namespace client {
 
-// Where the daemon is: its domain, partition and network, as its first log lines say.
+// The daemon's domain, partition and network, as in its first log lines.
 class Connection {
  public:
   // Without options: this machine's loopback, domain 0, the default partition.
   explicit Connection(const DdsOptions& options = {}, const Topics& topics = {});
-  // Within a participant that the program has already, and keeps for longer than this.
+  // Uses a participant that the program already has and that outlives this.
   Connection(dds_entity_t participant, const std::string& partition, const Topics& topics = {});
   ~Connection();
 
-  // "domain 7, partition demo, interface lo, ...", for messages to a person.
+  // "domain 7, partition demo, interface lo, ...", for messages.
   [[nodiscard]] const std::string& where() const noexcept;
   [[nodiscard]] const Topics& topics() const noexcept { return topics_; }
   [[nodiscard]] Participant& participant() noexcept { return *participant_; }
@@ -49,31 +49,31 @@ class Connection {
 };
 
 struct StreamOptions {
-  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // a ReportCheck's limit
-  std::int32_t depth = 64;  // messages that may wait while the program does something else
+  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // the limit of ReportCheck
+  std::int32_t depth = 64;  // messages that may wait while the program does other work
 };
 
-// What the daemon says in every tick. Message: that of one of the types below.
+// A topic that the daemon writes in every tick. `Message` is the message of one of the types below.
 template <class Message>
 class Stream {
  public:
   explicit Stream(Connection& connection, const StreamOptions& options = {});
   ~Stream();
 
-  // The next message in order, waited for as long as `timeout`. False: none came.
+  // Waits up to `timeout` for the next message in order. Returns false when none came.
   bool next(std::chrono::nanoseconds timeout = {});
-  // The same, but the newest of those that are there: for a controller.
+  // Does the same with the newest waiting message: for a controller.
   bool newest(std::chrono::nanoseconds timeout = {});
 
-  // The last message that came; all zero before the first.
+  // The last message that came; all zero before the first one.
   [[nodiscard]] const Message& operator*() const noexcept { return *message_; }
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
-  // Whether it is fresh, of the same daemon as the one before, and how many are missing between.
+  // Says whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
 
-  // Daemons that tick: 0: it has died or hangs; more than one is a mistake.
+  // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake.
   [[nodiscard]] std::uint32_t daemons() const;
-  // No daemon is there any longer, not even one that hangs.
+  // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
   // A sentence for a person: why a daemon that is there cannot be heard. It was built with another
   // version of the message, or its QoS does not fit. Empty: no such daemon was met.
@@ -84,7 +84,7 @@ class Stream {
 
   dds_entity_t reader_;
   std::unique_ptr<DataWait> wait_;
-  // Taken into the second: Cyclone clears a sample when a writer leaves.
+  // Messages are taken into the second sample, since Cyclone clears a sample when a writer leaves.
   Sample<Message> message_, scratch_;
   ReportChecker checker_;
   ReportCheck check_;
@@ -94,7 +94,7 @@ using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell
 using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`
 
-// A published pair of a report; null: it is not published, or `pair` is none.
+// Finds a published pair of a report; null when `pair` does not exist or is not published.
 [[nodiscard]] const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
                                                      std::optional<std::uint32_t> pair);
 
@@ -104,20 +104,20 @@ class Catalogue {
   explicit Catalogue(Connection& connection);
   void update();
 
-  // Null: none has come. Another daemon, or another cell, has another revision.
+  // Null until one has come. Another daemon or another cell has another revision.
   [[nodiscard]] const clearance_msg_Catalogue* message() const noexcept {
     return known_ ? &*message_ : nullptr;
   }
-  // Of its ids; 0: none has come.
+  // The revision that its ids belong to; 0 until one has come.
   [[nodiscard]] std::uint64_t revision() const noexcept { return message_->scene_revision; }
 
-  // Ids by name; the two objects of a pair in any order. None: there is no such object or pair, or
-  // no catalogue yet.
+  // Ids by name; a pair's objects may stand in any order. Nothing when there is no such object or
+  // pair, or no catalogue yet.
   [[nodiscard]] std::optional<std::uint32_t> object(std::string_view name) const;
   [[nodiscard]] std::optional<std::uint32_t> pair(std::string_view a, std::string_view b) const;
   [[nodiscard]] std::optional<std::uint32_t> joint(std::string_view name) const;
 
-  // Names by id, "object 7" for an unknown one; of a pair those of the closest parts as well:
+  // Names by id, "object 7" for an unknown one. The name of a pair includes the closest parts:
   // "hand.finger - table".
   [[nodiscard]] std::string object_name(std::uint32_t object) const;
   [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
@@ -131,12 +131,12 @@ class Catalogue {
   bool known_ = false;
 };
 
-// How the daemon is doing, as of the last update(): once a second.
+// The daemon's health, as of the last update(); it comes once a second.
 class Health {
  public:
   explicit Health(Connection& connection);
   void update();
-  // Null: none has come.
+  // Null until one has come.
   [[nodiscard]] const clearance_msg_Health* message() const noexcept {
     return known_ ? &*message_ : nullptr;
   }
@@ -152,7 +152,7 @@ class Zones {
  public:
   explicit Zones(Connection& connection);
   void update();
-  // Forgets what other daemons have said.
+  // Forgets the states that other daemons have sent.
   void keep_only(std::uint64_t daemon);
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& states() const noexcept {
     return states_;
@@ -163,26 +163,27 @@ class Zones {
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
 };
 
-// CLOCK_REALTIME, as stamps are.
+// CLOCK_REALTIME, the clock of stamps.
 [[nodiscard]] std::int64_t now_ns() noexcept;
 
-// Sends joint states of robots that the cell names. `source`: 1 to 32 bytes, for no other writer.
+// Sends joint states of robots that the cell names. `source` has 1 to 32 bytes and belongs to no
+// other writer.
 class JointWriter {
  public:
-  // `names`: as in the URDF, with the prefix that the cell gives. Throws std::invalid_argument when
-  // the source's name does not fit, as PoseWriter does.
+  // `names` are those of the URDF, with the prefix that the cell gives. Throws
+  // std::invalid_argument when the name of the source does not fit, as PoseWriter does.
   JointWriter(Connection& connection, std::string_view source,
               const std::vector<std::string>& names);
   ~JointWriter();
   JointWriter(const JointWriter&) = delete;
   JointWriter& operator=(const JointWriter&) = delete;
 
-  // Positions (rad or m) in the order of the names, and velocities (per second) or none, as they
-  // were at `stamp_ns`. False: DDS did not take them. Throws std::invalid_argument when there are
-  // more or fewer than names.
+  // Sends positions (rad or m) in the order of the names, with velocities (per second) or none,
+  // that held at `stamp_ns`. Returns false when DDS did not take them. Throws std::invalid_argument
+  // when there are more or fewer than names.
   bool write(std::span<const double> positions, std::span<const double> velocities = {},
              std::int64_t stamp_ns = now_ns());
-  // Whether somebody listens.
+  // True when there is a reader.
   [[nodiscard]] bool is_heard() const;
 
  private:
@@ -190,7 +191,7 @@ class JointWriter {
   Sample<clearance_msg_JointStates> message_;
 };
 
-// Sends poses of objects: all that one source knows at an instant.
+// Sends poses of objects: all poses that one source knows at an instant.
 class PoseWriter {
  public:
   PoseWriter(Connection& connection, std::string_view source);
@@ -198,8 +199,8 @@ class PoseWriter {
   PoseWriter(const PoseWriter&) = delete;
   PoseWriter& operator=(const PoseWriter&) = delete;
 
-  // `scene_revision`: of the catalogue that the objects' ids are from; 0 is not checked. False: DDS
-  // did not take them, or there are more than clearance_msg_kMaxPoses.
+  // `scene_revision` is that of the catalogue with the objects' ids; 0 is not checked. Returns
+  // false when DDS did not take the poses, or when there are more than clearance_msg_kMaxPoses.
   bool write(std::span<const clearance_msg_ObjectPose> poses, std::uint64_t scene_revision);
   [[nodiscard]] bool is_heard() const;
 

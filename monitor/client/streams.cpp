@@ -1,4 +1,5 @@
-// What the daemon says: streams and latched values, each taken into a second sample and swapped.
+// The daemon's streams and latched values. Each is taken into a second sample, and the two are
+// swapped.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ bool take_one(dds_entity_t reader, T& sample) {
   return false;
 }
 
-// Leaves `latest` as it is when there is nothing.
+// Leaves `latest` unchanged when no sample waits.
 template <class T>
 bool take_newer(dds_entity_t reader, Sample<T>& latest, Sample<T>& scratch) {
   if (!take_one(reader, *scratch)) return false;
@@ -96,7 +97,7 @@ bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
   return true;
 }
 
-// What is passed over counts as having come.
+// Skipped messages count as received.
 template <class Message>
 bool Stream<Message>::newest(std::chrono::nanoseconds timeout) {
   if (!next(timeout)) return false;

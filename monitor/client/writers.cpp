@@ -1,5 +1,5 @@
-// What a robot and its trackers say. A message and its names are made once; a write fills in
-// numbers.
+// The messages of a robot and its trackers. A message and its names are made once; a write sets the
+// numbers only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ PoseWriter::PoseWriter(Connection& connection, std::string_view source) {
 
 PoseWriter::~PoseWriter() { dds_delete(writer_); }
 
-// Written from where they stand: Cyclone only reads them.
+// Cyclone only reads the caller's poses, so they are not copied.
 bool PoseWriter::write(std::span<const clearance_msg_ObjectPose> poses,
                        std::uint64_t scene_revision) {
   if (poses.size() > clearance_msg_kMaxPoses) return false;

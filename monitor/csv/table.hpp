@@ -30,8 +30,8 @@ class CsvTable {
   // "FILE:LINE: what", for what a caller finds wrong with the row just read.
   [[nodiscard]] std::string located(const std::string& what) const;
 
-  // Of the row just read. Numbers are finite; times whole nanoseconds from 0 that do not go back
-  // from row to row. False after an error.
+  // Cells of the row just read. Numbers are finite; times whole nanoseconds from 0 that do not go
+  // back from row to row. False after an error.
   [[nodiscard]] std::string_view text(std::size_t column) const { return fields_[place_[column]]; }
   [[nodiscard]] bool number(std::size_t column, double& value);
   [[nodiscard]] bool time_ns(std::size_t column, std::int64_t& value);

@@ -3,10 +3,9 @@
 // threads that inherit it are created.
 #include "monitor/daemon/daemon.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
+#include "monitor/app/log_lines.hpp"
 #include "monitor/frames/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
@@ -18,31 +17,22 @@ namespace {
 constexpr std::size_t kQueuedReports = 64;
 // Batches of full size that one tick takes in; more wait for the next tick.
 constexpr std::size_t kBatchesATick = 64;
-// How late the end after --ticks may be noticed.
+// The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
 
-// The sentence of a Refusal says how to get what was refused.
+// The text of a Refusal says how to get what was refused.
 void log_refusal(const Refusal& refusal) {
-  if (refusal) spdlog::warn("{}", *refusal);
+  if (refusal) log_line(lines::kSystemRefuses, *refusal);
 }
 
-// Cyclone's threads and ours inherit the scheduling of the thread that makes them: this comes
-// before any.
+// Cyclone's threads and ours inherit the scheduling of the thread that makes them, so this runs
+// first.
 DdsOptions prepare_threads(const DaemonOptions& options) {
   use_precise_timers();
   if (options.fifo_priority > 0) {
     log_refusal(use_fifo_scheduling(std::max(1, options.fifo_priority - 1)));
   }
   return options.dds;
-}
-
-// The tick waits for its workers, so they run with its priority; free to go to any processor.
-MonitorOptions monitor_options(const DaemonOptions& options) {
-  const auto start = [priority = options.fifo_priority] {
-    name_thread("worker");
-    if (priority > 0) log_refusal(use_fifo_scheduling(priority));
-  };
-  return {.workers = options.workers, .on_worker_start = start};
 }
 
 std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions& options,
@@ -62,8 +52,7 @@ std::unique_ptr<RosWriter> open_ros(const Cell& cell, Participant& participant,
 void warn_of_partition(const Cell& cell, const DdsOptions& options) {
   const bool wants_ros = writes_ros(cell) || TrackedFrames(cell).any();
   if (options.partition.empty() || !wants_ros) return;
-  spdlog::warn("in partition {} neither tf nor what is written for ROS 2 reaches a node of ROS 2",
-               options.partition);
+  log_line(lines::kPartitionWithoutRos, options.partition);
 }
 
 }  // namespace
@@ -82,8 +71,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
       .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
-                                      PoseReader::joints_a_batch(cell.scene)),
-      .monitor = monitor_options(options)};
+                                      PoseReader::joints_a_batch(cell.scene))};
   std::vector<ReportSink*> sinks{&publish_queue_};
   if (recording_) sinks.push_back(&recording_->sink());
   if (ros_) sinks.push_back(ros_.get());
@@ -94,9 +82,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
 // Afterwards the queues are emptied, so that the last report is published and recorded.
 void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
-  spdlog::info("cell '{}' (revision {:016x}) at {} Hz on {}", scene_.name, scene_.revision,
-               scene_.rate_hz, participant_.where());
-  spdlog::info("{}", participant_.how_to_reach());
+  log_line(lines::kStarted, scene_.name, scene_.revision, scene_.rate_hz, participant_.where());
+  log_line(lines::kHowToReach, participant_.how_to_reach());
   warn_of_partition(cell_, options_.dds);
 
   std::atomic<bool> done{false};
@@ -114,7 +101,7 @@ void Daemon::run(StopSignal& signal) {
   reports_.finish();
   if (ros_) ros_->finish();
   if (recording_) recording_->finish();
-  spdlog::info("stopped after {} ticks", loop_->statistics().cycle);
+  log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
 }
 
 // A refusal (no privilege) is logged and the daemon runs without it.

@@ -1,5 +1,5 @@
-// The daemon as one object: the tick loop in a thread of its own, DDS on either side of it, and a
-// recording if asked for.
+// The daemon as one object: the tick loop in a thread of its own, the DDS ports around it, and an
+// optional recording.
 #pragma once
 
 #include <atomic>
@@ -24,11 +24,10 @@ namespace clearance {
 struct DaemonOptions {
   DdsOptions dds;
   std::uint64_t max_ticks = 0;  // 0: until a signal comes
-  int fifo_priority = 0;  // of the tick thread; the threads around it get one less; 0: ordinary
+  int fifo_priority = 0;        // of the tick thread; the other threads get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
-  std::optional<int> cpu;  // that the tick thread is pinned to
-  unsigned workers = 1;    // threads that evaluate pairs, the tick thread included; same scheduling
+  std::optional<int> cpu;  // processor that the tick thread is pinned to
 };
 
 // The order of the members matters: ports and queues outlive the loop that uses them.
@@ -40,18 +39,18 @@ class Daemon {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Ticks until a signal comes, `max_ticks` are done, or another daemon turns out to have published
-  // this cell before; then everything that was queued is written.
+  // Ticks until a signal comes, `max_ticks` are done, or an older daemon of this cell is found.
+  // Then it writes everything that is queued.
   void run(StopSignal& signal);
 
-  // Ended, or about to, because another daemon publishes this cell.
+  // True when the daemon ends because an older one publishes this cell.
   [[nodiscard]] bool gave_way() const noexcept { return reports_.gives_way(); }
-  // After run(): what happened, for a person.
+  // After run(): a summary for a person.
   [[nodiscard]] std::string summary() const;
-  // After run(): nothing was to be recorded, or all of it is in the file.
+  // After run(): true when nothing was to be recorded, or when the file holds all of it.
   [[nodiscard]] bool recording_complete() const noexcept;
-  // After run(): the disk took nothing any more, so that the thread that records waits for it
-  // still. Then the program can only be ended without the end of this object.
+  // After run(): true when the recording thread still waits for the disk. The program must then end
+  // without destroying this object.
   [[nodiscard]] bool recording_hangs() const noexcept;
 
  private:

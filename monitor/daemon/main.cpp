@@ -7,11 +7,10 @@
 
 #include <fmt/format.h>
 
-#include <spdlog/spdlog.h>
-
 #include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
+#include "monitor/app/log_lines.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
@@ -31,8 +30,8 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined, or another daemon publishes this cell already
-  5  the recording could not be begun (no folder, no permission, no regular file), or is incomplete at the end
-     (deleted, moved or changed under way, a disk that is full or too slow). Nothing else depends on it: ticks go on
+  5  the recording could not be begun (no folder, no permission, no regular file), or it is incomplete at the end
+     (deleted, moved or changed by another program, or a disk that is full or too slow); the ticks continue
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
@@ -44,10 +43,10 @@ struct Arguments {
   bool check = false;
   std::string log_level = "info";
   DdsArguments dds;
-  bool record_over = false;  // replace files that exist already
+  bool record_over = false;  // replace existing files
   RecordingArguments recording;
   bool gradients = false;
-  std::vector<std::string> ros;  // outputs for ROS 2 beside the cell's
+  std::vector<std::string> ros;  // ROS 2 outputs in addition to the cell's
   DaemonOptions daemon;
 };
 
@@ -60,7 +59,7 @@ std::string is_ros_output(const std::string& text) {
   return fmt::format("found '{}'; expected {}", text, one_of(keys));
 }
 
-// A topic that the cell names stays.
+// A topic that the cell names is kept.
 void add_ros_outputs(const std::vector<std::string>& asked, RosOutputs& outputs) {
   for (const RosOutput& output : kRosOutputs) {
     const bool is_asked = std::ranges::find(asked, output.key) != asked.end() ||
@@ -75,16 +74,16 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
   arguments.dds.add_to(app);
   app.add_option("--record", arguments.daemon.record_file,
-                 "Record inputs and reports to this MCAP file, or, when it exists, to NAME-2.mcap "
-                 "and so on");
+                 "Record inputs and reports to this MCAP file; if it exists, to NAME-2.mcap and so "
+                 "on");
   add_force(app, arguments.record_over);
   arguments.recording.add_to(app, "--record-");
   app.add_flag("--gradients", arguments.gradients,
                "Publish how the distances of published pairs change with joint positions, as "
                "'gradients: true' in the cell does");
   app.add_option("--ros2", arguments.ros,
-                 "Write for ROS 2, beside what the cell asks for, on the standard topic: markers, "
-                 "diagnostics, minimum_distance, speed_scaling, or all; repeatable")
+                 "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
+                 "minimum_distance, speed_scaling, or all; repeatable")
       ->allow_extra_args(false)
       ->check(is_ros_output);
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
@@ -94,15 +93,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 99));
   app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
       ->check(whole_number(0, 1023));
-  app.add_option(
-         "--workers", arguments.daemon.workers,
-         "Threads that evaluate pairs, the tick thread included; results do not depend on it")
-      ->check(CLI::Range(1, 64));
   add_log_level(app, arguments.log_level);
   app.footer(kFooter);
 }
 
-// --check: the same reader as for a run, so what passes here starts.
+// --check reads the cell like a run does: a cell that passes here starts.
 int check_only(const CellArguments& cell) {
   const auto read = cell_or_errors(cell.read());
   if (!read) return kBadCell;
@@ -110,7 +105,7 @@ int check_only(const CellArguments& cell) {
   return kOk;
 }
 
-// The summary goes to stdout at the end, the log to stderr all the time.
+// The summary goes to stdout at the end; the log goes to stderr during the run.
 int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   arguments.daemon.dds = arguments.dds.resolve(cell);
   route_dds_log();
@@ -125,7 +120,7 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   return daemon.recording_complete() ? kOk : kIncomplete;
 }
 
-// The URDF from ROS 2 becomes a file. False: stopped before it came.
+// Keeps the URDF from ROS 2 as a file. Returns false when it was stopped before the URDF came.
 bool take_robot_description(Arguments& arguments, StopSignal& signal) {
   route_dds_log();
   Participant participant(arguments.dds.resolve());
@@ -133,13 +128,12 @@ bool take_robot_description(Arguments& arguments, StopSignal& signal) {
       wait_for_robot_description(participant, arguments.cell.description_topic, signal);
   if (!urdf) return false;
   arguments.cell.robot.urdf = keep_robot_description(*urdf);
-  spdlog::info("the robot's description from {} is kept as {}", arguments.cell.description_topic,
-               arguments.cell.robot.urdf.string());
+  log_line(lines::kDescriptionKept, arguments.cell.description_topic,
+           arguments.cell.robot.urdf.string());
   return true;
 }
 
-// Everything that can be refused is refused before DDS is joined, but for a description that DDS
-// has.
+// All mistakes are refused before the program joins DDS, unless DDS has the robot's description.
 int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app(
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
@@ -170,15 +164,15 @@ int run(int argc, char** argv, StopSignal& signal) {
       free_name("clearanced", arguments.daemon.record_file, arguments.record_over);
   if (!record_file) return kIncomplete;
   if (*record_file != arguments.daemon.record_file) {
-    spdlog::warn("{} exists: recording to {}", arguments.daemon.record_file.string(),
-                 record_file->string());
+    log_line(lines::kRecordingRenamed, arguments.daemon.record_file.string(),
+             record_file->string());
     arguments.daemon.record_file = *record_file;
   }
   arguments.daemon.recording = arguments.recording.options(arguments.record_over);
   return run_daemon(*cell, arguments, signal);
 }
 
-// As kFooter says.
+// The exit codes of kFooter.
 ExitCode exit_code_of(const std::exception& error) {
   return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
 }

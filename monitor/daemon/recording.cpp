@@ -1,29 +1,30 @@
 // A thread empties a queue of batches and reports into the recorder. The queue is bounded: when a
-// slow disk has filled it, what no longer fits is counted as missing.
+// slow disk has filled it, further messages are counted as missing.
 #include "monitor/daemon/recording.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 
+#include "monitor/app/log_lines.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
 namespace {
 
-// How much a disk may stall: a second at 1 kHz for a cell of usual size, less for a huge one.
+// The queue covers a stalled disk for a second at 1 kHz with a cell of usual size, and less with a
+// huge one.
 constexpr std::size_t kMostSlots = 1024, kFewestSlots = 64;
 constexpr std::size_t kQueueBytes = std::size_t{64} << 20;
 
-// How long the disk may take nothing at the end.
+// The time for which the disk may take nothing at the end.
 constexpr int kDiskPatienceMs = 2000;
-// Between two lines of the log about a slow disk.
+// The time between two log lines about a slow disk.
 constexpr std::int64_t kLogEveryNs = 1'000'000'000;
 
-// As many slots as fit into the memory that a queue may use.
+// The number of slots that fit into the memory for a queue.
 std::size_t slots(std::size_t bytes_a_slot) {
   return std::clamp(kQueueBytes / std::max<std::size_t>(bytes_a_slot, 1), kFewestSlots, kMostSlots);
 }
@@ -41,7 +42,7 @@ ReportQueueOptions queue_options(const Scene& scene) {
 
 }  // namespace
 
-// The file and its catalogue are written before the first tick, so that errors come at the start.
+// The file and its catalogue are written before the first tick, so that errors show at the start.
 Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
                      const Cell& cell, const PoseReader& poses, RecordingHealth& health)
     : scene_(cell.scene),
@@ -52,9 +53,7 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       recorder_(file, cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   if (!recorder_.without_files().empty()) {
-    spdlog::warn(
-        "the files that the cell names are not in the recording: {}. A replay needs --cell",
-        recorder_.without_files());
+    log_line(lines::kRecordingWithoutFiles, recorder_.without_files());
   }
   health_.begin(file_);
   thread_ = std::thread([this] { run(); });
@@ -70,7 +69,7 @@ void Recording::finish() {
   hangs_ = !ended_;
   if (hangs_) {
     thread_.detach();
-    spdlog::error("recording: the disk takes nothing, {} is left unfinished", file_);
+    log_line(lines::kDiskHangs, file_);
   } else {
     thread_.join();
   }
@@ -78,7 +77,7 @@ void Recording::finish() {
   complete_ = !hangs_ && !health_.failed() && missing() == 0;
 }
 
-// Until the thread has ended, or has handed nothing to the disk for as long as that may take.
+// Waits until the thread has ended, or has given nothing to the disk for kDiskPatienceMs.
 void Recording::wait_for_the_disk() const {
   std::uint64_t steps = steps_;
   for (int waited_ms = 0; !ended_ && waited_ms < kDiskPatienceMs; ++waited_ms) {
@@ -91,11 +90,11 @@ void Recording::wait_for_the_disk() const {
 // Empties the queue until it is closed.
 void Recording::run() {
   name_thread("record");
-  // A file can wait: no priority over the rest of the machine.
-  if (const Refusal refusal = use_fifo_scheduling(0)) spdlog::warn("{}", *refusal);
+  // A file can wait: this thread needs no priority.
+  if (const Refusal refusal = use_fifo_scheduling(0)) log_line(lines::kSystemRefuses, *refusal);
   for (bool closed = false; !closed;) {
     queue_.wait();
-    closed = queue_.closed();  // asked before the last look, so that nothing is left behind
+    closed = queue_.closed();  // read before the queue, so that nothing remains in it
     record_all();
   }
   recorder_.close();
@@ -103,7 +102,8 @@ void Recording::run() {
   ended_ = true;
 }
 
-// What a report used is in the queue before the report is; what later ones used may be as well.
+// The batches that a report used are in the queue before it; batches for later reports may be there
+// as well.
 void Recording::record_all() {
   while (const QueuedReport* queued = queue_.reports().front()) {
     while (const PoseBatch* batch = queue_.inputs().front()) {
@@ -127,11 +127,11 @@ void Recording::record_all() {
 void Recording::tell_of_new_files() {
   if (recorder_.files() == files_) return;
   files_ = recorder_.files();
-  spdlog::info("recording goes on in {}", recorder_.file().string());
+  log_line(lines::kRecordingContinues, recorder_.file().string());
 }
 
-// After every message that the recorder was given: `messages` of them, reports or batches, are
-// missing if it has failed.
+// Called after every `messages` reports or batches that the recorder took: after its failure they
+// are missing.
 void Recording::count(std::uint64_t messages) {
   ++steps_;
   if (recorder_.ok()) return;
@@ -139,29 +139,28 @@ void Recording::count(std::uint64_t messages) {
   unwritten_ += messages;
 }
 
-// What found the queue full, and what came after the file had failed.
+// Messages that found the queue full, and messages after the file had failed.
 std::uint64_t Recording::missing() const noexcept {
   return queue_.dropped_reports() + queue_.dropped_inputs() + unwritten_;
 }
 
-// A failure once; a slow disk once a second, for as long as it loses something.
+// Logs a failure once, and a slow disk once a second while messages are lost.
 void Recording::watch() {
   health_.set_missing(missing());
   if (health_.failed()) {
-    if (!std::exchange(failure_logged_, true))
-      spdlog::error("recording stopped: {}", health_.state());
+    if (!std::exchange(failure_logged_, true)) log_line(lines::kRecordingStopped, health_.state());
     return;
   }
   const std::uint64_t dropped = queue_.dropped_reports() + queue_.dropped_inputs();
   const std::int64_t now_ns = SystemClock().monotonic_ns();
   if (dropped == dropped_logged_ || now_ns - logged_ns_ < kLogEveryNs) return;
-  spdlog::error("recording: the disk is too slow, {} reports and {} batches are missing so far",
-                queue_.dropped_reports(), queue_.dropped_inputs());
+  log_line(lines::kDiskTooSlow, counted(queue_.dropped_reports(), "report"),
+           counted(queue_.dropped_inputs(), "batch", "batches"));
   dropped_logged_ = dropped;
   logged_ns_ = now_ns;
 }
 
-// On stdout, at the end of a run. Of a thread that still waits nothing more can be known.
+// Goes to stdout at the end of a run. A thread that still waits reveals nothing more.
 std::string Recording::summary() const {
   if (complete_) {
     const std::string last =

@@ -1,4 +1,4 @@
-// `--record`: a thread of its own that hands the recorder what the ticks used and reported.
+// `--record`: a thread of its own gives the recorder the inputs and reports of the ticks.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,13 @@ class RecordError : public std::runtime_error {
 };
 
 // Batches and reports go into the file in the order in which the ticks used and made them, so that
-// an offline replay gives the same reports. A disk that is slow, full or gone never holds up a tick
-// or a report: what finds the queue full or the file failed is missing, is counted, is told in the
-// log and in the health topic, and makes complete() false.
+// an offline replay gives the same reports. A slow, full or missing disk never delays a tick or a
+// report. Messages that find the queue full or the file failed are missing: they are counted, log
+// and health name them, and complete() is false.
 class Recording {
  public:
-  // Throws RecordError when the file cannot be made, is no regular file, or is there already and
-  // not to be written over.
+  // Throws RecordError when the file cannot be made, is no regular file, or exists and may not be
+  // overwritten.
   Recording(const std::filesystem::path& file, const RecordingOptions& options, const Cell& cell,
             const PoseReader& poses, RecordingHealth& health);
   ~Recording();
@@ -35,15 +35,16 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] ReportSink& sink() noexcept { return queue_; }
-  // To be called now and then by a thread that may wait for nothing: tells the log and the health
-  // topic what went wrong since the last call.
+  // Updates log and health with the faults since the last call. It is called regularly, by a thread
+  // that may not wait.
   void watch();
-  // After the last tick: writes what is queued and closes the file. Waits as long as the disk takes
-  // something at least every two seconds.
+  // After the last tick: writes the queue and closes the file. Waits while the disk takes something
+  // at least every two seconds.
   void finish();
   // After finish().
   [[nodiscard]] bool complete() const noexcept { return complete_; }
-  // After finish(): the thread still waits for the disk. This object must then be left as it is.
+  // After finish(): true when the thread still waits for the disk. This object must then not be
+  // destroyed.
   [[nodiscard]] bool hangs() const noexcept { return hangs_; }
   // After finish(): one line for a person.
   [[nodiscard]] std::string summary() const;
@@ -57,18 +58,18 @@ class Recording {
   [[nodiscard]] std::uint64_t missing() const noexcept;
 
   const Scene& scene_;
-  std::string file_;         // the first
-  std::uint64_t files_ = 1;  // that the log knows of
+  std::string file_;         // the first one
+  std::uint64_t files_ = 1;  // files that the log has named
   const PoseReader& poses_;
   RecordingHealth& health_;
   ReportQueue queue_;
   Recorder recorder_;
-  std::atomic<std::uint64_t> steps_{0};      // messages handed to the recorder
-  std::atomic<std::uint64_t> unwritten_{0};  // of them reports and batches that came after an error
-  std::atomic<bool> ended_{false};           // the thread's work
+  std::atomic<std::uint64_t> steps_{0};      // messages given to the recorder
+  std::atomic<std::uint64_t> unwritten_{0};  // reports and batches after an error
+  std::atomic<bool> ended_{false};           // the thread has finished
   bool failure_logged_ = false;
   std::uint64_t dropped_logged_ = 0;
-  std::int64_t logged_ns_ = 0;  // when a slow disk was last logged
+  std::int64_t logged_ns_ = 0;  // time of the last log line about a slow disk
   bool complete_ = false, hangs_ = false;
   std::thread thread_;
 };

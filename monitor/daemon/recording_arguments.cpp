@@ -14,7 +14,7 @@
 namespace clearance {
 namespace {
 
-// Without the catalogue nothing else could be read.
+// The catalogue stays: no recording can be read without it.
 bool can_be_left_out(const Topic& topic) { return topic.kind != TopicKind::kCatalogue; }
 
 std::string is_topic(const std::string& text) {
@@ -37,24 +37,23 @@ void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
       ->allow_extra_args(false)
       ->group(kRecording);
   app.add_option(prefix + "every", pairs_every,
-                 "Keep every N-th report as it is, and those between without their pairs: a replay "
-                 "still knows every tick")
+                 "Keep every N-th report whole, and the others without their pairs: a replay still "
+                 "knows every tick")
       ->check(whole_number(1, 1'000'000'000))
       ->capture_default_str()
       ->group(kRecording);
   app.add_option(prefix + "roll-mb", roll_mb,
-                 "Go on in NAME-2.mcap and so on when a file has so many MB; 0: never")
+                 "Continue in NAME-2.mcap and so on when a file has this size, MB; 0: never")
       ->check(number_from_zero())
       ->capture_default_str()
       ->group(kRecording);
-  app.add_option(prefix + "roll-s", roll_s, "The same when it spans so many seconds; 0: never")
+  app.add_option(prefix + "roll-s", roll_s, "The same when a file spans this time, s; 0: never")
       ->check(number_from_zero())
       ->capture_default_str()
       ->group(kRecording);
   app.add_option(prefix + "attach-mb", attach_mb,
-                 "Keep the files that the cell names (meshes, URDF, SRDF) when all of them, "
-                 "compressed, are no more than so many MB; 0: never. With them a replay needs no "
-                 "cell")
+                 "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size "
+                 "is at most this, MB; 0: never. With them a replay needs no cell")
       ->check(number_from_zero())
       ->capture_default_str()
       ->group(kRecording);

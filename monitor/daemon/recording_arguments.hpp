@@ -1,4 +1,4 @@
-// The command line of programs that record: what a recording holds, and in how many files.
+// The command line of programs that record: the topics in a recording and its number of files.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,10 +16,10 @@ struct RecordingArguments {
   std::uint64_t pairs_every = 1;
   double roll_mb = 0.0, roll_s = 0.0, attach_mb = 64.0;
 
-  // `prefix`: what the options' names begin with, "--record-" or "--".
+  // `prefix` begins the names of the options: "--record-" or "--".
   void add_to(CLI::App& app, const std::string& prefix);
 
-  // All but `overwrite`.
+  // The options except `overwrite`.
   [[nodiscard]] RecordingOptions options(bool overwrite) const;
 };
 

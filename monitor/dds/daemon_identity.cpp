@@ -20,7 +20,7 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
-// What stands behind "key=", up to the next blank; empty: there is no such key.
+// The text after "key=", up to the next blank; empty when there is no such key.
 std::string_view value_of(std::string_view text, std::string_view key) {
   const std::size_t at = text.find(fmt::format(" {}=", key));
   if (at == std::string_view::npos) return {};

@@ -1,5 +1,5 @@
-// Who a daemon is, so that clients and other daemons can tell two of them apart, and a run from the
-// one before it.
+// The identity of a daemon's run: clients and other daemons distinguish two daemons, and two runs,
+// by it.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,16 @@ struct DaemonIdentity {
   [[nodiscard]] std::string described() const;
 };
 
-// Of this process, made now.
+// Makes a new identity of this process.
 [[nodiscard]] DaemonIdentity make_identity();
 
-// "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc", and back;
-// nothing when the text is of another program.
+// Writes "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc", and reads
+// it; nothing when the text is another program's.
 [[nodiscard]] std::string to_user_data(const DaemonIdentity& identity);
 [[nodiscard]] std::optional<DaemonIdentity> from_user_data(std::string_view text);
 
-// Of two daemons of one cell, whether the first has to give way: it started later. The ids decide
-// between equal times, so both sides always come to the same answer.
+// True when `one` has to give way to the other daemon of the cell, since it started later. The ids
+// decide between equal times, so both daemons come to the same answer.
 [[nodiscard]] bool gives_way(const DaemonIdentity& one, const DaemonIdentity& other) noexcept;
 
 }  // namespace clearance

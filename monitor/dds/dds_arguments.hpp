@@ -1,5 +1,4 @@
-// The command line of programs that use DDS: where on DDS they are, and their exit code when it
-// fails.
+// The command line of programs that use DDS: their place on DDS, and their exit code when it fails.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,15 +16,14 @@
 
 namespace clearance {
 
-// The four options that every DDS program has. An option that is not given leaves the choice to the
-// cell.
+// The four options of every DDS program. Without an option, the cell decides.
 struct DdsArguments {
   std::optional<std::uint32_t> domain;   // not given: the cell's
   std::optional<std::string> partition;  // not given: the cell's
   std::optional<std::string> interface;  // not given: the cell's
   std::vector<std::string> peers;
 
-  // `has_cell`: the program takes a cell, which says what is not given.
+  // `has_cell`: the program takes a cell, which decides without an option.
   void add_to(CLI::App& app, bool has_cell = true) {
     app.add_option("--domain", domain,
                    has_cell ? "DDS domain; otherwise the cell's, or 0" : "DDS domain; otherwise 0")
@@ -54,7 +52,7 @@ struct DdsArguments {
         });
   }
 
-  // The options with the command line before the cell, or without one.
+  // The options: the command line first, then the cell if there is one.
   [[nodiscard]] DdsOptions resolve(const Cell& cell) const {
     return {.domain = domain.value_or(cell.domain),
             .partition = partition.value_or(cell.partition),
@@ -64,7 +62,7 @@ struct DdsArguments {
   [[nodiscard]] DdsOptions resolve() const { return resolve(Cell{}); }
 };
 
-// The exit code of a program that uses DDS and was ended by this exception.
+// The exit code of a DDS program that ended with this exception.
 [[nodiscard]] inline ExitCode dds_exit_code(const std::exception& error) {
   return dynamic_cast<const DdsError*>(&error) != nullptr ? kDdsFailed : kFailed;
 }

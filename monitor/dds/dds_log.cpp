@@ -3,23 +3,24 @@
 
 #include <dds/dds.h>
 #include <dds/ddsrt/log.h>
-#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <cstdint>
 #include <string_view>
 
+#include "monitor/app/log_lines.hpp"
+
 namespace clearance {
 namespace {
 
 constexpr int kLinesASecond = 5;
-// What Cyclone's receiving thread says of a sample that it cannot decode.
+// The text of Cyclone's receiving thread about a sample that it cannot decode.
 constexpr std::string_view kUndecodable = ": deserialization ";
 
 std::atomic<std::uint64_t> undecodable{0};
 
-// Called from any of Cyclone's threads. A link that is down makes it complain at every write, so
-// lines beyond the rate are counted and left out.
+// Called by any of Cyclone's threads. When a link is down, Cyclone complains at every write; lines
+// beyond the rate are counted and left out.
 void log_dds(void*, const dds_log_data_t* message) {
   std::string_view text(message->message, message->size);
   if (text.find(kUndecodable) != std::string_view::npos) ++undecodable;
@@ -29,7 +30,7 @@ void log_dds(void*, const dds_log_data_t* message) {
   if (second.exchange(now) != now) {
     lines = 0;
     if (const int count = left_out.exchange(0))
-      spdlog::warn("dds: {} more messages left out", count);
+      log_line(lines::kDdsLeftOut, counted(static_cast<std::uint64_t>(count), "more message"));
   }
   if (lines.fetch_add(1) >= kLinesASecond) {
     ++left_out;
@@ -37,7 +38,7 @@ void log_dds(void*, const dds_log_data_t* message) {
   }
   while (!text.empty() && text.back() == '\n') text.remove_suffix(1);
   const bool severe = (message->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
-  spdlog::log(severe ? spdlog::level::err : spdlog::level::warn, "dds: {}", text);
+  log_line(severe ? lines::kDdsError : lines::kDdsWarning, text);
 }
 
 }  // namespace

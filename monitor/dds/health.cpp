@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// Units of the health topic are us.
+// The health topic uses us.
 constexpr double kUsPerNs = 1e-3;
 
 // Times of the loop, as microseconds.
@@ -41,11 +41,11 @@ void add_rejection(clearance_msg_Health& out, const std::string& object, const c
   entry.count = count;
 }
 
-// As in Reject, spelt for people.
+// The causes of Reject, spelt for people.
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
 
-// By source, by object and, for ids that no object has, by cause alone: what the totals hold beyond
-// the objects' counts.
+// Refusals by source, by object and, for unknown ids, by cause alone: the totals minus the objects'
+// counts.
 void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
                      clearance_msg_Health& out) {
   const std::vector<RefusedSource> refused = poses.refused_sources();
@@ -78,12 +78,12 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
   }
 }
 
-// Of a source by its number; nothing for none. The sample begins as zeros.
+// The name of a source by its number; empty for none. The sample begins as zeros.
 void copy_name(const LoopStatistics& statistics, std::uint32_t source, char* out) {
   if (source < kMaxSources) statistics.sources[source].view().copy(out, kMaxSourceLength);
 }
 
-// Ages of the moving objects; fixed ones have none.
+// The ages of moving objects; fixed ones have none.
 void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
   reserve_sequence(out.inputs,
                    std::min<std::size_t>(scene.objects.size(), clearance_msg_kMaxObjects));
@@ -119,7 +119,7 @@ void fill_joints(const Scene& scene, const LoopStatistics& statistics, clearance
   }
 }
 
-// One entry a source, and the sums of these and of those that were heard before.
+// One entry per source, and sums that include the sources of earlier times.
 void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& departed,
                   clearance_msg_Health& out) {
   out.batches = departed.batches;
@@ -140,7 +140,7 @@ void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& de
 
 }  // namespace
 
-// A new sample each time: its strings differ in length from second to second.
+// The sample is new each time, since its strings differ in length from second to second.
 Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
                                          const PoseReader& poses, std::uint64_t dropped_reports,
                                          const RecordingHealth& recording) {

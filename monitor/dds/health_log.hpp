@@ -1,4 +1,4 @@
-// What a person should know of each health sample: what has changed since the one before.
+// Logs each health sample's news for a person: the changes since the previous sample.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@
 
 namespace clearance {
 
-// Tells the log which rejections, losses and late inputs are new since the health before: a few
-// lines a second at most.
+// Logs new rejections, losses and late inputs: a few lines a second at most.
 class HealthLog {
  public:
   explicit HealthLog(const Scene& scene);
-  // To be called with every sample, in order. `senders_of_joints`: PoseReader's, when it is needed.
+  // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
+  // that is needed.
   void update(const clearance_msg_Health& health,
               const std::function<std::string()>& senders_of_joints);
 

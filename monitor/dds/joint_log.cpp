@@ -1,13 +1,13 @@
 #include "monitor/dds/joint_log.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
 #include "config/text/sentences.hpp"
+#include "monitor/app/log_lines.hpp"
 
 namespace clearance {
 namespace {
@@ -45,7 +45,7 @@ void JointLog::update_robot(std::uint32_t robot,
                       : joint.stale        ? State::kLate
                                            : State::kFine;
     State& before = states_[joint.variable];
-    // Of a base, RosTransforms says what is missing.
+    // RosTransforms tells about missing bases.
     if (now == State::kUnseen && !scene_.robots[robot].is_of_base(joint.variable))
       unseen.emplace_back(joint.name);
     if (now != before) {
@@ -63,36 +63,30 @@ void JointLog::update_robot(std::uint32_t robot,
     log_change(name, change.first, change.second, joined.first, joined.second);
   }
   for (const auto& [sources, names] : rivals) {
-    spdlog::warn(
-        "joints of {} are sent by '{}' and by '{}': positions of the latter are not used ({})",
-        name, sources.first, sources.second, listed(names, kNamesALine));
+    log_line(lines::kTwoJointSources, name, sources.first, sources.second,
+             listed(names, kNamesALine));
   }
   if (unseen.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
   silence_said_[robot] = true;
-  spdlog::warn("nothing that could be used has come of {} joints of {} ({}): {}", unseen.size(),
-               name, listed(unseen, kNamesALine), senders());
+  log_line(lines::kJointsSilent, counted(unseen.size(), "joint"), name, listed(unseen, kNamesALine),
+           senders());
 }
 
 void JointLog::log_change(const std::string& robot, State before, State now, const Names& names,
                           std::int64_t age_ns) const {
+  const std::string joints = counted(names.size(), "joint");
   switch (now) {
     case State::kUnseen:
       return;
     case State::kFine:
-      spdlog::info("{} joints of {} are {}: {}", names.size(), robot,
-                   before == State::kUnseen ? "heard" : "back", listed(names, kNamesALine));
+      log_line(before == State::kUnseen ? lines::kJointsHeard : lines::kJointsBack, joints, robot,
+               listed(names, kNamesALine));
       return;
     case State::kLate:
-      spdlog::warn(
-          "the last positions of {} joints of {} that could be used are {} ms old: what hangs on "
-          "them is stale ({})",
-          names.size(), robot, age_ns / 1'000'000, listed(names, kNamesALine));
+      log_line(lines::kJointsLate, joints, robot, age_ns / 1'000'000, listed(names, kNamesALine));
       return;
     case State::kContradicted:
-      spdlog::warn(
-          "positions of {} joints of {} contradict each other or the limits of the joints: what "
-          "hangs on them is unknown ({})",
-          names.size(), robot, listed(names, kNamesALine));
+      log_line(lines::kJointsContradict, joints, robot, listed(names, kNamesALine));
       return;
   }
 }

@@ -1,5 +1,5 @@
-// What a person should know of the joints of each robot: late, contradicted, sent twice, heard, or
-// not heard at all. One line for all joints of a robot that change together.
+// Logs the news of each robot's joints: late, contradicted, sent twice, heard, or never heard. All
+// joints of a robot that change together share one line.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace clearance {
 
 class JointLog {
  public:
-  // Of joints that nothing has come of, samples (seconds) after which the log says so.
+  // After this number of samples (seconds), the log names the joints that were never heard.
   static constexpr int kSilentSamples = 5;
 
   // The scene must outlive this.
   explicit JointLog(const Scene& scene);
 
-  // To be called with the joints of every health sample, in order. `senders` says who sends joint
-  // states at all.
+  // Called with the joints of every health sample, in order. `senders` names the senders of joint
+  // states.
   void update(const decltype(clearance_msg_Health::joints)& joints,
               const std::function<std::string()>& senders);
 
@@ -36,7 +36,7 @@ class JointLog {
 
   const Scene& scene_;
   std::vector<State> states_;        // by variable
-  std::vector<std::string> others_;  // by variable: who else sends it
+  std::vector<std::string> others_;  // by variable: the other source that sends it
   std::vector<bool> silence_said_;   // by robot
   int samples_ = 0;
 };

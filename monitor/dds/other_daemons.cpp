@@ -1,18 +1,17 @@
-// A reader that ignores this participant's own writers hears all others of the topic. Samples are
-// taken as bytes: only who wrote them matters.
+// The reader ignores this participant's own writers, so it hears all others of the topic. Samples
+// are taken without decoding them: only their writer matters.
 #include "monitor/dds/other_daemons.hpp"
-
-#include <dds/ddsi/ddsi_serdata.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "monitor/app/log_lines.hpp"
+
 namespace clearance {
 namespace {
 
-// Called in a thread of Cyclone's.
+// Cyclone calls this in a thread of its own.
 void note_change(dds_entity_t, const dds_subscription_matched_status_t, void* changed) {
   static_cast<std::atomic<bool>*>(changed)->store(true);
 }
@@ -36,13 +35,12 @@ OtherDaemons::~OtherDaemons() { dds_delete(reader_); }
 
 void OtherDaemons::look() {
   if (changed_.exchange(false)) note_writers();
-  ddsi_serdata* sample = nullptr;
-  dds_sample_info_t info;
-  while (dds_takecdr(reader_, &sample, 1, &info, DDS_ANY_STATE) == 1) {
-    ddsi_serdata_unref(sample);
-    if (!info.valid_data) continue;
-    ++reports_;
-    if (!has_met(info.publication_handle)) meet(info.publication_handle, true);
+  while (take_cdr(reader_, taken_) > 0) {
+    reports_ += taken_.size();
+    for (const CdrSample& sample : taken_) {
+      if (!has_met(sample.writer())) meet(sample.writer(), true);
+    }
+    taken_.clear();
   }
 }
 
@@ -53,7 +51,7 @@ void OtherDaemons::note_writers() {
   });
   if (gone > 0) {
     left_ = true;
-    spdlog::info("another writer of {} has left, {} are there", topic_, met_.size());
+    log_line(lines::kOtherWriterLeft, topic_, met_.size());
   }
   for (const std::uint64_t writer : present) {
     if (!has_met(writer)) meet(writer, false);
@@ -64,8 +62,7 @@ bool OtherDaemons::has_met(dds_instance_handle_t writer) const {
   return std::ranges::find(met_, writer) != met_.end();
 }
 
-// A writer that has left in the meantime is not met, nor is a daemon that was here first, before it
-// is heard.
+// A writer that has left in the meantime is not met. An older daemon is met only when it is heard.
 void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   const WriterFacts facts = writer_facts(reader_, writer);
   if (!facts.present) return;
@@ -75,17 +72,12 @@ void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   met_.push_back(writer);
   ++writers_;
   if (first) {
-    spdlog::error("another daemon, {}, publishes on {} and was here first: this one ends",
-                  other->described(), topic_);
+    log_line(lines::kOtherDaemonFirst, other->described(), topic_);
     give_way_ = true;
   } else if (other) {
-    spdlog::warn(
-        "another daemon, {}, publishes on {} as well; it started later and has to give way",
-        other->described(), topic_);
+    log_line(lines::kOtherDaemonLater, other->described(), topic_);
   } else {
-    spdlog::warn(
-        "a program that is no daemon (writer {}) publishes on {} as well: clients see both",
-        facts.guid, topic_);
+    log_line(lines::kOtherProgram, facts.guid, topic_);
   }
 }
 

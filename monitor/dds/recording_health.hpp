@@ -1,4 +1,4 @@
-// What the health topic says of the daemon's own recording.
+// The state of the daemon's own recording, for the health topic.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,12 +10,12 @@
 
 namespace clearance {
 
-// The thread that records tells, the one that publishes reads; neither waits for the other.
+// The recording thread writes it, the publishing thread reads it; neither waits for the other.
 class RecordingHealth {
  public:
-  // Before any tick.
+  // Called before any tick.
   void begin(const std::string& file) { begun_ = fmt::format("recording {}", file); }
-  // At most once, from one thread.
+  // Called at most once, by one thread.
   void fail(std::string why) {
     failure_ = std::move(why);
     failed_.store(true, std::memory_order_release);
@@ -23,7 +23,7 @@ class RecordingHealth {
   void set_missing(std::uint64_t count) noexcept { missing_ = count; }
 
   [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
-  // Empty: there is no recording. "recording FILE", or why it failed.
+  // "recording FILE", or the failure; empty without a recording.
   [[nodiscard]] const std::string& state() const noexcept { return failed() ? failure_ : begun_; }
   // Reports and batches that are not in the file.
   [[nodiscard]] std::uint64_t missing() const noexcept { return missing_; }

@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/app/log_lines.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
@@ -20,40 +19,43 @@
 namespace clearance {
 namespace {
 
-// A reader with other QoS gets nothing, which nobody would notice without this line.
+// A reader with other QoS gets nothing; only this line tells.
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
                       void*) {
-  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
+  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // another cell's reader
   char topic[128] = "?";
   dds_get_name(dds_get_topic(writer), topic, sizeof topic);
   if (status.last_policy_id == DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID) {
-    spdlog::warn(
-        "a reader of {} was built with another version of its type: it gets nothing. Build it with "
-        "the IDL of this daemon ({})",
-        topic, kBuild);
-    return;
+    log_line(lines::kOlderReader, topic, kBuild);
+  } else {
+    log_line(lines::kIncompatibleReader, topic, status.last_policy_id);
   }
-  spdlog::warn(
-      "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: "
-      "only catalogue, zones and health are latched; idl/README.md has the whole contract",
-      topic, status.last_policy_id);
 }
 
-// "entered at cycle 12 by distance: hand - box, at least 0.043 m clear, 0.041 m since the tick
-// before", or "entered at cycle 12 because poses of hand are late: ...". The bounds of other causes
-// are no figures.
-std::string change_of_zone(const Scene& scene, const ZoneReport& zone, std::uint64_t cycle) {
-  if (!zone.active) return fmt::format("left at cycle {}", cycle);
-  const bool has_bounds = zone.cause == ZoneCause::kNear || zone.cause == ZoneCause::kLate;
-  return fmt::format(
-      "entered at cycle {} {}{}: {}{}", cycle, zone.cause == ZoneCause::kNear ? "" : "because ",
-      cause_text(zone.cause, scene.objects[zone.cause_object].name), pair_name(scene, zone.pair),
-      has_bounds ? fmt::format(", at least {:.3f} m clear, {:.3f} m since the tick before",
-                               zone.clearance, zone.swept_clearance)
-                 : " unknown");
+// Says that a zone was entered, and why, or that it was left. Only near and late ones have bounds.
+void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
+              std::uint64_t cycle) {
+  const std::string& name = scene.zones[index].name;
+  if (!zone.active) return log_line(lines::kZoneLeft, name, cycle);
+  const std::string pair = pair_name(scene, zone.pair);
+  const std::string cause = cause_text(zone.cause, scene.objects[zone.cause_object].name);
+  switch (zone.cause) {
+    case ZoneCause::kLate:
+      return log_line(lines::kZoneLate, name, cycle, cause, pair, zone.clearance,
+                      zone.swept_clearance);
+    case ZoneCause::kUnknown:
+      return log_line(lines::kZoneUnknown, name, cycle, cause, pair);
+    case ZoneCause::kContradicted:
+      return log_line(lines::kZoneContradicted, name, cycle, cause, pair);
+    case ZoneCause::kDiscontinuous:
+      return log_line(lines::kZoneDiscontinuous, name, cycle, cause, pair);
+    default:
+      return log_line(lines::kZoneNear, name, cycle, cause, pair, zone.clearance,
+                      zone.swept_clearance);
+  }
 }
 
-// The name of the topic is the cell's, which the table points to.
+// The table points to the cell's name of the topic.
 dds_entity_t make_writer(Participant& participant, const Topics& topics, TopicKind kind,
                          WriterOptions options = {}) {
   dds_listener_t* listener = dds_create_listener(nullptr);
@@ -70,7 +72,7 @@ std::int64_t lease_ns(double rate_hz) noexcept {
   return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
 }
 
-// The catalogue is latched: clients that come later get it as well.
+// The catalogue is latched: later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording)
     : cell_(cell),
@@ -111,7 +113,7 @@ void ReportWriter::finish() {
   thread_.join();
 }
 
-// Matched readers, as Cyclone counts them.
+// The number of matched readers.
 std::uint32_t ReportWriter::distance_readers() const {
   dds_publication_matched_status_t status{};
   return dds_get_publication_matched_status(distances_, &status) == DDS_RETCODE_OK
@@ -125,8 +127,8 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
   return catalogue;
 }
 
-// A client has one value of a latched topic, whoever wrote it last: after another daemon has left,
-// ours are written again.
+// A client keeps one value of a latched topic, that of the last writer. After another daemon has
+// left, ours are written again.
 void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
@@ -134,12 +136,12 @@ void ReportWriter::look_for_others() {
   write(catalogue_, &*own_catalogue(), "catalogue");
 }
 
-// Reports in order, then statistics; ends when the queue is closed and empty.
+// Writes reports in order, then statistics. Ends when the queue is closed and empty.
 void ReportWriter::run() {
   name_thread("reports");
   for (bool closed = false; !closed;) {
     queue_.wait();
-    closed = queue_.closed();  // asked before the last look, so that nothing is left behind
+    closed = queue_.closed();  // read before the queue, so that nothing remains in it
     look_for_others();
     while (const QueuedReport* queued = queue_.reports().front()) {
       write_report(*queued);
@@ -170,8 +172,8 @@ void ReportWriter::write_separation(const Report& report) {
   write(separation_, &*separation_sample_, "separation");
 }
 
-// A zone is written at the start, whenever it changes from what was written last, and again after
-// somebody else may have written it.
+// Writes a zone at the start, after each change, and again after another daemon may have written
+// it.
 void ReportWriter::write_zones(const Report& report) {
   const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
@@ -183,14 +185,13 @@ void ReportWriter::write_zones(const Report& report) {
     to_wire(scene_, report, zone, state);
     write(zones_, &state, "zone state");
     if (!is_written && (written_zones_.any(zone) || active)) {
-      spdlog::info("zone '{}' {}", scene_.zones[zone].name,
-                   change_of_zone(scene_, report.zones[zone], report.cycle));
+      log_zone(scene_, zone, report.zones[zone], report.cycle);
     }
     written_zones_.set(zone, active);
   }
 }
 
-// Failed writes count as dropped: the client got neither.
+// Failed writes count as dropped: in both cases the client got nothing.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
   auto sample = make_health(scene_, statistics, poses_,
                             queue_.dropped_reports() + failed_writes_.load(), recording_);
@@ -205,10 +206,10 @@ void ReportWriter::write(dds_entity_t writer, const void* sample, const char* wh
   if (others_.give_way()) return;
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return;
-  // At a tick rate the log would be flooded: powers of two say it often enough.
+  // At a tick rate, failures would flood the log: they are logged at powers of two.
   const std::uint64_t failed = failed_writes_.fetch_add(1) + 1;
   if ((failed & (failed - 1)) == 0) {
-    spdlog::error("writing {} failed: {} ({} failed so far)", what, dds_strretcode(result), failed);
+    log_line(lines::kWriteFailed, what, dds_strretcode(result), failed);
   }
 }
 

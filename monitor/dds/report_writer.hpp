@@ -1,4 +1,5 @@
-// Publishes reports on DDS: a thread of its own converts and writes what the tick thread queued.
+// Publishes reports on DDS: a thread of its own converts and writes the reports that the tick
+// thread queued.
 #pragma once
 
 #include <atomic>
@@ -19,12 +20,12 @@
 
 namespace clearance {
 
-// Without a report for this long, clients are told that the daemon is not alive: 10 periods, and no
-// less than 100 ms, so that neither a lost datagram nor a busy machine looks like death.
+// After this time without a report, clients learn that the daemon is not alive: 10 periods and at
+// least 100 ms, so that neither a lost datagram nor a busy machine looks like the daemon's end.
 [[nodiscard]] std::int64_t lease_ns(double rate_hz) noexcept;
 
 // The only thread that writes to DDS. A report that cannot be written is counted and left out; the
-// tick thread never waits for it.
+// tick thread never waits for DDS.
 class ReportWriter {
  public:
   // Publishes the catalogue at once. Everything given must outlive this.
@@ -32,13 +33,13 @@ class ReportWriter {
                const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
-  // After the last tick: writes what is queued.
+  // After the last tick: writes the queue.
   void finish();
 
-  // Clients that are listening for distances right now.
+  // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
-  // Another daemon publishes this cell and was here first. Nothing more is written.
+  // True when an older daemon publishes this cell. Then nothing more is written.
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
  private:

@@ -1,7 +1,6 @@
 #include "monitor/dds/robot_description.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -9,6 +8,7 @@
 #include <stdexcept>
 
 #include "config/scene/revision.hpp"
+#include "monitor/app/log_lines.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
@@ -43,14 +43,13 @@ std::optional<std::string> wait_for_robot_description(Participant& participant,
       urdf = sample->data;
     present.look();
     if (urdf || polls != kSayAfterPolls) continue;
-    spdlog::warn("waiting for {} on {}; there is: {}", topic, participant.where(),
-                 present.listed());
+    log_line(lines::kWaitingForDescription, topic, participant.where(), present.listed());
   }
   dds_delete(reader);
   return urdf;
 }
 
-// Written beside it and renamed: another program may read the same one.
+// The file is written under another name and renamed, since another program may read it.
 std::filesystem::path keep_robot_description(const std::string& urdf) {
   Revision revision;
   revision.add(urdf);

@@ -1,4 +1,4 @@
-// Puts errno into words, with the path and what a person can do.
+// Explains errno in words, with the path and a remedy.
 #include "monitor/files/file_error.hpp"
 
 #include <fmt/format.h>
@@ -9,10 +9,10 @@
 namespace clearance {
 namespace {
 
-// Has to be called before anything else changes errno.
+// errno must be read before another call changes it.
 std::string system_reason() { return std::system_category().message(errno); }
 
-// What is wrong with a file that is there and is none of the usual kind; otherwise what errno says.
+// The fault of an existing file of an unusual kind; otherwise errno's text.
 std::string reason_for(const std::filesystem::path& file) {
   std::string reason = system_reason();
   std::error_code unknown;

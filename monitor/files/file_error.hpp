@@ -1,6 +1,6 @@
-// Messages about files that cannot be read or written: what was attempted, the file, and why.
+// Messages about files that cannot be read or written: the attempt, the file, and the reason.
 //
-// Each is called right after the call that failed: the reason is what errno says then.
+// Each function is called right after the failed call, since errno gives the reason.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-// "cannot read FILE: reason". Directories and special files are named as such, whatever errno says.
+// "cannot read FILE: reason". Directories and special files are named as such, whatever errno is.
 [[nodiscard]] std::string cannot_read(const std::filesystem::path& file);
 
 // "cannot create FILE: reason", with the same kinds named.

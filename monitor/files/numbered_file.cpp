@@ -13,7 +13,7 @@ bool is_taken(const std::filesystem::path& file) {
   return std::filesystem::exists(std::filesystem::symlink_status(file, unknown));
 }
 
-// A number of more than six digits is a date, and part of the name.
+// A number with more than six digits is a date, and part of the name.
 std::filesystem::path next_number(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const std::size_t dash = stem.rfind('-');

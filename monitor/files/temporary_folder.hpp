@@ -1,4 +1,4 @@
-// A folder of its own under the system's one for temporary files, removed with all that is in it.
+// A folder in the system's folder for temporary files. It is removed with all its content.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  // Not empty where it could not be made: what was attempted, and why it failed.
+  // Empty, or the reason why the folder could not be made.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] std::filesystem::path operator/(const std::filesystem::path& name) const {

@@ -1,7 +1,7 @@
 // The reduced model of an object: one convex polyhedron of few facets around all its parts.
 //
-// Between the sphere, which tells least and costs least, and the parts, every one of which has to
-// be queried, or fetched from memory where it has many facets.
+// It stands between the bounding sphere, which is the cheapest and loosest model, and the parts.
+// Each of these has to be queried, or fetched from memory where it has many facets.
 #pragma once
 
 #include <memory>
@@ -17,11 +17,12 @@ using BoundingHull = std::shared_ptr<const ConvexBody>;
 // An object of one part has a hull if that part has more facets than this: twice those of a hull.
 inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;
 
-// The object's parts in its frame. The object must stay where it is.
+// The object's parts in its frame. The result points to the object, which must not be moved in
+// memory.
 [[nodiscard]] std::vector<PlacedShape> shapes_of(const Object& object);
 
-// One an object, in its frame; null for an object of one simple part, or with an unbounded one.
-// Objects of the same parts share theirs.
+// One hull an object, in its frame; null for an object of one simple part, or with an unbounded
+// one. Objects of the same parts share a hull.
 [[nodiscard]] std::vector<BoundingHull> bounding_hulls(const Scene& scene);
 
 }  // namespace clearance

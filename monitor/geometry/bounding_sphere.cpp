@@ -15,20 +15,21 @@ Sphere in_object(const PosedPart& part) noexcept {
           .radius = rounded_up(part.sphere_in_part.radius + error)};
 }
 
-BoundingSphere around(const std::vector<Sphere>& spheres, double reach) {
+BoundingSphere around(const std::vector<Sphere>& spheres, double bounding_radius) {
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
   for (const Sphere& sphere : spheres) {
     const double radius = std::isfinite(sphere.radius) ? sphere.radius : 0.0;
     low = low.cwiseMin(sphere.centre - Vec3::Constant(radius));
     high = high.cwiseMax(sphere.centre + Vec3::Constant(radius));
   }
-  BoundingSphere all{.in_object = {.centre = 0.5 * (low + high), .radius = 0.0}, .reach = reach};
+  BoundingSphere all{.in_object = {.centre = 0.5 * (low + high), .radius = 0.0},
+                     .bounding_radius = bounding_radius};
   if (spheres.size() == 1) all.in_object.centre = spheres.front().centre;
   for (const Sphere& sphere : spheres) {
-    const double apart = rounded_up((sphere.centre - all.in_object.centre).norm());
-    all.in_object.radius = std::max(all.in_object.radius, rounded_up(apart + sphere.radius));
+    const double offset = rounded_up((sphere.centre - all.in_object.centre).norm());
+    all.in_object.radius = std::max(all.in_object.radius, rounded_up(offset + sphere.radius));
   }
-  all.reach = std::max(reach, rounded_up(all.in_object.centre.norm()));
+  all.bounding_radius = std::max(bounding_radius, rounded_up(all.in_object.centre.norm()));
   return all;
 }
 
@@ -37,17 +38,17 @@ BoundingSphere around(const std::vector<Sphere>& spheres, double reach) {
 std::vector<BoundingSphere> bounding_spheres(std::size_t objects,
                                              const std::vector<PosedPart>& parts) {
   std::vector<std::vector<Sphere>> spheres(objects);
-  std::vector<double> reach(objects, 0.0);
+  std::vector<double> radii(objects, 0.0);
   for (const PosedPart& part : parts) {
     spheres[part.object].push_back(in_object(part));
-    reach[part.object] = std::max(reach[part.object], part.reach);
+    radii[part.object] = std::max(radii[part.object], part.bounding_radius);
   }
   std::vector<BoundingSphere> all(objects);
   for (std::size_t i = 0; i < objects; ++i) {
     if (spheres[i].empty()) {
       all[i].in_object.radius = 0.0;
     } else {
-      all[i] = around(spheres[i], reach[i]);
+      all[i] = around(spheres[i], radii[i]);
     }
   }
   return all;

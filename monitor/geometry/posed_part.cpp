@@ -13,7 +13,7 @@ bool is_identity(const Eigen::Quaterniond& q) noexcept {
   return q.x() == 0.0 && q.y() == 0.0 && q.z() == 0.0;
 }
 
-// What hypotenuses and sums of curved extents are rounded by, relative.
+// The relative rounding of hypotenuses and sums in the extents of curved bodies.
 constexpr double kCurvedRounding = 0x1p-50;
 
 Sphere sphere_around(const CurvedShape& curved, double radius) noexcept {
@@ -41,7 +41,7 @@ Sphere sphere_around(const ConvexBody& shape) noexcept {
 }
 
 // The farthest point of a curved part from the origin of its object, the part's radius left out.
-double curved_reach_of(const Part& part) noexcept {
+double curved_radius_about_origin(const Part& part) noexcept {
   const Pose& pose = part.object_from_part;
   const Vec3 origin = -(rotation_matrix(pose.orientation).transpose() * pose.position);
   const double farthest = farthest_from(part.shape.curved, origin);
@@ -49,9 +49,9 @@ double curved_reach_of(const Part& part) noexcept {
 }
 
 // The farthest point of the part from the origin of its object.
-double reach_of(const Part& part) noexcept {
+double radius_about_origin(const Part& part) noexcept {
   if (!part.shape.bounded()) return kInfinity;
-  double farthest = part.shape.is_curved() ? curved_reach_of(part) : 0.0;
+  double farthest = part.shape.is_curved() ? curved_radius_about_origin(part) : 0.0;
   for (const Vec3& anchor : part.shape.anchors) {
     farthest = std::max(farthest, transform(part.object_from_part, anchor).norm());
   }
@@ -65,8 +65,8 @@ double extent_of(const ConvexBody& shape) noexcept {
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
 }
 
-// turn * point + origin, number by number: vector code would wait, 7 ns, for a rotation and a place
-// that are not in memory yet.
+// turn * point + origin, one coordinate after the other: vector code would wait 7 ns for a rotation
+// and a position that are not in memory yet.
 inline void put(const Mat3& turn, const Vec3& point, const Vec3& origin, Vec3& placed) noexcept {
   for (int i = 0; i < 3; ++i) {
     placed[i] =
@@ -74,7 +74,7 @@ inline void put(const Mat3& turn, const Vec3& point, const Vec3& origin, Vec3& p
   }
 }
 
-// So for the length of a place that was just written.
+// The same for the length of a position that was just written.
 inline double length_of(const Vec3& v) noexcept {
   return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
 }
@@ -83,10 +83,9 @@ inline double sum_of_sizes(const Vec3& v) noexcept {
   return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z());
 }
 
-// The product of the two poses, keeping orientations that need no product to the bit: parallel
-// faces stay parallel, and a rotated floor stays where it is. The length of the product's
-// quaternion is that of its factors: a pose means its exact normalisation. Returns the product's
-// rotation.
+// The product of the two poses. Orientations that need no product are kept to the bit, so that
+// parallel faces stay parallel, and a rotated floor stays where it is. The product's quaternion is
+// not normalised: a pose means its exact normalisation. Returns the product's rotation.
 Mat3 compose_with_error(const Pose& world_from_object, PosedPart& part) noexcept {
   const Pose& offset = part.object_from_part;
   const bool offset_turns = !is_identity(offset.orientation);
@@ -120,8 +119,8 @@ void place_sphere(const Mat3& turn, PosedPart& part) noexcept {
   part.coordinates = sum_of_sizes(sphere.centre) + sum_of_sizes(position);
 }
 
-// How far a wrong orientation of `part` can take the nearest points of the two apart. Turning the
-// part about its origin is turning the other one back about the same point, so the smaller arm
+// How much the orientation error of `part` can change the distance of the two parts. To turn the
+// part about its origin is to turn the other one back about the same point, so the smaller arm
 // counts.
 double turning_error(const PosedPart& part, const PosedPart& other) noexcept {
   if (part.turn_error == 0.0) return 0.0;
@@ -144,7 +143,7 @@ std::vector<PosedPart> parts_of(const Scene& scene) {
       placed.index_in_object = j;
       placed.shape = &part.shape;
       placed.object_from_part = part.object_from_part;
-      placed.reach = reach_of(part);
+      placed.bounding_radius = radius_about_origin(part);
       placed.extent = extent_of(part.shape);
       placed.sphere_in_part = sphere_around(part.shape);
       placed.offset_length = part.object_from_part.position.norm();

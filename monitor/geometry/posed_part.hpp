@@ -1,8 +1,7 @@
 // One convex part of one object, placed in the world for this tick.
 //
-// The exact place of a part is its object's pose times its offset. What the queries get is that
-// product in doubles, so how far the two may be apart is kept with it and becomes part of the
-// bounds.
+// The exact pose of a part is its object's pose times its offset. Queries get that product in
+// doubles. The difference of the two is bounded here and becomes part of the bounds.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace clearance {
 
-// A sphere that holds the part; where it is unbounded, the radius is infinite.
+// A sphere that holds the part. The radius of an unbounded part is infinite.
 struct Sphere {
   Vec3 centre = Vec3::Zero();
   double radius = kInfinity;  // m, rounding of the centre included
@@ -24,29 +23,29 @@ struct PosedPart {
   std::uint32_t object = 0;           // index into Scene::objects
   std::uint32_t index_in_object = 0;  // into Object::parts
 
-  // Of this tick, once the object has been seen.
+  // As of this tick, once the object has had a pose.
   bool placed = false;
   Sphere sphere_in_world;
   Pose world_from_part;      // as the queries use it
   double shift_error = 0.0;  // its position is at most this far from the exact one, m
   double turn_error = 0.0;   // |R - R_exact| is at most this
-  // How far turning, in all (TrackedObject::turned), can have moved a point of its sphere about the
-  // sphere's middle, m.
+  // How far all turning so far (TrackedObject::accumulated_turn) can have moved a point of its
+  // sphere about the sphere's centre, m.
   double turning = 0.0;
-  double coordinates = 0.0;  // absolute, of its sphere and its position, all together, m
+  double coordinates = 0.0;  // the sum of the absolute coordinates of its sphere and position, m
   Mat3 world_from_part_rotation = Mat3::Identity();
 
-  // From the scene.
+  // Constants of the scene.
   const ConvexBody* shape = nullptr;
   Pose object_from_part;
-  double reach = kInfinity;   // no point of it is farther from its object's origin, m
-  double extent = kInfinity;  // no point of it is farther from its own origin, m
+  double bounding_radius = kInfinity;  // no point of it is farther from its object's origin, m
+  double extent = kInfinity;           // no point of it is farther from the part's origin, m
   Sphere sphere_in_part;
-  double offset_length = 0.0, sphere_offset = 0.0;  // from its object's origin to its own, and on
-                                                    // to the sphere's centre, m
-  // A direction that separates it from another part goes on doing so, by as much more or less as
-  // the two are shifted along it: bounded, or a half-space. Of other unbounded bodies rounding
-  // leaves open how far along their rays a direction holds.
+  double offset_length = 0.0;  // from its object's origin to the part's origin, m
+  double sphere_offset = 0.0;  // from there to the sphere's centre, m
+  // Whether a direction that separates it from another part still bounds their distance after both
+  // have moved (carried_gap.hpp). True of bounded bodies and half-spaces. For other unbounded
+  // bodies rounding leaves open how far along their rays a direction holds.
   bool keeps_direction = false;
 };
 
@@ -56,18 +55,18 @@ struct PosedPart {
 // The parts of object i are first[i] .. first[i + 1], the latter excluded.
 [[nodiscard]] std::vector<std::uint32_t> first_parts(const Scene& scene);
 
-// Puts the parts of these objects, as far as they have been seen, where they are in this tick.
+// Places the parts of these objects as of this tick. Objects without a pose are left out.
 void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
                 std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept;
 
-// Puts a part where its object, which has been seen, is in this tick.
+// Places a part as of this tick. Its object has a pose.
 void place(const TrackedObject& object, PosedPart& part) noexcept;
 
-// Puts a part where it is when its object has this pose.
+// Places a part as it is when its object has this pose.
 void place_at(const Pose& world_from_object, PosedPart& part) noexcept;
 
-// How far this tick's poses of two parts, as the queries use them, can bring the parts nearer to
-// each other or farther apart than the exact poses do, m.
+// How much the distance of two parts at this tick's poses, as the queries use them, can differ from
+// that at the exact poses, m.
 [[nodiscard]] double placing_error(const PosedPart& a, const PosedPart& b) noexcept;
 
 }  // namespace clearance

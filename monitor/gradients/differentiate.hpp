@@ -1,18 +1,19 @@
-// A stage of the tick: how the distances of published pairs change with the positions of joints.
+// Stage 'differentiate' of a tick: how the distances of published pairs change with the positions
+// of joints.
 //
 // A distance changes by n . (v_b - v_a), with the normal n from A to B and the velocities v of the
-// two witness points, each fixed to its object: where the closest points are unique, what they do
-// on the surfaces makes no difference (the envelope theorem). So
+// two witness points, each fixed to its object. If the closest points are unique, their motion on
+// the surfaces makes no difference (the envelope theorem). So
 //
 //   d distance / d q = n . (J_b - J_a),   J dq: how q moves the object at its witness point.
 //
-// The same holds of a penetration depth along its normal. Where several pairs of points are
-// closest (parallel faces, two parts at once) the distance has no gradient, and this is the one by
-// the points that were found, one of its generalised gradients.
+// The same holds of a penetration depth along its normal. Where several pairs of points are closest
+// (parallel faces, two parts at once) the distance has no gradient. The result is then the one of
+// the points that were found: one of its generalised gradients.
 //
 // Measured with two arms of seven joints (config/cells/seven_joint_arms.yaml, `clearance-bench
-// --benchmark_filter=^robot/tick`): 15 us for 219 pairs with 1,430 entries. Nothing where the scene
-// does not ask.
+// --benchmark_filter=^robot/tick`): 15 us for 219 pairs with 1,430 entries. A scene that does not
+// ask for gradients pays nothing.
 #pragma once
 
 #include <cstdint>
@@ -33,13 +34,13 @@ class Differentiation {
 
   [[nodiscard]] const GradientRows& rows() const noexcept { return rows_; }
 
-  // `pairs`: the published ones as of this tick, `inputs` as they were placed in it. `gradients`:
-  // made by unknown_gradients() of the rows. Allocates, throws and locks nothing.
+  // `pairs`: the published ones as of this tick; `inputs`: with links placed in this tick;
+  // `gradients`: made by unknown_gradients() of the rows. Allocates, throws and locks nothing.
   void differentiate(std::span<const PairReport> pairs, const RobotInputs& inputs,
                      Gradients& gradients) noexcept;
 
  private:
-  // A joint whose screws are needed.
+  // A joint whose screws are computed.
   struct Moving {
     std::uint32_t robot, joint;
     std::uint32_t first_screw;

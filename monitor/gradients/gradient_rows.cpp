@@ -42,9 +42,9 @@ std::vector<Joint> chain_of(const Scene& scene, std::uint32_t object) {
 std::vector<MovingJoint> joints_between(const Scene& scene, const ObjectPair& pair) {
   const std::vector<Joint> a = chain_of(scene, pair.first), b = chain_of(scene, pair.second);
   std::vector<MovingJoint> joints;
-  const auto add = [&joints](const std::vector<Joint>& own, const std::vector<Joint>& other,
-                             bool moves_b) {
-    for (const Joint& joint : own) {
+  const auto add = [&joints](const std::vector<Joint>& joints_of_one,
+                             const std::vector<Joint>& other, bool moves_b) {
+    for (const Joint& joint : joints_of_one) {
       if (!std::ranges::binary_search(other, joint)) {
         joints.push_back({joint.first, joint.second, moves_b});
       }

@@ -1,5 +1,5 @@
-// Which joint positions move the one object of a published pair as seen from the other: the layout
-// of a report's gradients, which a scene determines once for all ticks.
+// The layout of a report's gradients: which joint positions move one object of a published pair as
+// seen from the other. The scene determines it once for all ticks.
 #pragma once
 
 #include <cstdint>
@@ -22,20 +22,20 @@ struct GradientRows {
       variables;  // by entry, ascending in a row: index into Scene::variables
 };
 
-// A joint that moves one of a pair's objects and not the other. One on the way to both carries both
-// alike, which changes no distance.
+// A joint that moves one of a pair's objects and not the other. A joint that carries both objects
+// changes no distance.
 struct MovingJoint {
   std::uint32_t robot = 0, joint = 0;  // indices into Scene::robots and Robot::joints
   bool moves_b = false;                // the second object of the pair; else the first
 };
 
-// Of any pair: from the world outwards, those of the first object first.
+// The joints of any pair, from the world outwards, those of the first object first.
 [[nodiscard]] std::vector<MovingJoint> joints_between(const Scene& scene, const ObjectPair& pair);
 
-// No rows unless Scene::gradients.
+// There are no rows unless Scene::gradients is set.
 [[nodiscard]] GradientRows gradient_rows(const Scene& scene);
 
-// With room for these rows, all of it NaN.
+// Gradients of the size of these rows, all NaN.
 [[nodiscard]] Gradients unknown_gradients(const GradientRows& rows);
 
 }  // namespace clearance

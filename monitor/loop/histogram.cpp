@@ -26,7 +26,7 @@ std::int64_t Histogram::upper_edge_ns(std::size_t bin) noexcept {
   return static_cast<std::int64_t>(((sub + 1) << shift) - 1);
 }
 
-// A clock may step back between two readings; that counts as 0.
+// A clock may step back between two readings; the duration then counts as 0.
 void Histogram::add(std::int64_t ns) noexcept {
   const std::int64_t value = std::max<std::int64_t>(ns, 0);
   ++bins_[bin_of(static_cast<std::uint64_t>(value))];

@@ -8,16 +8,16 @@
 
 namespace clearance {
 
-// Bins are 1 ns wide up to 64 ns and at most 1/64 of their value above, up to 2^34 ns (17 s); what
-// is longer counts in the last bin. The maximum is exact. Adding allocates nothing.
+// Bins are 1 ns wide up to 64 ns, and at most 1/64 of their value above, up to 2^34 ns (17 s).
+// Longer durations count in the last bin. The maximum is exact. Adding allocates nothing.
 class Histogram {
  public:
   void add(std::int64_t ns) noexcept;
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] std::int64_t max_ns() const noexcept { return max_ns_; }
-  // The upper edge of the bin in which the given share of all values ends (0.999: p99.9), never
-  // above the maximum; 0 when empty.
+  // The upper edge of the bin that ends the given share of all values (0.999: p99.9), never above
+  // the maximum; 0 when empty.
   [[nodiscard]] std::int64_t percentile_ns(double share) const noexcept;
 
  private:

@@ -24,7 +24,7 @@ struct MinimumSeen {
 // All figures are since the start unless they say otherwise.
 struct LoopStatistics {
   LoopStatistics() = default;
-  // Of its final size: filling or copying it allocates nothing.
+  // Has its final size: filling or copying it allocates nothing.
   explicit LoopStatistics(const Scene& scene)
       : rejected(scene.objects.size()),
         ages(scene.objects.size()),
@@ -33,20 +33,20 @@ struct LoopStatistics {
 
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
-  std::uint64_t clock_steps = 0;        // of CLOCK_REALTIME, and
-  std::int64_t clock_offset_ns = 0;     // what all of them come to: TickTime
-  Histogram tick;                       // from waking up to the report handed over
-  Histogram wakeup;                     // how late the tick thread woke
-  std::int64_t tick_second_max_ns = 0;  // since the statistics before
+  std::uint64_t clock_steps = 0;        // steps of CLOCK_REALTIME,
+  std::int64_t clock_offset_ns = 0;     // and their sum: TickTime
+  Histogram tick;                       // from the wake-up to the handing over of the report
+  Histogram wakeup;                     // delays of the tick thread's wake-ups
+  std::int64_t tick_second_max_ns = 0;  // since the previous statistics
   std::int64_t wakeup_second_max_ns = 0;
   std::uint64_t overruns = 0;        // ticks that ended after the next deadline
   std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick
   MinimumSeen minimum;
-  std::vector<std::array<std::uint64_t, kRejects>> rejected;         // one an object, by cause
-  std::array<std::uint64_t, kRejects> rejected_total{};              // those of unknown ids as well
-  std::vector<InputAge> ages;                                        // one an object
-  std::vector<std::array<std::uint64_t, kRejects>> rejected_joints;  // one a joint's variable
-  std::vector<InputAge> joint_ages;                                  // the same
+  std::vector<std::array<std::uint64_t, kRejects>> rejected;         // per object, by cause
+  std::array<std::uint64_t, kRejects> rejected_total{};              // unknown ids included
+  std::vector<InputAge> ages;                                        // per object
+  std::vector<std::array<std::uint64_t, kRejects>> rejected_joints;  // per variable of a joint
+  std::vector<InputAge> joint_ages;                                  // per variable of a joint
   std::array<SourceName, kMaxSources> sources;                       // by number: InputAge::source
 };
 

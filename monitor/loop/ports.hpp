@@ -1,8 +1,8 @@
 // The three ports of the fixed-rate loop: the source of poses, the sinks of reports, and the clock.
 //
-// The daemon puts Cyclone DDS and the kernel's clocks behind them, the tests a list of batches and
-// a clock of their own. All are called from the tick thread: none may block (but for sleep_until),
-// allocate or throw.
+// The daemon puts Cyclone DDS and the kernel's clocks behind them; tests put a list of batches and
+// a clock of their own there. The tick thread calls all of them: none may block (except
+// sleep_until), allocate or throw.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,29 @@
 
 namespace clearance {
 
-// Where poses come from.
+// A source of poses.
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
-  // The next batch in the order of arrival, or null when none is waiting. Valid until the next
+  // The next batch in the order of arrival, or null when none waits. It is valid until the next
   // call.
   virtual const PoseBatch* next() noexcept = 0;
 };
 
-// Where reports go. What a sink wants to keep it copies.
+// A sink of reports. It copies what it keeps.
 class ReportSink {
  public:
   virtual ~ReportSink() = default;
-  // A batch that the coming tick takes in; called in the order in which it does.
+  // A batch that the coming tick uses; calls come in the order of use.
   virtual void input(const PoseBatch& batch) noexcept = 0;
-  // `sources`: the last batch of each source that this tick took in; empty when there was none.
+  // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 
-// Realtime for stamps that other machines compare; two that cannot be stepped: monotonic for
-// deadlines, and steady, which goes on while the machine sleeps, for ages.
+// Three clocks: realtime for stamps that other machines compare, monotonic for deadlines, and
+// steady for ages. The latter two cannot be stepped, and steady also runs while the machine sleeps.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -1,5 +1,5 @@
-// Each function makes one system call. A refusal is not an error, since the daemon works without,
-// only later.
+// Each function makes one system call. A refusal is no error: the daemon works without the
+// privilege, with later wake-ups.
 #include "monitor/loop/realtime.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +16,10 @@
 
 namespace clearance {
 
-// The timer slack in ns; 1 is the least, 0 would reset it to the default of 50 us.
+// The timer slack in ns: 1 is the least; 0 would reset it to the default of 50 us.
 void use_precise_timers() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
-// SCHED_FIFO threads run until they sleep; SCHED_OTHER has priority 0 only.
+// SCHED_FIFO threads run until they sleep; SCHED_OTHER has only priority 0.
 Refusal use_fifo_scheduling(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -32,7 +32,7 @@ Refusal use_fifo_scheduling(int priority) {
       priority, std::strerror(error));
 }
 
-// An empty set is refused by the kernel, so a number out of range needs no check of its own.
+// The kernel refuses an empty set, so a number out of range needs no check here.
 Refusal pin_to_cpu(int cpu) {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -46,8 +46,8 @@ Refusal pin_to_cpu(int cpu) {
 }
 
 Refusal lock_memory() {
-  // With a limit on locked memory, MCL_FUTURE would make later allocations fail: then only what is
-  // there.
+  // With a limit on locked memory, MCL_FUTURE would make later allocations fail, so only the
+  // present pages are locked.
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
   const bool unlimited = geteuid() == 0 || limit.rlim_cur == RLIM_INFINITY;

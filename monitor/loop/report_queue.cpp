@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::size_t kStatisticsSlots = 4;  // one a second
 
-// Relaxed: the numbers order nothing.
+// The order is relaxed, since no other data depends on the numbers.
 void count(std::atomic<std::uint64_t>& counter) noexcept {
   counter.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace
 
-// Sizes are those of the largest report, health and batch of this scene.
+// The sizes are those of the largest report, health and batch of this scene.
 ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     : reports_(options.reports),
       inputs_(std::max<std::size_t>(options.inputs, 1)),
@@ -44,7 +44,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
   }
 }
 
-// Does not wake the consumer: the report that follows does.
+// This does not wake the consumer; the report that follows does.
 void ReportQueue::input(const PoseBatch& batch) noexcept {
   if (!keeps_inputs_) return;
   PoseBatch* slot = inputs_.back();
@@ -72,10 +72,10 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   ready_.post();
 }
 
-// Losing them costs nothing: figures are totals.
+// A loss is harmless, since all figures are totals.
 void ReportQueue::statistics(const LoopStatistics& statistics) noexcept {
   LoopStatistics* slot = statistics_.back();
-  if (slot == nullptr) return;  // the next ones say it all again
+  if (slot == nullptr) return;  // the next statistics contain these
   *slot = statistics;
   statistics_.push();
   ready_.post();

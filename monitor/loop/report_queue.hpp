@@ -1,6 +1,6 @@
 // Carries reports out of the tick thread: copies each into a slot made beforehand and wakes the
-// thread that publishes or records it. Never blocks: when the other side is too slow, reports are
-// dropped and counted.
+// thread that publishes or records it. It never blocks: when the other side is too slow, reports
+// are dropped and counted.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct QueuedReport {
   Report report;
   std::array<SourceUse, kMaxSources> sources_used;
   std::size_t source_count = 0;
-  std::int64_t handed_over_ns = 0;  // when the tick did so; CLOCK_REALTIME
+  std::int64_t handed_over_ns = 0;  // time of the handing over, CLOCK_REALTIME
 
   [[nodiscard]] std::span<const SourceUse> sources() const noexcept {
     return std::span(sources_used).first(source_count);
@@ -29,9 +29,9 @@ struct QueuedReport {
 
 struct ReportQueueOptions {
   std::size_t reports = 64;
-  std::size_t inputs = 0;  // batches kept beside the reports; 0: none, for who does not need them
-  std::size_t samples_a_batch = 0;  // a batch larger than that is dropped and counted
-  std::size_t joints_a_batch = 0;   // of a batch of joint states; as well
+  std::size_t inputs = 0;           // slots for batches; 0: batches are not kept
+  std::size_t samples_a_batch = 0;  // a larger batch is dropped and counted
+  std::size_t joints_a_batch = 0;   // the same for a batch of joint states
 };
 
 // One producer, the tick thread, and one consumer. Each of the three rings is lock-free.
@@ -44,13 +44,13 @@ class ReportQueue final : public ReportSink {
   void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
   void statistics(const LoopStatistics& statistics) noexcept override;
 
-  // After the last tick, from any one thread: the consumer's wait ends, and closed() is true.
+  // Called by any one thread after the last tick: the consumer's wait ends, and closed() is true.
   void close() noexcept;
 
-  // Any thread: the consumer's wait ends, for something that comes another way.
+  // Any thread: ends the consumer's wait for another reason than a report.
   void wake() noexcept { ready_.post(); }
 
-  // The one consuming thread. Inputs that a report used are in the queue before the report is.
+  // For the one consuming thread. The inputs of a report are in the queue before the report.
   void wait() noexcept { ready_.wait(); }
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
   SpscRing<QueuedReport>& reports() noexcept { return reports_; }

@@ -8,7 +8,8 @@
 
 namespace clearance {
 
-// A POSIX semaphore, whose post() is async-signal-safe and therefore never blocks.
+// A POSIX semaphore, whose post() is async-signal-safe and therefore never blocks. The standard
+// promises no such thing of std::counting_semaphore.
 class Semaphore {
  public:
   Semaphore() { sem_init(&semaphore_, 0, 0); }

@@ -1,7 +1,9 @@
-// A bounded queue between two threads without a lock: slots are made once and filled in place.
+// A bounded queue between two threads without a lock. Its slots are made once and filled in place,
+// so that a report is copied into memory that it already has. Queues of libraries move values in
+// and out and would allocate for each report.
 //
-// One thread fills (`back`, `push`), one other empties (`front`, `pop`). Nothing waits: a full
-// queue says so to the filler, who counts what it had to drop.
+// One thread fills (`back`, `push`), one other thread empties (`front`, `pop`). Neither waits: a
+// full queue says so to the filler, which counts its losses.
 #pragma once
 
 #include <atomic>
@@ -14,11 +16,11 @@ namespace clearance {
 template <class T>
 class SpscRing {
  public:
-  // At least `slots` slots, each a copy of `prototype`: reserve capacities there with `prepare`.
+  // Makes at least `slots` slots, each a copy of `prototype`; prepare() reserves their memory.
   explicit SpscRing(std::size_t slots, const T& prototype = T{})
       : slots_(std::bit_ceil(slots), prototype), mask_(slots_.size() - 1) {}
 
-  // Before the threads start: gives every slot the memory it will need.
+  // Before the threads start: gives every slot the memory that it will need.
   template <class Prepare>
   void prepare(Prepare&& prepare) {
     for (T& slot : slots_) prepare(slot);
@@ -26,7 +28,7 @@ class SpscRing {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
 
-  // Filler: the slot to fill, or null when the queue is full; push() hands it over.
+  // For the filler: the slot to fill, or null when the queue is full. push() hands it over.
   [[nodiscard]] T* back() noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail - head_seen_ == slots_.size()) {
@@ -39,7 +41,7 @@ class SpscRing {
     tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  // Emptier: the oldest slot, or null when nothing waits; pop() gives it back.
+  // For the emptier: the oldest slot, or null when the queue is empty. pop() gives it back.
   [[nodiscard]] T* front() noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head == tail_seen_) {

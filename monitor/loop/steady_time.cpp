@@ -5,13 +5,13 @@
 namespace clearance {
 namespace {
 
-// CLOCK_REALTIME less CLOCK_BOOTTIME: at least, and at most.
+// Bounds of CLOCK_REALTIME minus CLOCK_BOOTTIME.
 struct Offset {
   std::int64_t least, most;
 };
 
-// The first clock is read before and after the second, so that a thread that is held up in between
-// makes the answer wide, not wrong.
+// The first clock is read before and after the second one: a delay of the thread in between makes
+// the bounds wide, but not wrong.
 Offset offset_of(Clock& clock, std::int64_t& steady_ns) noexcept {
   const std::int64_t before = clock.steady_ns();
   const std::int64_t realtime = clock.realtime_ns();

@@ -14,7 +14,7 @@ std::string percentiles(const Histogram& histogram) {
                      kUsPerNs * static_cast<double>(histogram.max_ns()));
 }
 
-// "none" where no pair was ever evaluated, so that no number stands for nothing.
+// Says "none" when no pair was ever evaluated, so that no number stands for nothing.
 std::string run_summary(const Scene& scene, const LoopStatistics& statistics, double seconds,
                         std::uint64_t dropped_reports) {
   std::string text = fmt::format(

@@ -11,7 +11,7 @@ namespace clearance {
 // "p50 12.3 us  p99.9 45.6 us  max 78.9 us"
 [[nodiscard]] std::string percentiles(const Histogram& histogram);
 
-// Ticks, overruns, tick and wake-up times, the smallest distance seen. Ends with a newline.
+// Ticks, overruns, tick and wake-up times, the smallest distance. Ends with a newline.
 [[nodiscard]] std::string run_summary(const Scene& scene, const LoopStatistics& statistics,
                                       double seconds, std::uint64_t dropped_reports);
 

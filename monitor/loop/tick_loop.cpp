@@ -7,11 +7,11 @@
 
 namespace clearance {
 
-// Everything that a tick fills is sized here: the loop itself allocates nothing.
+// All memory of the tick is sized here: the loop itself allocates nothing.
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
     : scene_(scene),
-      monitor_(scene, options.monitor),
+      monitor_(scene),
       sources_(scene),
       source_(source),
       sinks_(std::move(sinks)),
@@ -24,8 +24,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
   joints_.reserve(options_.max_samples);
 }
 
-// Times are measured around the tick: how late the thread woke, and how long it took until the
-// report was handed over.
+// Measures the delay of the wake-up, and the time until the report was handed over.
 void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   std::int64_t deadline = clock_.monotonic_ns() + period_ns_;
   std::uint64_t ticks = 0;
@@ -48,8 +47,8 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   hand_over_statistics();
 }
 
-// Deadlines stay on the grid of the first one. Missed ones are counted, not made up for: a loop
-// that tried to catch up would stay late.
+// Deadlines stay on the grid of the first one. Missed ones are counted and skipped: a loop that
+// tried to catch up would stay late.
 std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) noexcept {
   const std::int64_t next = deadline + period_ns_;
   if (ended <= next) return next;
@@ -59,7 +58,7 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
   return next + missed * period_ns_;
 }
 
-// One tick, and its report to every sink.
+// Runs one tick and gives its report to every sink.
 void TickLoop::tick_once() noexcept {
   take_in();
   const Report& report = monitor_.tick(samples_, joints_, time_.read(clock_));
@@ -71,7 +70,7 @@ void TickLoop::tick_once() noexcept {
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
 }
 
-// Batches are used whole: one that no longer fits waits for the next tick.
+// Batches are used whole: a batch that does not fit waits for the next tick.
 void TickLoop::take_in() noexcept {
   samples_.clear();
   joints_.clear();
@@ -86,7 +85,7 @@ void TickLoop::take_in() noexcept {
   }
 }
 
-// Poses for another scene have ids that mean other objects: they are counted, never used.
+// Poses for another scene have ids of other objects: they are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
   if (!made_for(batch, scene_.revision)) {
@@ -107,12 +106,12 @@ void TickLoop::use(const PoseBatch& batch) noexcept {
   }
 }
 
-// The last batch of each source goes into the report, which is what makes a replay exact.
+// The report names the last batch of each source; this makes a replay exact.
 void TickLoop::note_source(const PoseBatch& batch) noexcept {
   const auto end = used_.begin() + static_cast<std::ptrdiff_t>(used_count_);
   const auto found = std::find_if(
       used_.begin(), end, [&batch](const SourceUse& use) { return use.source == batch.source; });
-  if (found == used_.end()) return;  // the port lets no more than kMaxSources in
+  if (found == used_.end()) return;  // the port admits at most kMaxSources
   if (found == end) ++used_count_;
   *found = {.source = batch.source, .sequence_number = batch.sequence_number};
 }
@@ -125,7 +124,7 @@ void TickLoop::note_minimum(const Report& report) noexcept {
   seen = {.known = true, .pair = report.minimum, .cycle = report.cycle, .now_ns = report.now_ns};
 }
 
-// Once a second, with the figures of that second reset afterwards.
+// Called once a second; the figures of that second start anew afterwards.
 void TickLoop::hand_over_statistics() noexcept {
   for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
     statistics_.rejected[object] = monitor_.rejected(object);

@@ -1,5 +1,5 @@
-// The fixed-rate loop: on each deadline it takes in what has arrived, runs Monitor::tick and hands
-// the report on. Knows no DDS and no kernel clock: both come through ports.
+// The fixed-rate loop: on each deadline it takes the batches that have arrived, runs Monitor::tick
+// and hands the report over. It knows neither DDS nor the kernel's clocks: both come through ports.
 #pragma once
 
 #include <array>
@@ -18,24 +18,22 @@ namespace clearance {
 struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
-      4096;  // that one tick can take in; what is left waits for the next tick
-  MonitorOptions monitor = {};
+      4096;  // samples that one tick can use; the rest waits for the next tick
 };
 
-// Deadlines are absolute, start + k * period. A tick that ends after the next deadline is an
-// overrun: the next one starts at once. Deadlines that are missed by a whole period or more are
-// skipped and counted, so that the loop is back on its grid instead of running after it. Cycle
-// numbers count ticks and have no gaps.
+// Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an
+// overrun, and the next tick starts at once. Deadlines missed by a whole period or more are skipped
+// and counted, so that the loop returns to its grid. Cycle numbers count ticks and have no gaps.
 class TickLoop {
  public:
-  // Allocates all it will ever need. Everything given must outlive the loop.
+  // Allocates all memory of the loop. Everything given must outlive the loop.
   TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks, Clock& clock,
            const TickLoopOptions& options = {});
 
   // Runs in the calling thread until `stop` is set or `max_ticks` are done.
   void run(const std::atomic<bool>& stop) noexcept;
 
-  // The figures of the last time that they were handed to the sinks; after run(): final.
+  // The figures that the sinks got last; after run(), the final ones.
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
@@ -58,7 +56,7 @@ class TickLoop {
   std::int64_t period_ns_;
   std::uint64_t ticks_a_second_;
 
-  const PoseBatch* waiting_ = nullptr;  // taken from the source, did not fit into the last tick
+  const PoseBatch* waiting_ = nullptr;  // taken from the source, but did not fit into the last tick
   std::vector<PoseSample> samples_;
   std::vector<JointSample> joints_;
   std::array<SourceUse, kMaxSources> used_;

@@ -175,7 +175,7 @@ class McapFields {
     rest_ = rest_.subspan(static_cast<std::size_t>(size));
     return bytes;
   }
-  // As put_text() wrote it. The text is not checked for UTF-8.
+  // Reads what put_text() wrote. The text is not checked for UTF-8.
   [[nodiscard]] std::string get_text() {
     const std::span<const std::byte> bytes = get_raw(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -191,7 +191,7 @@ class McapFields {
     ok_ = ok_ && entries.ok();
     return map;
   }
-  // What follows the id of a schema.
+  // The fields that follow the id of a schema.
   [[nodiscard]] McapSchema get_schema() {
     McapSchema schema;
     schema.name = get_text();
@@ -199,7 +199,8 @@ class McapFields {
     schema.text = get_text();
     return schema;
   }
-  // What follows the id of a channel; without its schema, of which the record has the id only.
+  // The fields that follow the id of a channel; without its schema, of which the record has the id
+  // only.
   [[nodiscard]] McapChannel get_channel(std::uint16_t id) {
     McapChannel channel;
     channel.id = id;

@@ -71,7 +71,7 @@ class McapReader {
 
   // Nothing where the file was cut off or its end is damaged.
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept { return summary_; }
-  // Those seen so far.
+  // The records read so far.
   [[nodiscard]] const std::map<std::string, McapMap>& metadata() const noexcept {
     return metadata_;
   }

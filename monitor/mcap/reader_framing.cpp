@@ -1,4 +1,4 @@
-// Where records begin and end, and the checksums over them.
+// Finds where records begin and end, and checks the checksums over them.
 #include <fmt/format.h>
 
 #include <algorithm>

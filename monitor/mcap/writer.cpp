@@ -1,5 +1,5 @@
 // Messages are collected in a chunk in memory; a chunk and its indexes go to the file in one write.
-// What the summary needs is kept until the file is closed.
+// The writer keeps what the summary needs until the file is closed.
 #include "monitor/mcap/writer.hpp"
 
 #include <fcntl.h>
@@ -98,7 +98,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOption
 
 // O_EXCL decides in one step whether the file exists; a check before could be overtaken. With
 // O_NONBLOCK, a pipe that has no reader is refused instead of waited for; regular files do not heed
-// it. With O_APPEND, a file that somebody else cut off stays too short, which check() sees.
+// it. With O_APPEND, a file that another program cut off stays too short, which check() sees.
 void McapWriter::open() {
   const int existing = options_.overwrite ? O_TRUNC : O_EXCL;
   constexpr int kFlags = O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
@@ -132,7 +132,7 @@ void McapWriter::put_out(std::span<const std::byte> bytes) {
   }
 }
 
-// A file that somebody moved away still grows, but is no longer where it is looked for.
+// A file that was moved away still grows, but is no longer where it is looked for.
 bool McapWriter::check() {
   if (!ok() || descriptor_ < 0) return ok();
   struct stat here {
@@ -209,7 +209,7 @@ void McapWriter::metadata(std::string_view name, const McapMap& values) {
   put_out(out_.view());
 }
 
-// As metadata. The checksum is of all fields before it.
+// Written like metadata. The checksum is of all fields before it.
 void McapWriter::attachment(std::string_view name, std::string_view media_type,
                             std::span<const std::byte> bytes) {
   out_.clear();

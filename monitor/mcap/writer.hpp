@@ -64,15 +64,15 @@ class McapWriter {
   void flush();
 
   // Whether the file is still there under its name with all that was handed over; when it is not
-  // (deleted, moved away, cut off by somebody else), that is the error. Also asked before and after
-  // everything that is written.
+  // (deleted, moved away, cut off by another program), that is the error. Also asked before and
+  // after everything that is written.
   bool check();
 
   // Writes the summary and closes the file; true when everything is in it.
   bool close();
 
  private:
-  // What a channel has written.
+  // The messages that a channel has written.
   struct Channel {
     std::uint32_t sequence = 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // (log time, offset) in this chunk

@@ -8,8 +8,9 @@
 
 namespace clearance {
 
-// Velocity of the body's point that is at `point_in_world` now, m/s. Number by number, here and
-// below: vector code has to wait until all three of a cross product are stored, 7 ns.
+// Velocity of the body's point that is at `point_in_world` now, m/s. Here and below, coordinates
+// are computed one by one: vector code would wait 7 ns until all three of a cross product are
+// stored.
 [[nodiscard]] inline Vec3 velocity_at(const Vec3& point_in_world, const Pose& world_from_body,
                                       const Twist& twist) noexcept {
   const Vec3& w = twist.angular;
@@ -28,8 +29,8 @@ namespace clearance {
          normal.z() * (velocity_a.z() - velocity_b.z());
 }
 
-// s. Infinity when not approaching. In contact (distance <= 0): 0, unless the two are known to be
-// parting. NaN for a distance, or apart for a closing speed, that is not known.
+// In s; infinity when not approaching. In contact (distance <= 0): 0, unless the two are known to
+// separate. NaN if the distance is not known, or if it is positive and the closing speed is not.
 [[nodiscard]] inline double time_to_contact(double distance, double closing_speed) noexcept {
   if (std::isnan(distance)) return distance;
   if (closing_speed <= 0.0) return std::numeric_limits<double>::infinity();

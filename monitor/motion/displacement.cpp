@@ -10,8 +10,8 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 
-// What is a unit quaternion to half of all digits needs neither root nor quotient: the next term of
-// the series, 3/8 of the square of what is off, is below 2^-53.
+// A quaternion that is of unit length to half of all digits needs neither root nor quotient: the
+// next term of the series, 3/8 of the square of its error, is below 2^-53.
 Vec4 unit(const Vec4& q) noexcept {
   constexpr double kNearly = 0x1p-26;
   const double off = q.squaredNorm() - 1.0;
@@ -36,14 +36,14 @@ Motion motion_between(const Pose& before, const Pose& after) noexcept {
           .turn = turn_at_most(before.orientation.coeffs(), after.orientation.coeffs())};
 }
 
-double moved_at_most(const Motion& motion, double reach) noexcept {
-  const double turned = motion.turn == 0.0 ? 0.0 : motion.turn * reach;  // not 0 * infinity
-  return rounded_up(motion.shift + turned);
+double moved_at_most(const Motion& motion, double radius) noexcept {
+  const double turning = motion.turn == 0.0 ? 0.0 : motion.turn * radius;  // not 0 * infinity
+  return rounded_up(motion.shift + turning);
 }
 
-double bend_at_most(const Motion& motion, double reach) noexcept {
+double bend_at_most(const Motion& motion, double radius) noexcept {
   constexpr double kEighth = 1.0 / (8.0 * 0.9 * 0.9);
-  return motion.turn == 0.0 ? 0.0 : rounded_up(kEighth * motion.turn * motion.turn * reach);
+  return motion.turn == 0.0 ? 0.0 : rounded_up(kEighth * motion.turn * motion.turn * radius);
 }
 
 }  // namespace clearance

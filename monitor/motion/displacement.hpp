@@ -2,21 +2,22 @@
 //
 // A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x, so by at most
 // |p2 - p1| + |R2 - R1| |x|, and |R2 - R1| = 2 sin(theta / 2) for the angle theta between the two.
-// By way of a third pose, on the straight line and on the shorter turn between them, it moves by no
-// more than |p2 - p1| + 4 sin(theta / 4) |x| in all: that is what is told here. The two differ by
-// less than a hundredth for turns below half a radian. Other ways between the poses do not count.
+// A path by a third pose, on the straight line and on the shorter turn between the two, is no
+// longer than |p2 - p1| + 4 sin(theta / 4) |x| in all: that is the bound here. The two bounds
+// differ by less than a hundredth for turns below half a radian. Other paths between the poses do
+// not count.
 #pragma once
 
 #include "core/pose.hpp"
 
 namespace clearance {
 
-// Of a turn between two orientations, rad. Four squares, a root, a quotient and a product, or where
-// the norm is nearly 1 a term of a series in place of root and quotient, leave each of the two unit
-// quaternions within 5/4 * 2^-51 of the exact one; their difference within 5/4 * 2^-50, and twice
-// that within 5/4 * 2^-49; nor is their product farther off.
+// Rounding of a turn between two orientations, rad. A unit quaternion takes four squares, a root, a
+// quotient and a product (where the norm is nearly 1, a term of a series instead of root and
+// quotient). So it is within 5/4 * 2^-51 of the exact one, the difference of two within 5/4 *
+// 2^-50, and twice that within 5/4 * 2^-49. Their product is not farther off.
 inline constexpr double kTurnRounding = 0x1p-48;
-// Squares of differences below 1e-154 underflow; their norm is then below this, m.
+// Squares of differences below 1e-154 underflow; the norm is then below this, m.
 inline constexpr double kShiftUnderflow = 1e-150;
 // A velocity is a sum of products, each within a few 2^-52 of its factors' size.
 inline constexpr double kVelocityError = 0x1p-46;
@@ -30,17 +31,18 @@ struct Motion {
 // Equal poses, bit for bit, give exactly no motion. Norms of the orientations within 0.5 .. 2.
 [[nodiscard]] Motion motion_between(const Pose& before, const Pose& after) noexcept;
 
-// No point within `reach` of the frame's origin has moved farther, m, nor to any pose on the
-// straight way and on from there, both together. An infinite reach is allowed.
-[[nodiscard]] double moved_at_most(const Motion& motion, double reach) noexcept;
+// No point within `radius` of the frame's origin has moved farther, m; nor is its path by any pose
+// between the two longer. An infinite radius is allowed.
+[[nodiscard]] double moved_at_most(const Motion& motion, double radius) noexcept;
 
-// No point within `reach` of the frame's origin is ever farther than this from where it would be if
-// it went straight and evenly from its place before to its place after, m, while the origin goes so
-// and the body turns evenly about one axis, the shorter way.
+// The origin moves straight at constant velocity, and the body turns at a constant rate about one
+// axis, by the smaller angle. Then no point within `radius` of the origin is ever farther than
+// this, m, from where it would be if it, too, moved straight at constant velocity between its two
+// places.
 //
-// What turns by theta a unit of time is accelerated by theta^2 |x|, and a function of time is off
-// its chord by no more than an eighth of its largest second derivative. `turn` is 4 sin(theta / 4),
-// at least 0.9 theta for half a turn or less.
-[[nodiscard]] double bend_at_most(const Motion& motion, double reach) noexcept;
+// A point of a body that turns by theta in a unit of time is accelerated by theta^2 |x|, and a
+// function of time is off its chord by at most an eighth of its largest second derivative. `turn`
+// is 4 sin(theta / 4), at least 0.9 theta for half a turn or less.
+[[nodiscard]] double bend_at_most(const Motion& motion, double radius) noexcept;
 
 }  // namespace clearance

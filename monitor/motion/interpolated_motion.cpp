@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// From one orientation to the other; either way round, where both are equally short.
+// The shorter turn from one orientation to the other; where both are equally short, either of them.
 Vec3 turn_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) noexcept {
   const Eigen::Quaterniond q = after.normalized() * before.normalized().conjugate();
   const double sine = q.vec().norm();
@@ -50,13 +50,13 @@ Pose pose_at(const InterpolatedMotion& motion, double s) noexcept {
 }
 
 RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMotion& moving,
-                         const Vec3& middle, double radius) noexcept {
-  const Vec3 arm = middle - moving.from.position;
-  const Vec3 from_resting = middle - resting.from.position;
+                         const Vec3& centre, double radius) noexcept {
+  const Vec3 arm = centre - moving.from.position;
+  const Vec3 from_resting = centre - resting.from.position;
   const double length = arm.norm();
   const double turn = angle_of(moving), turn_of_frame = angle_of(resting);
-  // What the middle does, less what the other's frame does at that point; at the beginning, and how
-  // much that changes as both turn and the middle moves on.
+  // The velocity of the sphere's centre less that of the other's frame at the same point: at the
+  // beginning, and how much it changes as both turn and the centre moves on.
   const Vec3 start =
       moving.shift + moving.turn.cross(arm) - resting.shift - resting.turn.cross(from_resting);
   const double between_origins = (moving.shift - resting.shift).norm();

@@ -1,6 +1,6 @@
-// How an object is taken to have gone from the last tick's pose to this tick's: its origin straight
-// and evenly, its orientation evenly about one axis, the shorter way. monitor/swept/README.md says
-// what that covers.
+// The motion that is assumed between the last tick's pose of an object and this tick's: its origin
+// moves straight at constant velocity, its orientation turns at a constant rate about one axis, by
+// the smaller angle. monitor/swept/README.md says what that covers.
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -17,25 +17,27 @@ struct InterpolatedMotion {
 
 [[nodiscard]] InterpolatedMotion interpolated_motion(const Pose& from, const Pose& to) noexcept;
 
-// `s` of the way, 0 to 1; at the ends exactly, in between within kInterpolationError of the exact
-// place, relative to the lengths that take part, and of the exact orientation.
+// The pose after the share `s` of the motion, 0 to 1. It is exact at the ends. In between it is
+// within kInterpolationError of the exact position, relative to the lengths that take part, and of
+// the exact orientation.
 [[nodiscard]] Pose pose_at(const InterpolatedMotion& motion, double s) noexcept;
 
-// Logarithm, sine, cosine and a product of quaternions, a sum of positions: each within a few 2^-52
-// of what it is exactly.
+// A logarithm, a sine, a cosine, a product of quaternions and a sum of positions are each within a
+// few 2^-52 of the exact result.
 inline constexpr double kInterpolationError = 0x1p-47;
 
-// How one body goes as seen from the frame of the other's object, per whole way. All upper bounds,
-// rounding included.
+// The motion of one body as seen from the frame of the other's object, with the whole motion as the
+// unit of time. All figures are upper bounds, rounding included.
 struct RelativeMotion {
   double speed = kInfinity;    // of any point of the body, m
-  double turning = kInfinity;  // of any point about the middle of the body's sphere, m
-  double bending = kInfinity;  // acceleration of that middle, m
+  double turning = kInfinity;  // speed of any point about the centre of the body's sphere, m
+  double bending = kInfinity;  // acceleration of that centre, m
 };
 
-// Of a body in a sphere, m, which goes along `moving` and has its middle there at the beginning.
+// For a body that moves by `moving`, in a sphere of this radius, m, whose centre is at `centre` in
+// the world at the beginning.
 [[nodiscard]] RelativeMotion seen_from(const InterpolatedMotion& resting,
-                                       const InterpolatedMotion& moving, const Vec3& middle,
+                                       const InterpolatedMotion& moving, const Vec3& centre,
                                        double radius) noexcept;
 
 }  // namespace clearance

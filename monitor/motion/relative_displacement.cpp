@@ -9,11 +9,11 @@
 namespace clearance {
 namespace {
 
-// Beyond this the vector part of a quaternion says too little about the angle, rad.
+// From this angle on, rad, the vector part of a quaternion bounds the angle too loosely.
 constexpr double kMostTurn = 1.0;
 
-// From the last pose to the one in use: 2 sin(angle / 2) along the shorter turn's axis, in the
-// world.
+// The turn from the last pose to the one in use: 2 sin(angle / 2) along the axis of the smaller
+// angle, in the world.
 Vec3 turning_of(const BodyMotion& body) noexcept {
   if (body.motion.turn == 0.0) return Vec3::Zero();
   const Eigen::Quaterniond q =
@@ -21,8 +21,8 @@ Vec3 turning_of(const BodyMotion& body) noexcept {
   return std::copysign(2.0, q.w()) * q.vec();
 }
 
-// How far that may be from the turn, rad: with v its half, |v| = sin(angle / 2) <= 1/2, it lacks
-// 2 (asin |v| - |v|) <= 0.38 |v|^3; and as much at most do 4 sin(angle / 4) of the angle.
+// How far turning_of() may be from the turn, rad. With v its half, |v| = sin(angle / 2) <= 1/2, the
+// difference is 2 (asin |v| - |v|) <= 0.38 |v|^3. The angle exceeds 4 sin(angle / 4) by no more.
 double turn_error(const Motion& motion) noexcept {
   return motion.turn == 0.0 ? 0.0
                             : 0.0625 * motion.turn * motion.turn * motion.turn + kTurnRounding;
@@ -42,14 +42,14 @@ double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept 
                      (resting.now.position - resting.before.position);
   const Vec3 turning_frame = turning_of(resting), turning_body = turning_of(moving);
   const Vec3 between = moving.before.position - resting.before.position;
-  const double apart = between.norm(), shifted = shift.norm() + kShiftUnderflow;
+  const double distance = between.norm(), shifted = shift.norm() + kShiftUnderflow;
   const double frame_turn = frame.turn + turn_error(frame);
-  const double turned =
+  const double turning =
       (turning_body - turning_frame).norm() + turn_error(body) + turn_error(frame);
   const double of_origin = (shift - turning_frame.cross(between)).norm() + kShiftUnderflow +
-                           turn_error(frame) * apart + frame_turn * shifted;
-  const double sizes = frame.shift + body.shift + frame_turn * (apart + shifted);
-  return rounded_up(of_origin + swept(turned, moving.reach) + kVelocityError * sizes);
+                           turn_error(frame) * distance + frame_turn * shifted;
+  const double sizes = frame.shift + body.shift + frame_turn * (distance + shifted);
+  return rounded_up(of_origin + swept(turning, moving.reach) + kVelocityError * sizes);
 }
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// What both ends of the way from one tick to the next tell of what lies between.
+// Bounds of the distance between two ticks, from what is known at both of them.
 // monitor/swept/README.md has the motion that is meant, and the proofs.
 #pragma once
 
@@ -6,20 +6,20 @@
 
 namespace clearance {
 
-// At least as far apart all the way, m: bounds of the distance at its ends, and what both bodies
-// have moved by, that way and on from any point of it. -infinity where the displacement is.
+// The distance was at least this between two ticks, m, by lower bounds of the distance at both, and
+// the displacement of both bodies by any pose in between. -infinity where the displacement is
+// infinite.
 [[nodiscard]] double lower_by_ends(double before, double now, double displacement) noexcept;
 
-// What an evaluation told: `lower`, m, along `normal` (world, A to B), for the exact poses of then.
-// -infinity: no direction separated the bodies.
+// The result of an evaluation: for the exact poses of its tick the bodies were at least `lower`, m,
+// from each other along `normal` (world, A to B). -infinity: no direction separated them.
 struct Separated {
   const Vec3& normal;
   double lower;
 };
 
-// The same from the directions of evaluations at both ends; -infinity: they do not tell. `bend`:
-// at no instant was a point farther than this from where it would be had it gone straight and
-// evenly from its place at one end to that at the other, m, both bodies together.
+// The same by the directions of evaluations in both ticks; -infinity: they prove nothing. `bend`,
+// m, is that of both bodies together (bend_at_most()).
 [[nodiscard]] double lower_by_directions(const Separated& before, const Separated& now,
                                          double displacement, double bend) noexcept;
 

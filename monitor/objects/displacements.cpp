@@ -24,6 +24,7 @@ class LargestTwo {
 void summarise(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> moving,
                Displacements& displaced) noexcept {
   displaced.any_lost = false;
+  displaced.newest_pose_ns = displaced.oldest_pose_ns = 0;
   bool any = false;
   LargestTwo unseen, farthest;
   for (const std::uint32_t i : moving) {

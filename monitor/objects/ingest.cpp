@@ -81,7 +81,7 @@ void ingest(std::span<const PoseSample> samples, std::span<const JointSample> jo
   ingest(joints, scene, inputs);
   for (const PoseSample& sample : samples) {
     if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
-        sample.source >= kMaxSources) {
+        sample.source >= kMaxSources || inputs.objects[sample.object].absent) {
       refuse(sample.object, Reject::kUnknownObject, inputs);
     } else if (inputs.robots.follows_joints(sample.object)) {
       refuse(sample.object, Reject::kOtherSource, inputs);

@@ -65,8 +65,8 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
     for (std::size_t link = 0; link < links.size(); ++link) {
       if (links[link].object == RobotLink::kNoObject) continue;
       const Object& object = scene_.objects[links[link].object];
-      if (object.fixed) continue;
-      follow(kinematics_.links(robot)[link], object, objects[links[link].object]);
+      TrackedObject& state = objects[links[link].object];
+      if (!object.fixed && !state.absent) follow(kinematics_.links(robot)[link], object, state);
     }
   }
 }

@@ -29,6 +29,7 @@ struct TrackedObject {
   // None of the exceptions: known and on time, now and at the last tick, and no discontinuity
   // between.
   bool plain = false;
+  bool absent = false;  // known not to be there (presence.hpp); then no pose is in use
   // Since its stamp, m, at most: 0 unless late; infinity: no speed is stated.
   double may_have_moved = 0.0;
   double unseen_since = 0.0;  // the larger of that at the last tick, if known then, and now, m

@@ -1,8 +1,10 @@
-// The distance queries that a tick may make, and those of them that are kept for a later step.
+// The distance queries that a tick may make, and those of them that are kept for a later stage.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+
+#include "monitor/invariant.hpp"
 
 namespace clearance {
 
@@ -10,13 +12,16 @@ class Budget {
  public:
   constexpr explicit Budget(std::uint32_t queries) noexcept : left_(queries) {}
 
-  // That may be made now.
+  // How many queries may be made now.
   [[nodiscard]] constexpr std::uint32_t left() const noexcept { return left_; }
-  // `queries` of these have been made.
-  constexpr void spend(std::uint32_t queries = 1) noexcept { left_ -= queries; }
+  // Counts queries that have been made.
+  constexpr void spend(std::uint32_t queries = 1) noexcept {
+    CLEARANCE_INVARIANT(queries <= left_);
+    left_ -= queries;
+  }
 
-  // Keeps so many, as far as there are, from the steps up to release(), which takes what this
-  // returns.
+  // Keeps this many queries, or all that are left, from the stages before release(), which takes
+  // the returned number.
   [[nodiscard]] constexpr std::uint32_t reserve(std::uint32_t queries) noexcept {
     const std::uint32_t kept = std::min(queries, left_);
     left_ -= kept;

@@ -32,7 +32,7 @@ void carry(std::uint32_t pair, const OpenTick& tick) noexcept;
 void note_carried(std::uint32_t pair, const OpenTick& tick) noexcept;
 
 // Takes in a lower bound of the pair's distance for the poses in use, m. The part pairs are carried
-// by displacement alone, which costs a fraction of carry(): the caller has looked at their models.
+// by displacement alone, which costs a fraction of carry(): the caller has tried coarser models.
 void raise(std::uint32_t pair, double to, const OpenTick& tick) noexcept;
 
 }  // namespace clearance

@@ -91,8 +91,8 @@ struct PartPairs {
   double displacement;  // since they were last brought up to date, m
   bool is_new;          // that was in this tick, so nothing is known of the last one
   PairMotion motion;
-  // Over the part pairs that displacement alone did not rule out, m. All others are at least
-  // `smallest_upper` apart.
+  // Over the part pairs that displacement alone did not rule out, m. All others have
+  // a distance of at least `smallest_upper`.
   double smallest_upper = kInfinity, least_lower = kInfinity;
   double between = kInfinity;  // the distance was at least this since the last tick, m
   bool all_that_matter = true;
@@ -196,6 +196,15 @@ void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noe
   const DistanceResult found = query_distance(part_pair, tick);
   settle(pair, found, table.tracking[part_pair].b.point, tick);
   budget.spend();
+}
+
+std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, const OpenTick& tick,
+                           Budget& budget) noexcept {
+  std::size_t done = 0;
+  for (; done < pairs.size() && budget.left() > 0; ++done) {
+    evaluate_pair(pairs[done], tick, budget);
+  }
+  return done;
 }
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "monitor/pairs/budget.hpp"
 #include "monitor/pairs/tick_view.hpp"
@@ -24,5 +25,10 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 // that it is not the closest is not queried: the pair's distance does not depend on it. Both
 // objects are known.
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept;
+
+// Evaluates different pairs in their order while the budget has queries left, and returns how many.
+// None of them was evaluated in this tick before.
+std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, const OpenTick& tick,
+                           Budget& budget) noexcept;
 
 }  // namespace clearance

@@ -7,7 +7,7 @@ namespace clearance {
 void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   lower_ = std::min(lower_, bounds.lower);
   swept_lower_ = std::min(swept_lower_, bounds.swept_lower);
-  if (bounds.status == PairStatus::kUnknown) return;
+  if (!is_known(bounds.status)) return;
 
   const bool tight = is_evaluated(bounds.status) && bounds.status != PairStatus::kIterationLimit;
   if (!tight && bounds.lower < loose_lower_) {

@@ -1,5 +1,5 @@
-// The minimum over all pairs, and whether it is certified, from the pairs worth a look and what
-// is known of the rest.
+// The minimum over all pairs, and whether it is certified, from the pairs that a tick has updated
+// and what is known of all others.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@ namespace clearance {
 
 class GlobalMinimum {
  public:
-  // In any number, also the same pair again.
+  // Takes in a pair; the same pair may come again.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
-  // Every pair that was not added is at least this far apart, m; and has been since the last tick.
+  // The distance of every pair that was not added is at least `lower`, m, and since the last tick
+  // it was at least `swept_lower`.
   void add_rest(double lower, double swept_lower) noexcept;
 
-  // The added pair with the smallest upper bound, of those that have ever been evaluated.
+  // The pair with the smallest upper bound, among the added pairs that have ever been evaluated.
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }
   [[nodiscard]] const PairBounds& bounds() const noexcept { return bounds_; }  // of pair()
 
-  // No other pair can be closer: beyond what rounding leaves open between two that were both
-  // evaluated.
+  // No other pair can be closer; among pairs that were evaluated in this tick, by more than
+  // rounding.
   [[nodiscard]] bool certified() const noexcept;
 
-  // Every pair's distance is at least this, m.
+  // A lower bound of every pair's distance, m.
   [[nodiscard]] double lower() const noexcept { return lower_; }
-  // And has been since the last tick, m.
+  // The same for every instant since the last tick, m.
   [[nodiscard]] double swept_lower() const noexcept { return swept_lower_; }
 
  private:
@@ -35,7 +36,7 @@ class GlobalMinimum {
   std::uint32_t pair_ = 0;
   PairBounds bounds_;  // of pair_
   double lower_ = kInfinity, swept_lower_ = kInfinity, rest_lower_ = kInfinity;
-  // Of the pairs whose distance is not known to rounding, the two with the smallest lower bounds.
+  // The two smallest lower bounds among the pairs whose distance is not known to rounding.
   std::uint32_t loose_pair_ = 0;
   double loose_lower_ = kInfinity, next_loose_lower_ = kInfinity;
 };

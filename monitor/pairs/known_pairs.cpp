@@ -6,8 +6,7 @@ namespace clearance {
 
 KnownPairs::KnownPairs(const Scene& scene)
     : words_((scene.objects.size() + 63) / 64), neighbours_(scene.objects.size() * words_) {
-  known_.members.resize(words_);
-  fresh_.members.resize(words_);
+  for (Kind* kind : {&present_, &known_, &fresh_}) kind->members.resize(words_);
   regained_.reserve(scene.objects.size());
   const auto join = [this](std::size_t object, std::size_t other) {
     neighbours_[object * words_ + other / 64] |= std::uint64_t{1} << other % 64;
@@ -16,6 +15,7 @@ KnownPairs::KnownPairs(const Scene& scene)
     join(pair.first, pair.second);
     join(pair.second, pair.first);
   }
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) set(i, true, present_);
 }
 
 void KnownPairs::update(const std::vector<TrackedObject>& objects,
@@ -24,6 +24,7 @@ void KnownPairs::update(const std::vector<TrackedObject>& objects,
   for (const std::uint32_t i : changed) {
     const bool known = objects[i].known();
     const bool fresh = known && !objects[i].late;
+    set(i, !objects[i].absent, present_);
     if (known_.has(i) == known && fresh_.has(i) == fresh) continue;
     if (set(i, known, known_) && known) regained_.push_back(i);
     set(i, fresh, fresh_);

@@ -1,8 +1,7 @@
-// How many pairs are known, and how many of them stale, without looking at pairs.
+// How many pairs are absent, known or stale, counted without visiting pairs.
 //
-// What is known about a pair follows from its two objects, so it is enough to count, whenever an
-// object's state changes, with how many known or fresh ones it is paired: a line of bits an
-// object.
+// The state of a pair follows from its two objects. So whenever an object's state changes, it is
+// enough to count with how many objects of that state it is paired: by a line of bits an object.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +17,19 @@ class KnownPairs {
  public:
   explicit KnownPairs(const Scene& scene);
 
-  // Takes the counts to the objects' present states; `changed` are at least those whose states are
-  // not what they were.
+  // Takes the counts to the objects' states of this tick. `changed`: at least the objects whose
+  // states are not what they were.
   void update(const std::vector<TrackedObject>& objects,
               std::span<const std::uint32_t> changed) noexcept;
 
-  // Objects that are known since the last update and were not before.
+  // Objects that are known as of the last update and were not before it.
   [[nodiscard]] std::span<const std::uint32_t> regained() const noexcept { return regained_; }
 
-  // Both objects' poses are known, as of the last update.
+  // As of the last update: no object is absent; ...
+  [[nodiscard]] std::uint64_t present() const noexcept { return present_.pairs; }
+  // ... both objects' poses are known; ...
   [[nodiscard]] std::uint64_t known() const noexcept { return known_.pairs; }
-  // Both are known and neither is late.
+  // ... both are known and neither is late.
   [[nodiscard]] std::uint64_t fresh() const noexcept { return fresh_.pairs; }
 
  private:
@@ -44,8 +45,8 @@ class KnownPairs {
   bool set(std::size_t object, bool is_member, Kind& kind) noexcept;
 
   std::size_t words_;                      // of a line
-  std::vector<std::uint64_t> neighbours_;  // a line of bits an object: who makes a pair with it
-  Kind known_, fresh_;
+  std::vector<std::uint64_t> neighbours_;  // a line of bits an object: its partners in pairs
+  Kind present_, known_, fresh_;
   std::vector<std::uint32_t> regained_;
 };
 

@@ -178,6 +178,7 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
     return bounds_of_one_part_pair(pair, a, b, view, precision);
   }
   PairBounds bounds;
+  if (a.absent || b.absent) bounds.status = PairStatus::kAbsent;
   if (!a.known() || !b.known()) return bounds;
   const DistanceBounds now =
       carried ? bounds_as_carried(entry, view.pairs) : pair_bounds_now(pair, view);
@@ -196,14 +197,14 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   const PairTable& table = view.pairs;
   const TrackedObject& a = view.objects[table.entries[pair].object_a];
   const TrackedObject& b = view.objects[table.entries[pair].object_b];
-  if (bounds.status == PairStatus::kUnknown) report = unknown_report();
+  if (!is_known(bounds.status)) report = unknown_report();
   report.pair = pair;
   report.age_a_ns = a.age_ns;
   report.age_b_ns = b.age_ns;
   report.refresh_age_cycles = view.cycle - table.refreshed_cycle[pair];
-  if (bounds.status == PairStatus::kUnknown) return;
-
   report.status = bounds.status;
+  if (!is_known(bounds.status)) return;
+
   report.lower = bounds.lower;
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;

@@ -41,6 +41,9 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
 // The report of a pair of which nothing is known: figures NaN, bounds infinite.
 [[nodiscard]] PairReport unknown_report() noexcept;
 
+[[nodiscard]] inline bool is_known(PairStatus status) noexcept {
+  return status < PairStatus::kUnknown;
+}
 [[nodiscard]] inline bool is_evaluated(PairStatus status) noexcept {
   return status <= PairStatus::kIterationLimit;
 }

@@ -44,13 +44,27 @@ PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts) {
   gap.assign(part_pairs(), -kInfinity);
 }
 
-void forget(std::uint32_t pair, PairTable& table) noexcept {
+void forget_bounds(std::uint32_t pair, PairTable& table) noexcept {
   for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
        part_pair < table.entries[pair].end_part_pair; ++part_pair) {
     table.lower[part_pair] = -kInfinity;
     table.upper[part_pair] = kInfinity;
   }
   table.entries[pair].least_lower = table.entries[pair].lower_before = -kInfinity;
+}
+
+// Tracking states stay: they are hints.
+void forget_pair(std::uint32_t pair, PairTable& table) noexcept {
+  forget_bounds(pair, table);
+  PairEntry& entry = table.entries[pair];
+  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
+       ++part_pair) {
+    table.part_pair_evaluated_cycle[part_pair] = 0;
+    table.closest[part_pair] = ClosestPoints();
+    table.gap[part_pair] = -kInfinity;
+  }
+  entry.carried_cycle = entry.evaluated_cycle = 0;
+  table.lower_between[pair] = -kInfinity;
 }
 
 }  // namespace clearance

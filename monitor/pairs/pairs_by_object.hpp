@@ -1,4 +1,4 @@
-// Which pairs does an object have, and with whom?
+// The pairs of an object, and its partner in each.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class PairsByObject {
  public:
   explicit PairsByObject(const Scene& scene);
 
-  // In ascending order, indices into Scene::pairs; and the other object of each.
+  // Indices into Scene::pairs, in ascending order; and the other object of each.
   [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept {
     return std::span(pairs_).subspan(first_[object], first_[object + 1] - first_[object]);
   }
@@ -22,7 +22,7 @@ class PairsByObject {
   }
 
  private:
-  std::vector<std::uint32_t> first_;  // by object, and one more
+  std::vector<std::uint32_t> first_;  // by object, and the end
   std::vector<std::uint32_t> pairs_, others_;
 };
 

@@ -4,13 +4,11 @@
 #include <limits>
 
 #include "config/scene/refresh_share.hpp"
-#include "monitor/pairs/evaluate_pairs.hpp"
 
 namespace clearance {
 namespace {
 
-// Pairs of one vector query: enough to fill its lanes, few enough for workers to share (about
-// 10 us).
+// Pairs of one vector query (about 10 us): enough to fill its lanes, few enough for the caches.
 constexpr std::size_t kGroup = 256;
 
 // A query of a pose that is NaN ends before it begins.
@@ -66,19 +64,20 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
   }
 }
 
-void PublishedPairs::evaluate_all(WorkerPool& pool, const OpenTick& tick, Budget& budget) noexcept {
+void PublishedPairs::evaluate_all(const OpenTick& tick, Budget& budget) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
     const PosedPart& part = tick.parts[body_parts_[i]];
     world_from_body_[i] = tick.objects[part.object].seen ? part.world_from_part : kNowhere;
   }
-  const auto one = [this, &tick](std::uint32_t i) noexcept { evaluate_group(groups_[i], tick); };
-  pool.run(static_cast<std::uint32_t>(groups_.size()), {.claim = 1, .least = 2}, one);
-  for (const Group& group : groups_) budget.spend(group.known);
+  for (Group& group : groups_) {
+    evaluate_group(group, tick);
+    budget.spend(group.known);
+  }
   known_.clear();
   for (const std::uint32_t pair : many_parts_) {
     if (is_known(pair, tick)) known_.push_back(pair);
   }
-  evaluate_pairs(known_, pool, tick, budget);
+  evaluate_pairs(known_, tick, budget);
 }
 
 // Queries also the pairs that are not known. An object without a pose costs next to nothing, and a

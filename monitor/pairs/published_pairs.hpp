@@ -10,7 +10,6 @@
 
 #include "core/batch.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
-#include "monitor/pairs/worker_pool.hpp"
 
 namespace clearance {
 
@@ -27,7 +26,7 @@ class PublishedPairs {
   [[nodiscard]] bool every_tick() const noexcept { return every_tick_; }
 
   // Evaluates all that are known. The budget covers them.
-  void evaluate_all(WorkerPool& pool, const OpenTick& tick, Budget& budget) noexcept;
+  void evaluate_all(const OpenTick& tick, Budget& budget) noexcept;
 
  private:
   // Pairs of single parts that are evaluated together.

@@ -26,6 +26,11 @@ struct OpenTick : TickView {
       : TickView{the_objects, the_parts, the_cycle, the_table}, table(the_table) {}
 };
 
+// An object is known not to be there.
+[[nodiscard]] inline bool is_absent(std::uint32_t pair, const TickView& view) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  return view.objects[entry.object_a].absent || view.objects[entry.object_b].absent;
+}
 // Both objects' poses are known.
 [[nodiscard]] inline bool is_known(std::uint32_t pair, const TickView& view) noexcept {
   const PairEntry& entry = view.pairs.entries[pair];

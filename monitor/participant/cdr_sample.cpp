@@ -1,10 +1,9 @@
 #include "monitor/participant/cdr_sample.hpp"
 
-#include <dds/ddsi/ddsi_serdata.h>
-
 #include <array>
 
 #include "monitor/participant/participant.hpp"
+#include "monitor/wire/cyclone_private.hpp"
 
 namespace clearance {
 
@@ -24,7 +23,7 @@ std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken) {
       check_dds(dds_takecdr(reader, samples.data(), kMostAtOnce, infos.data(), DDS_ANY_STATE),
                 "taking samples"));
   for (std::size_t i = 0; i < count; ++i) {
-    CdrSample sample(samples[i], infos[i].source_timestamp);
+    CdrSample sample(samples[i], infos[i]);
     if (infos[i].valid_data) taken.push_back(std::move(sample));
   }
   return count;

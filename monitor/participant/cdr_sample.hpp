@@ -1,4 +1,4 @@
-// Samples as they came, without decoding them: for what passes them on or records them.
+// Samples in CDR, not decoded: for programs that record them or count them.
 #pragma once
 
 #include <dds/dds.h>
@@ -16,11 +16,13 @@ namespace clearance {
 class CdrSample {
  public:
   // Takes the reference over.
-  CdrSample(ddsi_serdata* sample, std::int64_t source_ns)
-      : source_ns_(source_ns), sample_(sample) {}
+  CdrSample(ddsi_serdata* sample, const dds_sample_info_t& info)
+      : source_ns_(info.source_timestamp), writer_(info.publication_handle), sample_(sample) {}
 
   // When it was written, CLOCK_REALTIME of its writer.
   [[nodiscard]] std::int64_t source_ns() const noexcept { return source_ns_; }
+  // The writer that sent it, as its reader knows it.
+  [[nodiscard]] dds_instance_handle_t writer() const noexcept { return writer_; }
   // The bytes with their header of four.
   void copy_to(std::vector<std::byte>& bytes) const;
 
@@ -29,11 +31,12 @@ class CdrSample {
     void operator()(ddsi_serdata* sample) const noexcept;
   };
   std::int64_t source_ns_;
+  dds_instance_handle_t writer_;
   std::unique_ptr<ddsi_serdata, Release> sample_;
 };
 
-// Appends what waits in the reader, and no more than kMostAtOnce; samples without content are
-// passed over. How many were taken, with those: 0, none waits. Throws DdsError.
+// Appends at most kMostAtOnce of the waiting samples, without those that have no content. Returns
+// how many it took, those included; 0: none was waiting. Throws DdsError.
 inline constexpr std::size_t kMostAtOnce = 64;
 std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken);
 

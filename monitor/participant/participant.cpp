@@ -1,6 +1,6 @@
 // Configures the domain in the process instead of by a file, creates the participant, and gives
 // every endpoint the QoS of the topic table. Every call is checked; a failure is a DdsError that
-// says what was attempted.
+// names the attempt.
 #include "monitor/participant/participant.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 #if defined(__SANITIZE_THREAD__)
 // The packaged Cyclone is built without ThreadSanitizer, which therefore sees its locks but not its
-// atomic operations: what it reports inside the library says nothing. Reports in our code are not
+// atomic operations. Reports from inside the library mean nothing; reports in our code are not
 // affected.
 extern "C" const char* __tsan_default_suppressions() { return "race:libddsc.so\n"; }
 #endif
@@ -23,8 +23,8 @@ extern "C" const char* __tsan_default_suppressions() { return "race:libddsc.so\n
 namespace clearance {
 namespace {
 
-// A stopped reader must not hold a writer up: keep-last drops the oldest instead of waiting, and
-// what could still wait (a full send buffer) ends here.
+// A stopped reader must not delay a writer: keep-last drops the oldest sample instead of waiting. A
+// full send buffer could still delay it; this limit ends that wait.
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
 
 constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
@@ -35,7 +35,7 @@ struct QosDeleter {
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-// An empty name is the default partition, which is the absence of the policy.
+// An empty name is the default partition, for which the policy is absent.
 Qos partition_qos(const std::string& partition) {
   Qos qos(dds_create_qos());
   if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
@@ -49,12 +49,12 @@ Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
   dds_qset_durability(qos.get(), delivery == Delivery::kLatched ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                 : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
-  // A writer that leaves takes nothing back: readers keep what it said.
+  // A writer that leaves takes nothing back: readers keep its samples.
   dds_qset_writer_data_lifecycle(qos.get(), false);
   return qos;
 }
 
-// As ROS 2 has it, with what its tools look for.
+// The QoS of ROS 2, with the USER_DATA that its tools look for.
 Qos ros_qos(const RosType& type, bool reliable) {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
@@ -66,7 +66,7 @@ Qos ros_qos(const RosType& type, bool reliable) {
   return qos;
 }
 
-// How large a datagram may be, and a fragment of a sample in it with its headers.
+// The largest sizes of a datagram, and of a fragment of a sample with its headers.
 struct DatagramSizes {
   int message, fragment;
 };
@@ -74,7 +74,7 @@ struct DatagramSizes {
 bool is_loopback(const DdsOptions& options) { return options.interface == "lo"; }
 bool is_default(const DdsOptions& options) { return options.interface == "default"; }
 
-// What chooses the network; nothing for the one that Cyclone chooses.
+// The element that chooses the network; empty for Cyclone's choice.
 std::string interface_xml(const DdsOptions& options) {
   if (is_default(options)) return "";
   return fmt::format(
@@ -82,7 +82,7 @@ std::string interface_xml(const DdsOptions& options) {
       options.interface, is_loopback(options) ? "false" : "spdp");
 }
 
-// The default of Cyclone allows 9 programs on a machine without multicast.
+// Cyclone's default allows 9 programs on a machine without multicast.
 std::string discovery_xml(const DdsOptions& options) {
   std::string xml;
   if (!is_default(options)) {
@@ -97,12 +97,12 @@ std::string discovery_xml(const DdsOptions& options) {
   return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
 }
 
-// What is empty is left out: Cyclone refuses nothing, but a person has to read it.
+// Leaves out empty elements: Cyclone accepts them, but a person has to read the text.
 std::string element(const char* name, const std::string& content) {
   return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
 }
 
-// For clients: how large their datagrams are is their own affair.
+// The text for clients leaves the sizes of their datagrams to them.
 std::string reach(const DdsOptions& options) {
   const std::string on = fmt::format(
       "in domain {} (ROS_DOMAIN_ID){}", options.domain,
@@ -117,15 +117,15 @@ std::string reach(const DdsOptions& options) {
       element("General", interface_xml(options)), element("Discovery", discovery_xml(options)), on);
 }
 
-// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and is ten IP
+// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and needs ten IP
 // fragments on a network.
 DatagramSizes datagram_sizes(const DdsOptions& options) {
   return is_loopback(options) ? DatagramSizes{.message = 65'000, .fragment = 64'000}
                               : DatagramSizes{.message = 1'400, .fragment = 1'300};
 }
 
-// A process can configure a domain once: participants of the same domain share it, and the first
-// one's options hold.
+// A process can configure a domain once: its participants share the domain, with the options of the
+// first one.
 std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
   static std::mutex mutex;
   static std::map<std::uint32_t, std::weak_ptr<const dds_entity_t>> domains;
@@ -172,12 +172,12 @@ std::string domain_configuration(const DdsOptions& options) {
       "{}</Domain></CycloneDDS>",
       interface_xml(options), sizes.message, sizes.fragment,
       element("Discovery", discovery_xml(options)));
-  // What a person sets for all of Cyclone comes last, so it wins.
+  // The person's own settings for Cyclone come last, so they win.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;
 }
 
-// Cyclone keeps the facts while the writer matches; the copy is ours to free.
+// Cyclone keeps the facts while the writer matches. This function frees the copy.
 WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
   dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader, writer);
   if (endpoint == nullptr) return {};
@@ -193,7 +193,7 @@ WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
   return facts;
 }
 
-// Asked again with more room when there are more than fit.
+// Asks again with more space when there are more handles than fit.
 std::vector<std::uint64_t> writers_of(dds_entity_t reader) {
   std::vector<std::uint64_t> writers(64);
   for (;;) {
@@ -250,8 +250,7 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
   return code;
 }
 
-// The partition is that of publisher and subscriber: endpoints of other partitions are never
-// matched.
+// Publisher and subscriber have the partition: endpoints of other partitions never match.
 Participant::Participant(const DdsOptions& options)
     : where_(describe(options)), how_to_reach_(reach(options)) {
   if (options.domain > kMaxDomain) {
@@ -279,7 +278,7 @@ void Participant::make_publisher_and_subscriber(const std::string& partition) {
       check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
 }
 
-// Deletes topics, readers and writers as well, in somebody else's participant all but the topics.
+// Deletes topics, readers and writers too; in another owner's participant, all except the topics.
 Participant::~Participant() {
   if (is_own_) {
     dds_delete(participant_);
@@ -295,8 +294,8 @@ dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const s
                    fmt::format("making topic {}", name));
 }
 
-// Latched topics keep the depth of the table: a reader with a greater one would not get more. The
-// filter is that of the topic entity, of which this reader has one of its own.
+// Latched topics keep the depth of the table: a reader with a greater depth would not get more. The
+// filter belongs to the topic entity, of which this reader has one of its own.
 dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
                                  const dds_listener_t* listener, const dds_topic_filter* filter) {
   const Topic& row = topic(kind);
@@ -308,7 +307,7 @@ dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::i
                    fmt::format("making a reader of {}", name));
 }
 
-// A late joiner needs nothing, and a sample that is lost is followed by another.
+// A late joiner needs no history, and another sample follows a lost one.
 dds_entity_t Participant::reader_of_others(const std::string& name,
                                            const dds_listener_t* listener) {
   const Qos qos(dds_create_qos());
@@ -335,7 +334,7 @@ dds_entity_t Participant::ros_writer(const RosType& type, const std::string& nam
       fmt::format("making a writer of {}", name));
 }
 
-// Depth and durability are those of the table, whatever readers ask for.
+// Depth and durability are those of the table, whatever readers request.
 dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
                                  const WriterOptions& options) {
   const Topic& row = topic(kind);
@@ -360,7 +359,7 @@ DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_
   for (const dds_entity_t reader : readers) add(reader);
 }
 
-// Both are gone already where the participant is.
+// Both are gone already when the participant is.
 DataWait::~DataWait() {
   dds_delete(waitset_);
   dds_delete(guard_);

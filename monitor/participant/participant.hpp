@@ -1,4 +1,4 @@
-// The part of Cyclone DDS that we use: a participant of one domain and partition, and its
+// The part of Cyclone DDS that is used here: a participant of one domain and partition, and its
 // endpoints.
 #pragma once
 
@@ -15,32 +15,31 @@
 
 namespace clearance {
 
-// Passes a handle or count through. Throws DdsError when it is negative.
+// Returns a handle or count; throws DdsError when it is negative.
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 
-// Whether a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
+// True when a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
 [[nodiscard]] bool can_be_looked_up(const std::string& peer);
 
-// Cyclone's configuration for these options, as XML. Loopback takes a whole batch in one datagram
-// of up to 65,000 B. Any other network gets datagrams that fit an Ethernet frame: greater ones
-// would be cut by IP, whose every lost fragment costs the datagram and holds the kernel's
-// reassembly memory for 30 s. Measured with 10 % loss and reports above 14,720 B, of 16,000: 2,984
-// came with Cyclone's own sizes, 14,902 with these.
+// Cyclone's configuration for these options, as XML. Loopback carries a whole batch in one datagram
+// of up to 65,000 B. All other networks get datagrams that fit an Ethernet frame. IP would cut
+// greater ones, and every lost fragment costs the datagram and holds the kernel's reassembly memory
+// for 30 s. Measured with 10 % loss and reports above 14,720 B: of 16,000 reports, 2,984 arrived
+// with Cyclone's own sizes and 14,902 with these.
 [[nodiscard]] std::string domain_configuration(const DdsOptions& options);
 
-// What this end promises and says of itself beyond the table of topics.
+// The writer's promises and announcements beyond the table of topics.
 struct WriterOptions {
-  // Every write says that the writer is alive; without one for this long, readers are told that it
-  // is not. 0: it counts as alive as long as its participant does, which Cyclone gives up after 10
-  // s.
+  // Every write says that the writer is alive. After this time without a write, readers learn that
+  // it is not. 0: it counts as alive while its participant does, which Cyclone gives up after 10 s.
   std::int64_t lease_ns = 0;
-  std::string user_data = {};                // USER_DATA, readable by whoever discovers it
+  std::string user_data = {};                // USER_DATA, which every discovering program can read
   const dds_listener_t* listener = nullptr;  // may be null; it is copied
 };
 
 // A writer as discovery knows it.
 struct WriterFacts {
-  bool present = false;  // it matches the reader still
+  bool present = false;  // it still matches the reader
   std::string guid = {}, user_data = {};
 };
 
@@ -48,7 +47,7 @@ struct WriterFacts {
 [[nodiscard]] WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer);
 // The publication handles of all writers that match.
 [[nodiscard]] std::vector<std::uint64_t> writers_of(dds_entity_t reader);
-// How many match, and how many of these are alive: they have written within their leases.
+// The number of matching writers, and of those that are alive: they wrote within their leases.
 [[nodiscard]] std::uint32_t writers_there(dds_entity_t reader);
 [[nodiscard]] std::uint32_t writers_alive(dds_entity_t reader);
 
@@ -60,31 +59,32 @@ struct WriterFacts {
 class Participant {
  public:
   explicit Participant(const DdsOptions& options);
-  // Endpoints within a participant that somebody else made and deletes, later than this.
+  // Makes endpoints in a participant that its owner deletes after this.
   Participant(dds_entity_t participant, const std::string& partition);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  // Endpoints of a topic under the name given, with the QoS of the topic table. `depth`: samples of
-  // a key that may wait for a reader that is sometimes late; 0: the table's, as for every latched
-  // topic. `listener` and `filter` may be null; both are copied.
+  // Makes endpoints of a topic under the given name, with the QoS of the topic table. `depth`: the
+  // number of samples of a key that may wait for a late reader; 0: the table's, which latched
+  // topics always have. `listener` and `filter` may be null; both are copied.
   dds_entity_t reader(TopicKind kind, const std::string& name, std::int32_t depth = 0,
                       const dds_listener_t* listener = nullptr,
                       const dds_topic_filter* filter = nullptr);
   dds_entity_t writer(TopicKind kind, const std::string& name, const WriterOptions& options = {});
-  // Hears what others write on a distances topic, but no writer of this participant: best-effort,
-  // only the newest sample.
+  // Reads a distances topic without the writers of this participant: best-effort, only the newest
+  // sample.
   dds_entity_t reader_of_others(const std::string& name, const dds_listener_t* listener);
-  // Endpoints of a topic of ROS 2, "rt/joint_states", in the partition of all others: ROS 2 knows
-  // the default one only. A reader of what is not latched is best-effort: it matches every writer.
+  // Makes endpoints of a ROS 2 topic, "rt/joint_states", in the partition of all other endpoints;
+  // ROS 2 uses the default one only. A reader of a topic that is not latched is best-effort: it
+  // matches every writer.
   dds_entity_t ros_reader(const RosType& type, const std::string& name,
                           const dds_listener_t* listener = nullptr);
   dds_entity_t ros_writer(const RosType& type, const std::string& name);
   [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
   // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
-  // How another program has to be started to be on the same network: the CYCLONEDDS_URI to copy.
+  // Says how to start another program on the same network: the CYCLONEDDS_URI to copy.
   [[nodiscard]] const std::string& how_to_reach() const noexcept { return how_to_reach_; }
 
  private:
@@ -106,7 +106,7 @@ class DataWait {
   DataWait& operator=(const DataWait&) = delete;
   // Any reader may be added, by the thread that waits.
   void add(dds_entity_t reader);
-  // True: samples may be there. False: woken, or the time is up.
+  // Returns true when samples may be waiting, false when it was woken or the time is up.
   bool wait(std::int64_t timeout_ns);
   void wake() noexcept;
 

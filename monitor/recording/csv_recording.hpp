@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// What was read and written. Times in ns, as in the log.
+// The result of a conversion. Times are in ns, as in the log.
 struct CsvRecordingResult {
   std::string error;   // empty: the recording is complete
   bool begun = false;  // `out` was written to: where there is an error, it is not complete

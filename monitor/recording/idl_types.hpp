@@ -15,8 +15,7 @@ struct IdlStruct;
 struct IdlType {
   enum class Kind : std::uint8_t { kNumber, kString, kSequence, kStruct };
   Kind kind = Kind::kNumber;
-  // As the text spells it, one space between words: "unsigned long", "double". Of a sequence or
-  // struct: empty, or its name.
+  // The spelling of the text with one space between words: "unsigned long", "double", "sequence".
   std::string name;
   std::uint32_t size = 0;                        // of a number, bytes; CDR aligns it to them
   std::shared_ptr<const IdlType> element = {};   // of a sequence

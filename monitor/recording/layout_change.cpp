@@ -25,7 +25,7 @@ const IdlField* find(const IdlStruct& fields, std::string_view name) {
   return found == fields.fields.end() ? nullptr : &*found;
 }
 
-// What a recording of the one layout lacks in the other, and whether both are the same.
+// Finds what a recording of one layout lacks in the other, and whether both are the same.
 struct LayoutComparison {
   std::string error;
   bool is_same = true;

@@ -1,4 +1,4 @@
-// What a recording is to hold, and in how many files.
+// The content of a recording, and the number of its files.
 #pragma once
 
 #include <cstdint>

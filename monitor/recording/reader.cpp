@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/cdr.hpp"
 
@@ -19,7 +19,7 @@ std::optional<TopicKind> kind_of(const McapChannel& channel) {
   return topic_kind(channel.schema.name);
 }
 
-// From the summary: which kinds the file has; none when there is no summary.
+// Whether the summary says that the file has messages of a kind; none when there is no summary.
 std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKind kind) {
   if (!summary || summary->statistics.messages == 0) return std::nullopt;
   for (const auto& [id, count] : summary->statistics.channel_messages) {

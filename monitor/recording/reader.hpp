@@ -34,7 +34,8 @@ class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& file, const McapWindow& window = {})
       : RecordingReader(std::vector{file}, window) {}
-  // Of one recording, in their order; at least one. Damage in one of them ends the reading.
+  // The files of one recording in their order, at least one. Damage in one of them ends the
+  // reading.
   explicit RecordingReader(const std::vector<std::filesystem::path>& files,
                            const McapWindow& window = {});
 
@@ -54,15 +55,15 @@ class RecordingReader {
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
   // Share of the files that has been read, 0 to 1.
   [[nodiscard]] double progress() const noexcept;
-  // Of the first file.
+  // The summary of the first file.
   [[nodiscard]] const std::optional<McapSummary>& summary() const noexcept {
     return open_.front()->summary();
   }
-  // What the metadata seen so far tell of the recording under this key; empty: nothing.
+  // The value of a key in the metadata read so far; empty: there is none.
   [[nodiscard]] std::string about(const std::string& key) const;
 
  private:
-  // What is known of a channel.
+  // One channel as examined.
   struct Channel {
     std::optional<TopicKind> kind;       // none: not of ours
     std::optional<LayoutChange> change;  // none: the layout is that of this build
@@ -79,7 +80,7 @@ class RecordingReader {
   std::string refusal_;
 };
 
-// What a replay must know before it begins.
+// The facts that a replay must know before it begins.
 struct RecordingOutline {
   std::string error;  // not empty: the file cannot be read at all
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one

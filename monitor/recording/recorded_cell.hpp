@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-// Of an attachment whose bytes are compressed.
+// The media type of an attachment whose bytes are compressed.
 inline constexpr std::string_view kZstdMediaType = "application/zstd";
 
 // Nothing where the recording holds no cell. The files stand in a directory of their own while the

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -98,7 +98,7 @@ void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
   writer_.write(TopicKind::kSeparation, report.now_ns, report.now_ns, *separation_);
 }
 
-// As the daemon does on DDS: each zone at the start, then its changes.
+// Writes each zone at the start, then its changes, as the daemon does on DDS.
 void Recorder::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < scene_.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;

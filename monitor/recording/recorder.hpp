@@ -36,7 +36,7 @@ class Recorder {
 
   void health(const clearance_msg_Health& health);
 
-  // As McapWriter::check: to be asked now and then while nothing is written.
+  // McapWriter::check, to be called now and then while nothing is written.
   bool check() { return writer_.check(); }
 
   // True when everything is in the file.

@@ -46,7 +46,7 @@ struct Definition {
   std::string text;
 };
 
-// From `begin` to where the brackets that follow are closed, and the semicolon.
+// The end of a definition: the semicolon behind the brackets that open after `begin`.
 std::size_t end_of_definition(std::string_view text, std::size_t begin) {
   int depth = 0;
   for (std::size_t i = begin; i < text.size(); ++i) {

@@ -26,9 +26,9 @@ inline constexpr std::string_view kIdlEncoding = "omgidl";
 // idl/clearance.idl as it was when this was built.
 extern const char* const kIdlText;
 
-// What `type` (e.g. PoseBatch) needs out of `idl`, which is written as clearance.idl is: constants
-// of one line and structs, inside modules, each used after its definition. Comments are left out.
-// Empty when there is no such struct.
+// The part of `idl` that `type` (e.g. PoseBatch) needs. The text is written as clearance.idl is:
+// constants of one line and structs, inside modules, each used after its definition. Comments are
+// left out. Empty when there is no such struct.
 [[nodiscard]] std::string self_contained_idl(std::string_view idl, std::string_view type);
 
 }  // namespace clearance

@@ -20,7 +20,7 @@
 namespace clearance {
 
 // Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
-// build, the one that made the reports (monitor/build_info/build_info.hpp), where that is known; of
+// build, the one that made the reports (monitor/files/build_info.hpp), where that is known; of
 // a recording of several files `part`, from 1; pairs_every, where it is not 1; cell_file, where the
 // cell stood, of a recording with the files that it names (recorded_cell.hpp).
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
@@ -64,9 +64,9 @@ class RecordingWriter {
     mcap_->write(channel, time_ns, time_ns, cdr);
   }
 
-  // What was written so far survives a crash.
+  // Afterwards everything written so far survives a crash.
   void flush() { mcap_->flush(); }
-  // As McapWriter::check.
+  // Calls McapWriter::check.
   bool check() { return mcap_->check(); }
   bool close() { return mcap_->close(); }
   [[nodiscard]] bool ok() const noexcept { return mcap_->ok(); }

@@ -1,4 +1,4 @@
-// How much of a replayed report must agree with the recorded one.
+// The extent to which a replayed report must agree with the recorded one.
 #pragma once
 
 #include <cstdint>

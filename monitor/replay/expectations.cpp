@@ -49,7 +49,7 @@ Expectations::Expectations(const Scene& scene, std::optional<double> min_distanc
   }
 }
 
-// Before every moving object has been seen, distances are unknown and zones active by definition.
+// Before every moving object is known, distances are unknown and zones active by definition.
 bool Expectations::all_seen(const Monitor& monitor) {
   for (std::uint32_t i = 0; i < scene_.objects.size() && !all_seen_; ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) return false;
@@ -77,7 +77,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
   return broken;
 }
 
-// Of the pairs that are known.
+// Judges the pairs that are known.
 std::optional<std::string> Expectations::certainly_near(const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {

@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// How two sides are compared.
+// Options of a comparison.
 struct DifferenceOptions {
   std::uint64_t cycle_offset = 0;  // recorded cycle numbers are ahead of replayed ones by this
   // Fields that the recording's build did not have, "Distances.queries": they are not compared.

@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/replay/reference_check.hpp"
@@ -169,7 +169,7 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
   if (options_.progress) options_.progress(1.0);
 }
 
-// What can be said only after the last tick.
+// Judgements that are possible only after the last tick.
 void Replay::judge_the_whole() {
   compare_zones();
   if (in_window_ == 0) {
@@ -217,7 +217,7 @@ void Replay::begin_tick(const TickInput& input) {
   last_recorded_cycle_ = cycle;
 }
 
-// Expectations see every tick, since they begin when all objects have been seen; everything else
+// Expectations see every tick, since they begin when all objects are known; everything else
 // only the ticks of the window.
 void Replay::end_tick(const TickInput& input, const Report& report,
                       const std::function<void(const ReplayedTick&)>& on_tick) {
@@ -228,7 +228,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     fail(report.cycle, report.now_ns, what);
   }
   if (options_.compare) {
-    // What is certain of other poses says nothing about these.
+    // Bounds for other poses say nothing about these.
     const bool comparable = input.complete || *options_.compare == Comparison::kBits;
     if (in_window && comparable && !differs_) compare(input, report);
     zones_.replayed(report, cycle_offset_);
@@ -265,8 +265,8 @@ void Replay::compare(const TickInput& input, const Report& report) {
                  what));
 }
 
-// The report first, since the other messages follow from it. Where only bounds are compared, other
-// bounds lead to other separations and gradients.
+// The report comes first, since the other messages follow from it. Where only bounds are compared,
+// other bounds lead to other separations and gradients.
 std::optional<std::string> Replay::difference(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
   if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
@@ -276,7 +276,7 @@ std::optional<std::string> Replay::difference(const TickInput& input, const Repo
   if (auto found = message_difference(scene_, *input.recorded, *replayed_, how)) return found;
   if (input.separation != nullptr) {
     to_wire(report, 0, *separation_);
-    if (input.separation->pairs._length == 0) separation_->pairs._length = 0;  // thinned out
+    if (some_without_pairs_ && input.separation->pairs._length == 0) separation_->pairs._length = 0;
     if (const auto found = message_difference(scene_, *input.separation, *separation_, how))
       return "separation." + *found;
   }
@@ -325,7 +325,7 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
   result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
-// What was left out, at the end and as totals.
+// Notes at the end what was left out, as totals.
 void Replay::note_counts() {
   const auto note = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));

@@ -42,19 +42,19 @@ struct OfflineReplayOptions {
 
   std::optional<Comparison> compare = {};  // with the recorded reports and zones
 
-  // Where a recording of several files goes on, in their order.
+  // The further files of a recording of several files, in their order.
   std::vector<std::filesystem::path> continued_in = {};
 
   // Ticks a second, where the recording holds no reports, which say when the ticks were; 0: only
   // when something came. Not stated: the cell's rate for a bag or a joint log, 0 for recordings of
   // ours.
   std::optional<double> tick_hz = {};
-  // Of a bag (monitor/bags): topics of joint states; empty: all that are named joint_states.
+  // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
-  // Of a bag or a joint log: positions of joints that it does not have, by name, rad or m.
+  // Positions of joints that a bag or joint log does not have, by name, rad or m.
   std::map<std::string, double> joints = {};
 
-  // Expectations begin when every moving object of the cell has been seen once.
+  // Expectations begin when every moving object of the cell has been known once.
   // Every pair's distance is certified to be at least this, m.
   std::optional<double> expect_min_distance = {};
   // Names of zones that are never active.
@@ -64,7 +64,7 @@ struct OfflineReplayOptions {
   // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
   // not meet it: let the scene evaluate all, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
-  // How far off a reference may be, m: distances and bounds may differ by that much. Not stated:
+  // The tolerance of a reference, m: distances and bounds may differ by that much. Not stated:
   // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
   std::optional<double> tolerance = {};
 
@@ -79,8 +79,8 @@ struct ReplayedTick {
   const Monitor& monitor;
 };
 
-// How a person finds a tick: the replay counts its own from 1, and the daemon that was recorded may
-// have been further by then.
+// A tick as a person finds it: the replay counts its own from 1, and the daemon that was recorded
+// may have been further by then.
 struct TickNumber {
   std::uint64_t cycle = 0;     // of the replay; 0: no tick, all of it
   std::uint64_t recorded = 0;  // of the daemon; as `cycle` where the recording holds no reports

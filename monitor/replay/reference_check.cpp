@@ -71,7 +71,7 @@ ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& 
   const auto has = [&](std::string_view name) {
     return std::ranges::find(there, name) != there.end();
   };
-  // As clearance-replay --csv calls it.
+  // clearance-replay --csv calls it so.
   if (!has(columns[kTime]) && has("now_ns")) columns[kTime] = "now_ns";
   CsvTable table(file, columns);
   Value value;

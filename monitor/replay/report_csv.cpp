@@ -19,7 +19,7 @@ namespace {
 // Large enough that writing takes no noticeable time for each tick.
 constexpr std::size_t kWriteAt = std::size_t{1} << 18;  // bytes
 
-// As RFC 4180 has it.
+// Quotes a name as RFC 4180 demands.
 std::string quoted(const std::string& name) {
   if (name.find_first_of(",\"\n") == std::string::npos) return name;
   std::string out = "\"";

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// How far behind a report, in log time, a batch that it used may stand in the file: recorded over
+// A batch may stand behind the report that used it by this much log time: recorded over
 // DDS, topics overtake each other.
 constexpr std::int64_t kReadAheadNs = 2'000'000'000;
 
@@ -178,7 +178,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   return true;
 }
 
-// Behind the report of the tick, as far as topics may overtake each other.
+// Reads behind the report of the tick, as far as topics may overtake each other.
 bool TickFeed::read_ahead() { return read_to_ns_ < current_.log_ns + kReadAheadNs && read_one(); }
 
 // The place among the waiting batches; their count when it is not there.
@@ -203,7 +203,7 @@ bool TickFeed::all_there(std::span<const SourceUse> sources) const {
   });
 }
 
-// Of each source everything up to the batch that is named, all sources in file order.
+// Takes everything of each source up to the batch that is named, all sources in file order.
 void TickFeed::take_used(TickInput& tick) {
   const std::vector<SourceUse>& sources = tick.sources;
   std::vector<std::size_t> until;  // by source: one past the place of its last batch
@@ -246,7 +246,7 @@ void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   }
 }
 
-// What no report has named in time, the daemon did not use.
+// The daemon did not use a batch that no report has named in time.
 void TickFeed::forget_unused(std::int64_t log_ns) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
     batches_waiting_.pop_front();

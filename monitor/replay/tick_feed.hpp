@@ -1,4 +1,4 @@
-// Reads a recording, or a log of somebody else's, tick by tick: the poses that each tick of the
+// Reads a recording, or a log of another program, tick by tick: the poses that each tick of the
 // daemon took in, and its time.
 //
 // Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
@@ -31,14 +31,15 @@
 
 namespace clearance {
 
-// What Monitor::tick gets, and the report that the daemon made of it.
+// The input of Monitor::tick, and the report that the daemon made of it.
 struct TickInput {
   TickTime time;
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
-  // Of the same tick; null: the scene asks for none, or the recording has none of this tick.
+  // Messages of the same tick; null: the scene asks for none, or the recording has none of this
+  // tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
   bool restart = false;  // the daemon had been started anew: its monitor knew nothing
@@ -58,9 +59,9 @@ class TickMessages {
   // none.
   template <class ReadAhead>
   [[nodiscard]] const Message* of_tick(std::int64_t now_ns, const ReadAhead& read_ahead);
-  // How many have come, though the scene asks for none.
+  // The number that came, though the scene asks for none.
   [[nodiscard]] std::uint64_t unwanted() const noexcept { return unwanted_; }
-  // How many belong to no report, those from before the first report aside.
+  // The number that belong to no report; those from before the first report do not count.
   [[nodiscard]] std::uint64_t unmatched() const noexcept { return unmatched_; }
 
  private:
@@ -78,14 +79,14 @@ class TickFeed {
   // log times.
   TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
            const RecordingOutline& outline, double tick_hz = 0.0);
-  // Somebody else's.
+  // A log of another program.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 
   // The next tick; its content is valid until the next call. False at the end or the damage.
   [[nodiscard]] bool next(TickInput& tick);
 
   [[nodiscard]] const ObjectMap& objects() const noexcept { return objects_; }
-  // What the recording said of its zones so far, in file order.
+  // The states of zones in the recording so far, in file order.
   [[nodiscard]] const std::vector<clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
@@ -109,7 +110,7 @@ class TickFeed {
   }
   // Fields that the recording's build did not have: RecordingReader::not_recorded().
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
-  // How often nothing came for so long that ticks at a fixed rate were left out.
+  // The number of pauses so long that ticks at a fixed rate were left out.
   [[nodiscard]] std::uint64_t silences() const noexcept { return silences_; }
 
  private:

@@ -73,7 +73,7 @@ Status distances_status(const Scene& scene, const Report& report) {
   return status;
 }
 
-// Of a pose or a position: its age as a value, and what is wrong with it.
+// Adds the age of a pose or a position as a value, and its fault if it has one.
 template <class Age>
 void add_input(const Age& input, Status& status) {
   const std::string name = input.name;

@@ -1,8 +1,8 @@
-// The health of a cell as diagnostics of ROS 2: what the health topic and the zones say, as levels
-// and texts.
+// The health of a cell as diagnostics of ROS 2: the content of the health topic and the zones as
+// levels and texts.
 //
-// OK: known and on time. WARN: late, active, overrun; figures still hold, with wider bounds. ERROR:
-// not known, so nothing is clear of it.
+// OK: known and on time. WARN: late, active or overrun; figures still hold, with wider bounds.
+// ERROR: not known, so nothing is clear of it.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ class CellDiagnostics {
   // The scene must outlive this.
   explicit CellDiagnostics(const Scene& scene) : scene_(scene) {}
 
-  // To be called with every health sample, in order, and the report before it. Statuses: tick,
-  // distances, poses, joints of each robot, each zone, and the recording where there is one.
+  // Called with every health sample, in order, and with the report before it. The statuses are:
+  // tick, distances, poses, joints of each robot, each zone, and the recording if there is one.
   // Allocates.
   [[nodiscard]] Sample<DiagnosticArray> make(const clearance_msg_Health& health,
                                              const Report& report, std::int64_t stamp_ns);

@@ -1,10 +1,9 @@
 #include "monitor/ros/ros_writer.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/app/log_lines.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/visual/cell_markers.hpp"
@@ -13,20 +12,19 @@
 namespace clearance {
 namespace {
 
-// Of reports and numbers, for a thread that waits for a full send buffer now and then.
+// Slots for reports and numbers: the thread waits for a full send buffer now and then.
 constexpr std::size_t kReports = 2, kNumbers = 64;
-// A viewer that has thrown its markers away gets the bodies again.
+// A viewer that has dropped its markers gets the bodies again.
 constexpr std::int64_t kBodiesAgainNs = 10'000'000'000;
 // Diagnostics need the last report before each second's end.
 constexpr double kDiagnosticReportsHz = 10.0;
 
-// 0: the cell does not ask for this topic.
+// Returns 0 when the cell does not ask for this topic.
 dds_entity_t make_writer(Participant& participant, const RosType& type, const std::string& topic) {
   return topic.empty() ? 0 : participant.ros_writer(type, ros_dds_name(topic));
 }
 
-// The least of separation monitoring; a cell without it has the two speeds that its zones stand
-// for.
+// The smallest scaling of separation monitoring. In a cell without it, zones stand for two speeds.
 double speed_scaling(const Report& report) noexcept {
   if (!report.separated_zones.empty())
     return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;
@@ -89,8 +87,8 @@ void RosWriter::statistics(const LoopStatistics& statistics) noexcept {
 
 void RosWriter::run() {
   name_thread("ros");
-  // Nobody's safety rests on what it writes: no priority over the rest of the machine.
-  if (const Refusal refusal = use_fifo_scheduling(0)) spdlog::warn("{}", *refusal);
+  // No safety depends on this thread: it needs no priority.
+  if (const Refusal refusal = use_fifo_scheduling(0)) log_line(lines::kSystemRefuses, *refusal);
   for (;;) {
     queue_.wait();
     if (stop_) return;
@@ -117,7 +115,7 @@ void RosWriter::write_numbers() {
   }
 }
 
-// Bodies whenever a reader comes, and now and then: the topic is volatile, as viewers expect.
+// Writes bodies when a reader comes, and now and then: the topic is volatile, as viewers expect.
 void RosWriter::write_markers(const QueuedReport& queued) {
   dds_publication_matched_status_t readers{};
   dds_get_publication_matched_status(markers_, &readers);
@@ -125,19 +123,14 @@ void RosWriter::write_markers(const QueuedReport& queued) {
   if (readers.current_count == 0) return;
   const std::int64_t now_ns = queued.handed_over_ns;
   if (bodies_due_ || std::abs(now_ns - bodies_written_ns_) >= kBodiesAgainNs) {
-    if (bodies_.empty()) bodies_ = bodies_message_for_tf(scene_, settings_.world());
-    write_marker_array(bodies_);
+    if (!bodies_) bodies_ = bodies_message_for_tf(scene_, settings_.world());
+    write(markers_, &**bodies_);
     bodies_written_ns_ = now_ns;
     bodies_due_ = false;
   }
   to_wire(queued.report, queued.sources(), 0, *distances_);
   const std::int64_t stamp_ns = queued.report.now_ns + queued.report.clock_offset_ns;
-  write_marker_array(closest_message(scene_, *distances_, stamp_ns, settings_.world()));
-}
-
-// Through Cyclone's own type, which checks every length.
-void RosWriter::write_marker_array(std::span<const std::byte> cdr) {
-  if (decoder_.decode(cdr, marker_array_)) write(markers_, &*marker_array_);
+  write(markers_, &*closest_message(scene_, *distances_, stamp_ns, settings_.world()));
 }
 
 void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
@@ -147,13 +140,13 @@ void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
   write(diagnostics_, &*sample);
 }
 
-// Powers of two say often enough that something fails.
+// Failures are logged at powers of two, which is often enough.
 void RosWriter::write(dds_entity_t writer, const void* sample) {
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return;
   const std::uint64_t failed = ++failed_writes_;
   if ((failed & (failed - 1)) == 0) {
-    spdlog::warn("writing for ROS 2 failed: {} ({} failed so far)", dds_strretcode(result), failed);
+    log_line(lines::kRosWriteFailed, dds_strretcode(result), failed);
   }
 }
 

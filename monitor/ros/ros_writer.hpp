@@ -1,15 +1,15 @@
-// What a cell tells ROS 2: markers, diagnostics and numbers, as far as it asks for them.
+// The daemon's output for ROS 2: the markers, diagnostics and numbers that the cell asks for.
 //
-// A thread of its own makes and writes them. The tick thread copies a number each tick, a report as
-// often as markers are drawn, statistics once a second, and waits for nothing: what finds no room
-// is left out, and the next one says it anew.
+// A thread of its own makes and writes them. The tick thread copies a number in each tick, a report
+// as often as markers are drawn, and statistics once a second. It never waits: a full queue loses
+// its newest entry, and the next one replaces it.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <thread>
-#include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/dds/pose_reader.hpp"
@@ -19,18 +19,18 @@
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/cell_diagnostics.hpp"
-#include "monitor/wire/cdr.hpp"
+#include "monitor/visual/ros_types.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 
-// Whether the cell writes anything for ROS 2.
+// True when the cell writes anything for ROS 2.
 [[nodiscard]] bool writes_ros(const Cell& cell) noexcept;
 
 class RosWriter final : public ReportSink {
  public:
-  // Joins the topics that the cell names and starts the thread. Everything given must outlive
-  // this. `published`: of the reports on DDS, whose losses diagnostics name.
+  // Joins the topics that the scene names and starts the thread. Everything given must outlive
+  // this. `published` is the queue of the reports on DDS; diagnostics name its losses.
   RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
             const ReportQueue& published, const RecordingHealth& recording);
   ~RosWriter() override;
@@ -46,7 +46,7 @@ class RosWriter final : public ReportSink {
   void finish();
 
  private:
-  // Of one tick.
+  // The numbers of one tick.
   struct Numbers {
     double minimum_distance = 0.0, speed_scaling = 0.0;
   };
@@ -54,7 +54,6 @@ class RosWriter final : public ReportSink {
   void run();
   void write_numbers();
   void write_markers(const QueuedReport& queued);
-  void write_marker_array(std::span<const std::byte> cdr);
   void write_diagnostics(const LoopStatistics& statistics);
   void write(dds_entity_t writer, const void* sample);
 
@@ -66,17 +65,16 @@ class RosWriter final : public ReportSink {
   dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_;  // 0: not asked for
   ReportQueue queue_;
   SpscRing<Numbers> numbers_;
-  std::int64_t period_ns_, next_ns_ = 0;  // tick thread: when a report is handed over again
+  std::int64_t period_ns_,
+      next_ns_ = 0;  // tick thread: the time of the next report for this thread
 
-  // The thread's own.
+  // Used by the thread only.
   CellDiagnostics cell_diagnostics_;
   Report last_;
   Sample<clearance_msg_Distances> distances_;
-  Sample<visualization_msgs_msg_dds__MarkerArray_> marker_array_;
-  std::vector<std::byte> bodies_;
-  bool bodies_due_ = false;  // a reader has come
+  std::optional<Sample<ros::MarkerArray>> bodies_;  // made for the first reader
+  bool bodies_due_ = false;                         // a reader has come
   std::int64_t bodies_written_ns_ = 0;
-  CdrDecoder decoder_;
   std::uint64_t failed_writes_ = 0;
   std::atomic<bool> stop_{false};
   std::thread thread_;

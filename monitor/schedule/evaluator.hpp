@@ -5,7 +5,7 @@
 #include <span>
 
 #include "monitor/broad_phase/culling.hpp"
-#include "monitor/pairs/evaluate_pairs.hpp"
+#include "monitor/pairs/evaluate_pair.hpp"
 #include "monitor/schedule/refresh_queue.hpp"
 
 namespace clearance {
@@ -15,12 +15,11 @@ struct Evaluator {
   Budget& budget;
   Culling& culling;
   RefreshQueue& queue;
-  WorkerPool& pool;
 
   // Evaluates as many of the first pairs as the budget covers. All are known, and none was
   // evaluated in this tick before.
   void evaluate_affordable(std::span<const std::uint32_t> pairs) const noexcept {
-    const std::size_t done = evaluate_pairs(pairs, pool, tick, budget);
+    const std::size_t done = evaluate_pairs(pairs, tick, budget);
     for (const std::uint32_t pair : pairs.first(done)) {
       culling.mark_updated(pair);
       if (is_evaluated(pair, tick)) note_refreshed(pair);

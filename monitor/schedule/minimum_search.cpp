@@ -22,8 +22,7 @@ void MinimumSearch::find_minimum(const Evaluator& evaluator) noexcept {
   }
 }
 
-// Evaluates in batches that grow. One pair is mostly enough, and the size of a batch must not
-// depend on the number of workers.
+// Evaluates in batches that grow, because one pair is mostly enough.
 void MinimumSearch::evaluate_closest(const Evaluator& evaluator) noexcept {
   const PairTable& table = evaluator.tick.pairs;
   double smallest_upper = kInfinity;

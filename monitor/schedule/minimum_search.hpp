@@ -18,7 +18,7 @@ class MinimumSearch {
   // If the budget lasts, no pair that was not updated can be closer than the minimum afterwards.
   void find_minimum(const Evaluator& evaluator) noexcept;
 
-  // The smallest upper bound of the pairs that the last search looked at, m.
+  // The smallest upper bound of the pairs that the last search examined, m.
   [[nodiscard]] double smallest_upper() const noexcept { return smallest_upper_; }
 
  private:

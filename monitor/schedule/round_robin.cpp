@@ -37,8 +37,7 @@ void RoundRobin::bring_back(const Culling& culling, const TickView& view) noexce
   queue_.bring_back(culling.broad_phase().by_object(), view);
 }
 
-// Published pairs that outnumber the budget must not starve the other pairs, nor the other way
-// round.
+// Published pairs that outnumber the budget must not starve the other pairs, and vice versa.
 void RoundRobin::refresh(const PublishedPairs& published, bool all_published,
                          const Evaluator& evaluator) noexcept {
   Budget& budget = evaluator.budget;

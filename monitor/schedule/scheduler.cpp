@@ -20,12 +20,11 @@ std::uint32_t part_pairs_of(std::span<const std::uint32_t> pairs, const PairTabl
 
 Scheduler::Scheduler(const Scene& scene, const RefreshShare& share,
                      const std::vector<PosedPart>& parts, const PairTable& table,
-                     const ZoneLevels& levels, WorkerPool& pool)
+                     const ZoneLevels& levels)
     : published_(scene, parts, table, share.published_every_tick),
       minimum_(scene.pairs.size()),
       urgency_(scene, levels),
-      round_robin_(scene, share),
-      pool_(pool) {
+      round_robin_(scene, share) {
   re_evaluated_.reserve(kMostReEvaluated);
 }
 
@@ -49,7 +48,7 @@ Schedule Scheduler::schedule(const Culling& culling, const TickView& view,
 
 bool Scheduler::evaluate_urgent(const Schedule& schedule, Culling& culling, const OpenTick& tick,
                                 Budget& budget) noexcept {
-  const Evaluator evaluator{tick, budget, culling, round_robin_.queue(), pool_};
+  const Evaluator evaluator{tick, budget, culling, round_robin_.queue()};
   round_robin_.bring_back(culling, tick);
   evaluator.queue_decided();
   if (published_.every_tick()) update_published(schedule, evaluator);
@@ -60,7 +59,7 @@ bool Scheduler::evaluate_urgent(const Schedule& schedule, Culling& culling, cons
 
 Evaluated Scheduler::refresh(const Schedule& schedule, bool urgent_done, Culling& culling,
                              const OpenTick& tick, Budget& budget) noexcept {
-  const Evaluator evaluator{tick, budget, culling, round_robin_.queue(), pool_};
+  const Evaluator evaluator{tick, budget, culling, round_robin_.queue()};
   round_robin_.refresh(published_, schedule.published_at_once, evaluator);
   if (!urgent_done) {
     minimum_.find_minimum(evaluator);
@@ -74,7 +73,7 @@ Evaluated Scheduler::refresh(const Schedule& schedule, bool urgent_done, Culling
 void Scheduler::update_published(const Schedule& schedule, const Evaluator& evaluator) noexcept {
   const OpenTick& tick = evaluator.tick;
   if (schedule.published_at_once) {
-    published_.evaluate_all(pool_, tick, evaluator.budget);
+    published_.evaluate_all(tick, evaluator.budget);
     for (const std::uint32_t pair : published_.pairs()) {
       if (!is_evaluated(pair, tick)) continue;
       evaluator.culling.mark_updated(pair);

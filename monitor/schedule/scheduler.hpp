@@ -15,7 +15,7 @@
 //  5. refresh: a share of all pairs, culled or not, and of the published pairs that the budget does
 //     not cover at once, round-robin (RoundRobin). The tick keeps their queries from 1 to 4;
 //  6. refresh: pairs that a tighter bound may cull.
-// Order and result depend on the inputs only: on no clock, no addresses, no number of workers.
+// Order and result depend on the inputs only: on no clock and no addresses.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct Schedule {
 
 // What the evaluations of a tick leave to the next one and to the report.
 struct Evaluated {
-  double smallest_upper = kInfinity;  // of any pair that the search for the minimum looked at, m
+  double smallest_upper = kInfinity;  // of any pair that the search for the minimum examined, m
   // The tick in which the stalest known pair was last refreshed. While pairs are met for the first
   // time, or come back, it may be too early, but no pair is older.
   std::uint64_t oldest_refresh = 0;
@@ -47,9 +47,9 @@ struct Evaluated {
 
 class Scheduler {
  public:
-  // The scene, the levels and the pool must outlive it.
+  // The scene and the levels must outlive it.
   Scheduler(const Scene& scene, const RefreshShare& share, const std::vector<PosedPart>& parts,
-            const PairTable& table, const ZoneLevels& levels, WorkerPool& pool);
+            const PairTable& table, const ZoneLevels& levels);
 
   // The pairs that are left out of the broad phase: every tick evaluates or updates them.
   [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept;
@@ -77,7 +77,6 @@ class Scheduler {
   MinimumSearch minimum_;
   UrgencyBins urgency_;
   RoundRobin round_robin_;
-  WorkerPool& pool_;
   std::vector<std::uint32_t> re_evaluated_;
 };
 

@@ -1,5 +1,5 @@
-// A point at r from the body's origin has v + w x r, whose share along n is n.v + r.(n x w): no
-// more than n.v + |n x w| |r|.
+// A point at r from the body's origin has the velocity v + w x r. Its component along n is
+// n.v + r.(n x w), at most n.v + |n x w| |r|.
 #include "monitor/separation/closing.hpp"
 
 #include <algorithm>

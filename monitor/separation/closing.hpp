@@ -1,4 +1,4 @@
-// How fast a body comes towards another at most.
+// An upper bound of the speed of a body towards another.
 #pragma once
 
 #include "core/vec.hpp"
@@ -6,9 +6,9 @@
 
 namespace clearance {
 
-// Of all points of the body, along `towards`, a unit vector; NaN: in any direction. m/s, not
-// negative, rounding included. `max_speed`: what none of its points exceeds, m/s; a measured speed
-// of its point `witness` counts all the same.
+// Of all points of the body, along `towards`, a unit vector (NaN: in any direction), m/s, not
+// negative, rounding included. No point is faster than `max_speed`, m/s, but the measured speed of
+// its point `witness` counts all the same.
 [[nodiscard]] double speed_towards(const TrackedObject& body, const Vec3& towards,
                                    const Vec3& witness, double max_speed) noexcept;
 

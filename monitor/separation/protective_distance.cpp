@@ -13,8 +13,8 @@ struct Quadratic {
   double c0, c1, c2;
 };
 
-// How the time and the distance of stopping grow with the speed at which braking begins: by
-// `time` v s and `distance` v^2 m, from the constants where no speed is stated.
+// The time, s, and the distance, m, that stopping takes from the speed v at which braking begins:
+// constants, plus `time` v and `distance` v^2.
 struct Stopping {
   double constant_time = 0.0, constant_distance = 0.0;
   double time = 0.0, distance = 0.0;
@@ -33,7 +33,7 @@ Quadratic quadratic(const Separation& terms, const Approach& approach) noexcept 
   const Stopping s = stopping(terms);
   const double reaction = seconds(terms.reaction_time_ns);
   const double gained = terms.robot_acceleration * reaction;
-  // Until the robot stands: t0 + t1 v.
+  // The time until the robot stands: t0 + t1 v.
   const double t0 = approach.human_age + reaction + s.constant_time + s.time * gained;
   const double t1 = s.time;
   const double half = 0.5 * approach.human_acceleration;
@@ -50,7 +50,8 @@ Quadratic quadratic(const Separation& terms, const Approach& approach) noexcept 
 
 }  // namespace
 
-// Sums, products and rounding outward of what is not negative: each step keeps the order.
+// Only sums, products and rounding outward of figures that are not negative. Each of them is
+// monotonic, so S_p is never smaller for a larger speed.
 ProtectiveDistance protective_distance(const Separation& terms, const Approach& approach,
                                        double speed) noexcept {
   const Stopping s = stopping(terms);
@@ -69,8 +70,8 @@ ProtectiveDistance protective_distance(const Separation& terms, const Approach& 
   return found;
 }
 
-// The root of c0 + c1 v + c2 v^2 = distance in the form that does not cancel; then down, by what it
-// is too much and more, until the rounded S_p agrees.
+// The root of c0 + c1 v + c2 v^2 = distance, in the form that does not cancel. Then it is lowered,
+// by its excess and more, until the rounded S_p agrees.
 double largest_speed(const Separation& terms, const Approach& approach, double distance) noexcept {
   constexpr int kMostSteps = 8;
   constexpr double kMore = 1.0 + 0x1p-40;

@@ -12,7 +12,8 @@
 namespace clearance {
 namespace {
 
-// A late object's pair has lower bounds that count in what it may have moved since its pose.
+// The age that S_p has to cover, s. A late object counts as 0: the pair's lower bound already has
+// what the object may have moved since its pose.
 double age_to_count_in(const TrackedObject& object) noexcept {
   return object.late ? 0.0 : rounded_up(seconds(object.age_ns));
 }
@@ -26,20 +27,20 @@ PairSeparation unknown_separation(std::uint32_t zone, std::uint32_t pair) noexce
   return unknown;
 }
 
-// From the robot to the person, where that was found in this tick; else NaN.
+// The direction from the robot to the person, if it was found in this tick; else NaN.
 Vec3 towards_human(const PairReport& pair, bool human_is_first, std::uint64_t cycle) noexcept {
   if (pair.evaluated_cycle != cycle) return Vec3::Constant(kNan);
   return human_is_first ? Vec3(-pair.normal) : pair.normal;
 }
 
-// The largest factor of the robot's present speed with which it is not above the limit.
+// The largest factor that brings the robot's present speed to the limit or below.
 double scaling_of(double robot_speed, double speed_limit, double remaining_when_standing) noexcept {
   if (!(remaining_when_standing >= 0.0)) return 0.0;
   if (robot_speed <= speed_limit) return 1.0;
   return rounded_down(speed_limit / robot_speed);
 }
 
-// The weakest of a zone's pairs.
+// Takes the least of each figure.
 void count_in(const PairSeparation& pair, ZoneSeparation& zone) noexcept {
   const bool is_least = pair.scaling < zone.scaling ||
                         (pair.scaling == zone.scaling && pair.remaining < zone.remaining);
@@ -93,7 +94,7 @@ void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cy
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const SeparatedZone& zone = zones_[z];
     ZoneSeparation least{.zone = zone.zone,
-                         .validity = SeparationValidity::kMeasured,
+                         .validity = SeparationValidity::kAbsent,
                          .pair = members_[zone.first_member].pair,
                          .remaining = kInfinity,
                          .speed_limit = kInfinity,
@@ -102,13 +103,13 @@ void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cy
       const Member& member = members_[m];
       PairSeparation& pair = report.separated_pairs[m];
       write_pair(zone, member, report.pairs[member.published], objects, cycle, pair);
-      count_in(pair, least);
+      if (pair.validity != SeparationValidity::kAbsent) count_in(pair, least);
     }
     report.separated_zones[z] = least;
   }
 }
 
-// Speeds are those that are measured; what is not known has the largest that is stated.
+// Measured speeds count; a speed that is not known counts as the largest that is stated.
 void Separations::write_pair(const SeparatedZone& zone, const Member& member,
                              const PairReport& pair, std::span<const TrackedObject> objects,
                              std::uint64_t cycle, PairSeparation& out) const noexcept {
@@ -118,6 +119,12 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   out.age_human_ns = human.age_ns;
   out.age_robot_ns = robot.age_ns;
 
+  if (human.absent || robot.absent) {
+    out.validity = SeparationValidity::kAbsent;
+    out.speed_limit = kInfinity;
+    out.scaling = 1.0;
+    return;
+  }
   const double robot_limit = scene_.objects[member.robot].max_speed;
   const double robot_assumed = std::min(terms.robot_speed, robot_limit);
   const bool robot_known = robot.velocity_known();

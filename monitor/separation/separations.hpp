@@ -1,4 +1,5 @@
-// Stage 8 of a tick: what the zones with `separation` say, from the reports of their pairs.
+// Stage 'separate' of a tick: speed and separation monitoring in the zones that ask for it, from
+// the reports of their pairs.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +15,10 @@ namespace clearance {
 
 class Separations {
  public:
-  // The scene must outlive it. Such zones' pairs are published.
+  // The scene must outlive it. The pairs of these zones are published.
   Separations(const Scene& scene, const ZoneLevels& levels);
 
-  // Gives the report's lists their sizes; everything unknown.
+  // Gives the report's lists their sizes; all figures are unknown.
   void prepare(Report& report) const;
 
   // `report.pairs` are of this tick. Allocates nothing.

@@ -108,7 +108,10 @@ std::uint32_t ZoneCrossings::queries() const noexcept {
 void ZoneCrossings::sweep(std::span<const std::uint32_t> updated, const Zones& zones,
                           const TickView& view, Budget& budget) noexcept {
   find_more(updated, zones, view);
-  for (Crossing& crossing : crossings_) decide(zones, view, budget, crossing);
+  for (Crossing& crossing : crossings_) {
+    decide(zones, view, budget, crossing);
+    CLEARANCE_INVARIANT(crossing.bounds.lower <= crossing.bounds.upper);
+  }
   std::ranges::sort(crossings_, {}, &Crossing::pair);
 }
 

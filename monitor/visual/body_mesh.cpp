@@ -13,7 +13,8 @@
 namespace clearance {
 namespace {
 
-// Edges whose facets meet at less than this are not drawn as lines, rad: hulls of meshes have many.
+// Edges whose facets meet at a smaller angle than this, rad, are not drawn as lines: hulls of
+// meshes have many.
 constexpr double kSharpEdge = 0.35;
 
 double angle_between(const Vec3& a, const Vec3& b) {
@@ -60,7 +61,7 @@ BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius, double 
   return std::move(builder.mesh);
 }
 
-// The corners of a bounded facet, counter-clockwise as seen from outside.
+// The vertices of a bounded facet, counter-clockwise seen from outside.
 std::vector<std::int32_t> corners(const ConvexBody& body, const Facet& facet) {
   std::vector<std::int32_t> found;
   for (std::int32_t i = 0; i < facet.sides; ++i) {
@@ -103,7 +104,7 @@ void add_edge_strip(const ConvexBody& body, const Edge& edge, double radius, Mes
   builder.strip(at_start, at_end);
 }
 
-// One sector of the sphere's patch at a vertex: from its middle to the arc from a to b.
+// One sector of the spherical patch at a vertex: from its middle to the arc from a to b.
 void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a, const Vec3& b,
                 MeshBuilder& builder) {
   const int steps = builder.arc_steps(angle_between(a, b));

@@ -33,7 +33,7 @@ ros::Marker part_marker(const Object& object, const Part& part, std::int32_t id)
   return marker;
 }
 
-// Of all objects' parts, in the order of the scene.
+// The parts of all objects, in the order of the scene.
 std::vector<ros::Marker> part_markers(const Scene& scene) {
   std::vector<ros::Marker> markers;
   for (const Object& object : scene.objects) {
@@ -51,7 +51,7 @@ bool has_points(const clearance_msg_PairDistance& pair) {
          vector_of(pair.witness_a).allFinite() && vector_of(pair.witness_b).allFinite();
 }
 
-// Thresholds of each pair's zones: the largest enter_below plus both margins, m; -infinity: none.
+// For each pair, the largest enter_below of its zones plus both margins, m; -infinity: no zone.
 std::vector<double> near_below(const Scene& scene) {
   std::vector<double> limits(scene.pairs.size(), -kInfinity);
   for (const Zone& zone : scene.zones) {
@@ -83,22 +83,22 @@ void add_pair(const clearance_msg_PairDistance& pair, const ros::Colour& colour,
 
 }  // namespace
 
-std::vector<std::byte> transforms_message(const Scene& scene, const ObjectPoses& poses,
-                                          std::int64_t stamp_ns) {
+Sample<ros::TransformMessage> transforms_message(const Scene& scene, const ObjectPoses& poses,
+                                                 std::int64_t stamp_ns) {
   std::vector<ros::Transform> transforms;
   transforms.reserve(scene.objects.size());
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Pose* const pose = poses.pose(i);
     if (pose != nullptr) transforms.push_back({scene.objects[i].name, *pose});
   }
-  return ros::encode(stamp_ns, transforms);
+  return ros::transform_message(stamp_ns, transforms);
 }
 
-std::vector<std::byte> bodies_message(const Scene& scene) {
-  return ros::encode(0, part_markers(scene));
+Sample<ros::MarkerArray> bodies_message(const Scene& scene) {
+  return ros::marker_array(0, part_markers(scene));
 }
 
-std::vector<std::byte> bodies_message_for_tf(const Scene& scene, const std::string& world) {
+Sample<ros::MarkerArray> bodies_message_for_tf(const Scene& scene, const std::string& world) {
   std::vector<ros::Marker> markers = part_markers(scene);
   auto marker = markers.begin();
   for (const Object& object : scene.objects) {
@@ -109,11 +109,11 @@ std::vector<std::byte> bodies_message_for_tf(const Scene& scene, const std::stri
       marker->pose = compose(object.world_from_object, marker->pose);
     }
   }
-  return ros::encode(0, markers);
+  return ros::marker_array(0, markers);
 }
 
-std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_Distances& report,
-                                       std::int64_t stamp_ns, std::string_view world) {
+Sample<ros::MarkerArray> closest_message(const Scene& scene, const clearance_msg_Distances& report,
+                                         std::int64_t stamp_ns, std::string_view world) {
   std::vector<ros::Marker> markers(1);
   ros::Marker lines{.frame = world,
                     .name_space = "lines",
@@ -135,7 +135,7 @@ std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_D
       add_pair(pair, kNearColour, lines, markers);
     }
   }
-  // Texts of lines that are gone.
+  // Delete the texts of lines that are gone.
   lines.deleted = lines.points.empty();
   const std::size_t shown = markers.size();
   for (std::size_t id = shown; id <= kMostLines; ++id) {
@@ -146,7 +146,7 @@ std::vector<std::byte> closest_message(const Scene& scene, const clearance_msg_D
                        .deleted = true});
   }
   markers.front() = std::move(lines);
-  return ros::encode(stamp_ns, markers);
+  return ros::marker_array(stamp_ns, markers);
 }
 
 }  // namespace clearance

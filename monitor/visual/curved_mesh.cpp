@@ -34,7 +34,7 @@ void add_rows(int rows, const std::function<SurfacePoint(int row, double turn)>&
   }
 }
 
-// Each point of the ellipsoid moved out along its normal.
+// Moves each point of the ellipsoid out along its normal.
 void add_ellipsoid(const Vec3& semi_axes, double radius, MeshBuilder& builder) {
   const int steps = builder.arc_steps(kHalfTurn);
   add_rows(
@@ -49,14 +49,14 @@ void add_ellipsoid(const Vec3& semi_axes, double radius, MeshBuilder& builder) {
       builder);
 }
 
-// A point of the outline in the half-plane through the axis; `direction` is that of the normal,
-// from -pi / 2, down, to pi / 2, up.
+// A point of the outline in the half-plane through the axis. `direction` is the angle of the
+// normal, from -pi / 2 (down) to pi / 2 (up).
 struct OutlinePoint {
   double from_axis, height, direction;
 };
 
-// Around a circle of the rim, between two directions; the circle's own point where there is no
-// radius around it.
+// Points around a circle of the rim, between two directions; without a radius, the circle's own
+// point.
 void add_arc(const Disc& disc, double from, double to, double radius, const MeshBuilder& builder,
              std::vector<OutlinePoint>& outline) {
   const int steps = radius > 0.0 ? builder.arc_steps(to - from) : 1;

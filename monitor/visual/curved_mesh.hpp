@@ -6,7 +6,7 @@
 
 namespace clearance {
 
-// In the shape's frame; `radius`, m, >= 0, is what is around it.
+// In the shape's frame; `radius` (m, >= 0) is the radius around it.
 [[nodiscard]] BodyMesh curved_mesh(const CurvedShape& shape, double radius, double arc_step);
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// What the meshes of bodies are put together with.
+// Builds the meshes of bodies from rows and fans.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace clearance {
 
 class MeshBuilder {
  public:
-  // `arc_step`: of an arc, rad.
+  // `arc_step` is the largest step of an arc, rad.
   explicit MeshBuilder(double arc_step) : arc_step_(arc_step) {}
 
-  // Into how many an arc of this angle, rad, is cut.
+  // The number of steps of an arc of this angle, rad.
   [[nodiscard]] int arc_steps(double angle) const {
     return std::max(1, static_cast<int>(std::ceil(angle / arc_step_)));
   }
@@ -28,7 +28,7 @@ class MeshBuilder {
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     mesh.triangles.push_back({a, b, c});
   }
-  // Between two rows of as many points each, the first to the right of the second.
+  // Joins two rows of equally many points, the first to the right of the second.
   void strip(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to) {
     for (std::size_t i = 0; i + 1 < from.size(); ++i) {
       triangle(from[i], from[i + 1], to[i + 1]);

@@ -1,95 +1,52 @@
 #include "monitor/visual/ros_types.hpp"
 
-#include <bit>
-#include <cstring>
-#include <type_traits>
+#include <utility>
 
 namespace clearance::ros {
 namespace {
 
-// XCDR1, little-endian: every number aligned to its own size, counted from behind the header.
-class CdrBytes {
- public:
-  CdrBytes() {
-    static_assert(std::endian::native == std::endian::little);
-    bytes_ = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  }
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void add(Number value) {
-    constexpr std::size_t kHeader = 4;
-    while ((bytes_.size() - kHeader) % sizeof(Number) != 0) bytes_.push_back(std::byte{0});
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + sizeof(Number));
-    std::memcpy(&bytes_[at], &value, sizeof(Number));
-  }
-  void add(std::string_view text) {
-    add(static_cast<std::uint32_t>(text.size() + 1));
-    const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
-    bytes_.insert(bytes_.end(), begin, begin + text.size());
-    bytes_.push_back(std::byte{0});
-  }
-  void add(const Vec3& v) {
-    for (int i = 0; i < 3; ++i) add(v[i]);
-  }
-  void add(const Pose& pose) {
-    add(pose.position);
-    const Eigen::Quaterniond q = pose.orientation.normalized();
-    for (const double number : {q.x(), q.y(), q.z(), q.w()}) add(number);
-  }
-  void add(const Colour& c) {
-    for (const float number : {c.red, c.green, c.blue, c.opacity}) add(number);
-  }
-  void add_time(std::int64_t ns) {
-    add(static_cast<std::int32_t>(ns / 1'000'000'000));
-    add(static_cast<std::uint32_t>(ns % 1'000'000'000));
-  }
-  void add_header(std::int64_t stamp_ns, std::string_view frame) {
-    add_time(stamp_ns);
-    add(frame);
-  }
-  template <class Item>
-  void add_sequence(const std::vector<Item>& items) {
-    add(static_cast<std::uint32_t>(items.size()));
-    for (const Item& item : items) add(item);
-  }
-  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
+char* copied(std::string_view text) { return dds_string_dup(std::string(text).c_str()); }
 
- private:
-  std::vector<std::byte> bytes_;
-};
-
-void add_empty_sequence(CdrBytes& out) { out.add(std::uint32_t{0}); }
-
-// texture, uv_coordinates, text, mesh_resource, mesh_file, mesh_use_embedded_materials.
-void add_marker_tail(CdrBytes& out, const Marker& marker) {
-  out.add(std::string_view{});  // texture_resource
-  out.add_header(0, {});        // texture: header, format, data
-  out.add(std::string_view{});
-  add_empty_sequence(out);
-  add_empty_sequence(out);  // uv_coordinates
-  out.add(std::string_view(marker.text));
-  out.add(std::string_view{});  // mesh_resource
-  out.add(std::string_view{});  // mesh_file: filename, data
-  add_empty_sequence(out);
-  out.add(std::uint8_t{0});
+std_msgs_msg_dds__Header_ header(std::int64_t stamp_ns, std::string_view frame) {
+  return {.stamp = {.sec = static_cast<std::int32_t>(stamp_ns / 1'000'000'000),
+                    .nanosec = static_cast<std::uint32_t>(stamp_ns % 1'000'000'000)},
+          .frame_id = copied(frame)};
 }
 
-void add_marker(CdrBytes& out, std::int64_t stamp_ns, const Marker& marker) {
+template <class Vector>
+Vector vector_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+geometry_msgs_msg_dds__Quaternion_ quaternion(const Pose& pose) {
+  const Eigen::Quaterniond q = pose.orientation.normalized();
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+std_msgs_msg_dds__ColorRGBA_ colour(const Colour& c) { return {c.red, c.green, c.blue, c.opacity}; }
+
+// Cyclone writes a string that is null as an empty one.
+void fill(const Marker& marker, std::int64_t stamp_ns, visualization_msgs_msg_dds__Marker_& out) {
   constexpr std::int32_t kAdd = 0, kDelete = 2;
-  out.add_header(stamp_ns, marker.frame);
-  out.add(marker.name_space);
-  out.add(marker.id);
-  out.add(static_cast<std::int32_t>(marker.type));
-  out.add(marker.deleted ? kDelete : kAdd);
-  out.add(marker.pose);
-  out.add(marker.scale);
-  out.add(marker.colour);
-  out.add_time(0);           // lifetime: for ever
-  out.add(std::uint8_t{1});  // frame_locked: it moves with its frame
-  out.add_sequence(marker.points);
-  out.add_sequence(marker.colours);
-  add_marker_tail(out, marker);
+  out.header = header(stamp_ns, marker.frame);
+  out.ns = copied(marker.name_space);
+  out.id = marker.id;
+  out.type = static_cast<std::int32_t>(marker.type);
+  out.action = marker.deleted ? kDelete : kAdd;
+  out.pose = {vector_of<geometry_msgs_msg_dds__Point_>(marker.pose.position),
+              quaternion(marker.pose)};
+  out.scale = vector_of<geometry_msgs_msg_dds__Vector3_>(marker.scale);
+  out.color = colour(marker.colour);
+  out.frame_locked = true;  // the marker moves with its frame
+  reserve_sequence(out.points, marker.points.size());
+  for (const Vec3& point : marker.points) {
+    out.points._buffer[out.points._length++] = vector_of<geometry_msgs_msg_dds__Point_>(point);
+  }
+  reserve_sequence(out.colors, marker.colours.size());
+  for (const Colour& each : marker.colours) {
+    out.colors._buffer[out.colors._length++] = colour(each);
+  }
+  out.text = copied(marker.text);
 }
 
 constexpr std::string_view kRule =
@@ -148,22 +105,27 @@ const McapSchema& markers_schema() {
   return kSchema;
 }
 
-std::vector<std::byte> encode(std::int64_t stamp_ns, std::span<const Transform> transforms) {
-  CdrBytes out;
-  out.add(static_cast<std::uint32_t>(transforms.size()));
+Sample<TransformMessage> transform_message(std::int64_t stamp_ns,
+                                           std::span<const Transform> transforms) {
+  Sample<TransformMessage> sample;
+  auto& out = sample->transforms;
+  reserve_sequence(out, transforms.size());
   for (const Transform& transform : transforms) {
-    out.add_header(stamp_ns, kWorldFrame);
-    out.add(transform.child);
-    out.add(transform.pose);
+    out._buffer[out._length++] = {
+        header(stamp_ns, kWorldFrame),
+        copied(transform.child),
+        {vector_of<geometry_msgs_msg_dds__Vector3_>(transform.pose.position),
+         quaternion(transform.pose)}};
   }
-  return out.take();
+  return sample;
 }
 
-std::vector<std::byte> encode(std::int64_t stamp_ns, std::span<const Marker> markers) {
-  CdrBytes out;
-  out.add(static_cast<std::uint32_t>(markers.size()));
-  for (const Marker& marker : markers) add_marker(out, stamp_ns, marker);
-  return out.take();
+Sample<MarkerArray> marker_array(std::int64_t stamp_ns, std::span<const Marker> markers) {
+  Sample<MarkerArray> sample;
+  auto& out = sample->markers;
+  reserve_sequence(out, markers.size());
+  for (const Marker& marker : markers) fill(marker, stamp_ns, out._buffer[out._length++]);
+  return sample;
 }
 
 }  // namespace clearance::ros

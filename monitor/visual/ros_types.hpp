@@ -1,11 +1,10 @@
-// The ROS 2 messages that viewers draw: transforms and markers, as CDR bytes without ROS or DDS.
+// The ROS 2 messages that viewers draw: transforms and markers, in the types of idl/ros2.idl.
 //
-// Layouts are those of tf2_msgs and visualization_msgs from Humble on; the schemas are their
-// definitions as `ros2msg` text, which MCAP files and Foxglove's protocol carry along.
+// The schemas are the definitions of tf2_msgs and visualization_msgs, from Humble on, as `ros2msg`
+// text: MCAP files and Foxglove's protocol carry them.
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,6 +13,8 @@
 
 #include "core/pose.hpp"
 #include "monitor/mcap/format.hpp"
+#include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/ros_types.hpp"
 
 namespace clearance::ros {
 
@@ -32,25 +33,28 @@ struct Colour {
   float red = 0.5F, green = 0.5F, blue = 0.5F, opacity = 1.0F;
 };
 
-// visualization_msgs/msg/Marker, as far as it is used here; what is left out is empty.
+// The fields of visualization_msgs/msg/Marker that are used here; the others stay empty.
 enum class MarkerType : std::int32_t { kLineList = 5, kText = 9, kTriangles = 11 };
 struct Marker {
   std::string_view frame = kWorldFrame, name_space = {};
   std::int32_t id = 0;
   MarkerType type = MarkerType::kTriangles;
   Pose pose = {};
-  Vec3 scale = Vec3::Ones();  // m; of lines: x is their width; of text: z is its height
+  Vec3 scale = Vec3::Ones();  // m; x is the width of lines, z the height of text
   Colour colour = {};
   std::vector<Vec3> points = {};
-  std::vector<Colour> colours = {};  // none, or one a point
+  std::vector<Colour> colours = {};  // none, or one per point
   std::string text = {};
   bool deleted = false;
 };
 
-// CDR of a TFMessage and of a MarkerArray, with their encapsulation header. `stamp_ns` goes into
-// every header; 0: any time.
-[[nodiscard]] std::vector<std::byte> encode(std::int64_t stamp_ns,
-                                            std::span<const Transform> transforms);
-[[nodiscard]] std::vector<std::byte> encode(std::int64_t stamp_ns, std::span<const Marker> markers);
+using TransformMessage = tf2_msgs_msg_dds__TFMessage_;
+using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
+
+// `stamp_ns` stands in every header; 0 means any time.
+[[nodiscard]] Sample<TransformMessage> transform_message(std::int64_t stamp_ns,
+                                                         std::span<const Transform> transforms);
+[[nodiscard]] Sample<MarkerArray> marker_array(std::int64_t stamp_ns,
+                                               std::span<const Marker> markers);
 
 }  // namespace clearance::ros

@@ -2,11 +2,11 @@
 // normalised, which checks every length, and only then read.
 #include "monitor/wire/cdr.hpp"
 
-#include <dds/ddsi/ddsi_cdrstream.h>
-
 #include <cstdint>
 #include <cstring>
 #include <limits>
+
+#include "monitor/wire/cyclone_private.hpp"
 
 namespace clearance {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::size_t kHeader = 4;      // representation id (2), options (2); b
 constexpr std::size_t kMaxPadding = 3;  // what may follow the last field
 constexpr std::byte kXcdr1LittleEndian{1};
 
-// What the first two bytes say (DDSI-RTPS 2.3, section 10.2).
+// The meaning of the first two bytes (DDSI-RTPS 2.3, section 10.2).
 struct Encapsulation {
   std::uint32_t xcdr_version;
   bool big_endian;

@@ -50,7 +50,7 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
 
 }  // namespace
 
-// Sequences get all the room that any report of this scene needs.
+// Sequences get the capacity that any report of this scene needs.
 Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });

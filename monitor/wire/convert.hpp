@@ -1,5 +1,5 @@
-// Between our structs and the DDS types. What runs beside the tick allocates nothing: its sequences
-// are sized once.
+// Converts between our structs and the DDS types. Functions that run beside the tick allocate
+// nothing: their sequences are sized once.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace clearance {
 
-// A sample for every report of this scene: room for its published pairs and for kMaxSources
-// sources.
+// Makes a sample for the reports of this scene, with capacity for its published pairs and for
+// kMaxSources sources.
 [[nodiscard]] Sample<clearance_msg_Distances> make_distances(const Scene& scene);
 
 // Fills `out`, made by make_distances for the same scene; `publish_ns` 0 when it is not published.
-// Pairs or sources beyond the room are left out and false is returned: with a fitting sample it
-// never happens.
+// Pairs or sources beyond its capacity are left out, and false is returned; a sample of the same
+// scene holds them all.
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
              clearance_msg_Distances& out) noexcept;
 
@@ -33,7 +33,7 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 [[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
-// Allocates. Names, pairs, zones, joints and the text of the cell.
+// Names, pairs, zones, joints and the text of the cell. It allocates.
 [[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
 
 // The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
@@ -53,17 +53,18 @@ void from_wire(const clearance_msg_JointStates& states, const JointNames& names,
 void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
                std::int64_t stamp_ns, PoseBatch& out);
 
-// Of a batch of joints; allocates.
+// Makes the message of a batch of joints. It allocates.
 [[nodiscard]] Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
                                                                   const Scene& scene);
 
-// A batch with room for `poses` poses, for writing.
+// A batch with capacity for `poses` poses, for writing.
 [[nodiscard]] Sample<clearance_msg_PoseBatch> make_batch(std::size_t poses);
 
 // One pose of a batch.
 void to_wire(const PoseSample& sample, clearance_msg_ObjectPose& out) noexcept;
 
-// Fills `out`, made by make_batch. False: more poses than it has room for; the first ones are in.
+// Fills `out`, made by make_batch. False: the batch has more poses than its capacity, and only the
+// first ones are in.
 bool to_wire(const PoseBatch& batch, clearance_msg_PoseBatch& out) noexcept;
 
 }  // namespace clearance

@@ -80,8 +80,8 @@ class Sample {
   T value_{};
 };
 
-// Gives an empty sequence of a sample room for `count` elements, all zero, so that filling it and
-// taking into it allocate nothing. The sample releases it.
+// Gives an empty sequence of a sample capacity for `count` elements, all zero, so that filling it
+// and taking into it allocate nothing. The sample releases it.
 template <class Sequence>
 void reserve_sequence(Sequence& sequence, std::size_t count) {
   using Element = std::remove_pointer_t<decltype(sequence._buffer)>;

@@ -15,7 +15,7 @@ struct SourceUseFields {
   }
 };
 
-// What every message of a tick has beside the report.
+// The fields that every message of a tick has beside the report.
 struct DeliveryFields {
   template <class Visit, class... Message>
   static constexpr void for_each(Visit&& visit, Message&... message) {
@@ -64,7 +64,7 @@ struct JointGradientFields {
   }
 };
 
-// What a gradient repeats of its pair's report.
+// The fields that a gradient repeats of its pair's report.
 struct GradientPairFields {
   template <class Visit, class... Pair>
   static constexpr void for_each(Visit&& visit, Pair&... pair) {

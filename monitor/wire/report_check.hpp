@@ -1,4 +1,4 @@
-// What a client should check of every report before it believes it: is it fresh, and is it the next
+// Checks that a client should make before it believes a report: is it fresh, and is it the next
 // one of the same daemon? A reader that was held up gets the reports of that time one after
 // another, and each of them looks like news.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-// Of one report.
+// The result for one report.
 struct ReportCheck {
   // Since it was published, by the client's clock. Negative: the clock of the daemon's machine is
   // ahead.
@@ -31,7 +31,7 @@ class ReportChecker {
 
   // To be called with every report, in the order in which they are taken; `realtime_ns` is
   // CLOCK_REALTIME when it was taken.
-  // Gradients are checked alike, by a checker of their own.
+  // A stream of gradients needs a second checker.
   template <class Message>
   ReportCheck check(const Message& report, std::int64_t realtime_ns) noexcept {
     ReportCheck found;

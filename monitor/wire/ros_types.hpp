@@ -41,7 +41,7 @@ topic_descriptor<diagnostic_msgs_msg_dds__DiagnosticArray_>() noexcept {
   return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
 }
 
-// How ROS 2 delivers a topic, and what its endpoints say of its type in their USER_DATA (since
+// The delivery of a ROS 2 topic, and what its endpoints say of its type in their USER_DATA (since
 // Iron: type description hashes, REP-2011).
 struct RosType {
   const dds_topic_descriptor_t* descriptor;
@@ -72,7 +72,7 @@ inline constexpr RosType kRosFloat64{
     &std_msgs_msg_dds__Float64__desc,
     "typehash=RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a;", false, 10};
 
-// What ROS 2's topics are called in DDS: "rt/joint_states" is /joint_states.
+// The name of a ROS 2 topic in DDS: "rt/joint_states" is /joint_states.
 [[nodiscard]] inline std::string ros_dds_name(const std::string& topic) { return "rt" + topic; }
 
 }  // namespace clearance

@@ -27,7 +27,7 @@ enum class TopicKind : std::uint8_t {
   kGradients,
 };
 
-// How a topic is delivered. Both are reliable with keep-last history.
+// The delivery of a topic. Both are reliable with keep-last history.
 enum class Delivery : std::uint8_t {
   kStream,   // volatile: a reader gets what is sent from now on
   kLatched,  // transient-local, depth 1: a late reader gets the last sample of each key

@@ -1,4 +1,4 @@
-// What was last written of each zone, so that zones are written on change only.
+// Remembers the state that was last written of each zone, so that zones are written on change only.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-// Compared with what was written, not with Report's own `changed`: a change must come through even
-// when the report in which it happened was dropped.
+// States are compared with what was written, not with ZoneReport::changed: a change must come
+// through even when the report in which it happened was dropped.
 class WrittenZones {
  public:
   explicit WrittenZones(std::size_t zones) : active_(zones) {}

@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-// Both of its objects', rounded up, m.
+// The margins of both its objects, rounded up, m.
 double margins_of(const Scene& scene, std::uint32_t pair) noexcept {
   const ObjectPair& objects = scene.pairs[pair];
   return rounded_up(scene.objects[objects.first].margin + scene.objects[objects.second].margin);

@@ -1,9 +1,9 @@
-// From which distance on is a pair outside its zones? The one table that the broad phase, the
-// schedule, the sweep and the zones go by.
+// From which distance on is a pair outside its zones? One table for the broad phase, the schedule,
+// the sweep and the zones.
 //
 // A zone has two thresholds of the clearance (distance less both margins), with hysteresis between:
-// enter_below, and just above leave_above. A pair's level Z is the largest distance that belongs to
-// the latter, over all its zones, margins included and rounded up: from Z on it is outside of all
+// enter_below, and just above leave_above. A pair's level Z is the largest distance at the latter
+// threshold, over all its zones, margins included and rounded up. From Z on the pair is outside all
 // of them, whatever their states are.
 #pragma once
 
@@ -19,10 +19,10 @@ class ZoneLevels {
  public:
   explicit ZoneLevels(const Scene& scene);
 
-  // The least clearance that is outside of a zone in this state, m.
+  // From this clearance on, m, a pair is outside a zone in this state.
   [[nodiscard]] static double threshold(const Zone& zone, bool active) noexcept;
 
-  // Z of a pair, m; -infinity: it has no zone.
+  // Z of a pair, m; -infinity: the pair has no zone.
   [[nodiscard]] double largest_threshold(std::uint32_t pair) const noexcept {
     return largest_thresholds_.empty() ? -kInfinity : largest_thresholds_[pair];
   }
@@ -51,7 +51,7 @@ class ZoneLevels {
   }
 
  private:
-  // By pair; none where there are no zones.
+  // By pair; empty where there are no zones.
   std::vector<std::uint32_t> first_zone_;
   std::vector<Membership> zones_;
   std::vector<double> largest_thresholds_;  // m

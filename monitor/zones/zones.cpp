@@ -7,7 +7,9 @@
 namespace clearance {
 namespace {
 
-// What an object contributes to a pair that is inside a zone.
+constexpr std::uint32_t kAnyObject = ~0u;
+
+// Why a pair with this object is inside a zone, as far as the object is the reason.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
   if (!object.seen) return ZoneCause::kUnknown;
   if (object.unseen_since > 0.0)
@@ -15,24 +17,55 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 
-// Whether the pair would be inside if all its poses had been on time: now, or since the last tick.
+// Whether the pair would be inside, now or since the last tick, if all its poses had been on time.
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
              double threshold) noexcept {
   if (!a.known() || !b.known()) return false;
-  const double unseen = a.unseen_since + b.unseen_since;
-  if (report.clearance + unseen < threshold) return true;
-  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unseen < threshold;
+  const double unobserved = a.unseen_since + b.unseen_since;
+  if (report.clearance + unobserved < threshold) return true;
+  return !a.discontinuous && !b.discontinuous && report.swept_clearance + unobserved < threshold;
 }
 
 }  // namespace
 
 Zones::Zones(const Scene& scene, const ZoneLevels& levels)
-    : scene_(scene), levels_(levels), reports_(scene.zones.size()), added_(scene.zones.size()) {
+    : scene_(scene),
+      levels_(levels),
+      reports_(scene.zones.size()),
+      added_(scene.zones.size()),
+      absent_(scene.zones.size()) {
   for (std::size_t z = 0; z < scene.zones.size(); ++z) {
     if (!scene.zones[z].pairs.empty()) reports_[z].pair = scene.zones[z].pairs.front();
   }
   updates_.reserve(scene.zones.size());
   begin_tick();
+}
+
+void Zones::count_absent(std::span<const TrackedObject> objects) noexcept {
+  for (std::size_t z = 0; z < absent_.size(); ++z) {
+    absent_[z] = static_cast<std::uint32_t>(
+        std::ranges::count_if(scene_.zones[z].pairs, [&](std::uint32_t pair) {
+          return objects[scene_.pairs[pair].first].absent ||
+                 objects[scene_.pairs[pair].second].absent;
+        }));
+  }
+}
+
+// A pair of the zone with this object and no absent one (kAnyObject: with any object), `preferred`
+// if it is one.
+std::optional<std::uint32_t> Zones::present_pair(
+    std::uint32_t zone, std::uint32_t preferred, std::uint32_t object,
+    std::span<const TrackedObject> objects) const noexcept {
+  if (absent_[zone] == 0) return preferred;
+  const auto fits = [&](std::uint32_t pair) {
+    const ObjectPair& of = scene_.pairs[pair];
+    const bool has = object == kAnyObject || of.first == object || of.second == object;
+    return has && !objects[of.first].absent && !objects[of.second].absent;
+  };
+  if (fits(preferred)) return preferred;
+  const auto found = std::ranges::find_if(scene_.zones[zone].pairs, fits);
+  if (found == scene_.zones[zone].pairs.end()) return std::nullopt;
+  return *found;
 }
 
 void Zones::begin_tick() noexcept {
@@ -59,29 +92,38 @@ void Zones::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   }
 }
 
-void Zones::finish(std::span<const TrackedObject> objects, const Clearance& waiting,
+void Zones::finish(std::span<const TrackedObject> objects, const Clearance& waiting, bool any_lost,
                    std::uint64_t cycle) noexcept {
   for (std::uint32_t z = 0; z < updates_.size(); ++z) {
     ZoneHysteresis& update = updates_[z];
-    // Pairs that were not added are culled or wait. Culled ones are outside by the broad phase's
-    // invariant (monitor/broad_phase/README.md), so only what waits has to be said.
-    if (added_[z] < scene_.zones[z].pairs.size()) {
+    // A pair that was not added is absent, culled, waiting or unknown. Culled ones are outside by
+    // the invariant of the broad phase (monitor/broad_phase/README.md).
+    if (added_[z] + absent_[z] < scene_.zones[z].pairs.size()) {
       const auto least = [&](double lower) {
         return std::min(ZoneLevels::threshold(scene_.zones[z], true),
                         rounded_down(lower - levels_.most_margins(z)));
       };
-      update.add_rest({.now = least(waiting.now), .since = least(waiting.since)}, reports_[z].pair);
+      const auto pair = present_pair(z, reports_[z].pair, kAnyObject, objects);
+      update.add_rest({.now = least(waiting.now), .since = least(waiting.since)},
+                      pair.value_or(reports_[z].pair));
     }
-    if (!objects.empty()) {
-      for (const ZoneLevels::Member& member : levels_.members_of(z)) {
-        const TrackedObject& object = objects[member.object];
-        if (!object.known()) update.add_rest({-kInfinity, -kInfinity}, member.pair);
-        if (object.discontinuous) update.add_rest({.since = -kInfinity}, member.pair);
-      }
-    }
+    if (any_lost) add_lost(z, objects);
     update.finish(cycle, reports_[z]);
   }
   begin_tick();
+}
+
+// Objects that are not known may be anywhere, and so may those that have made a discontinuity have
+// been since the last tick.
+void Zones::add_lost(std::uint32_t zone, std::span<const TrackedObject> objects) noexcept {
+  for (const ZoneLevels::Member& member : levels_.members_of(zone)) {
+    const TrackedObject& object = objects[member.object];
+    if (object.absent || (object.known() && !object.discontinuous)) continue;
+    const auto pair = present_pair(zone, member.pair, member.object, objects);
+    if (!pair) continue;
+    if (!object.known()) updates_[zone].add_rest({-kInfinity, -kInfinity}, *pair);
+    if (object.discontinuous) updates_[zone].add_rest({.since = -kInfinity}, *pair);
+  }
 }
 
 // The weightier cause of the pair's two objects counts, and of two late ones the one that may have

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,26 +28,35 @@ class Zones {
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
                                  double swept_lower) const noexcept;
 
+  // Between ticks: the presence of objects has changed. A pair with an absent object belongs to no
+  // zone while that is so.
+  void count_absent(std::span<const TrackedObject> objects) noexcept;
+
   // Takes in an updated pair, each once a tick.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
-  // Ends the tick. A pair that was not added is unknown; or it was beyond its zones' thresholds
-  // since the last tick; or it waits, and `waiting` is a lower bound of its distance, margins not
-  // subtracted. `objects`: none where all are known and none has made a discontinuity.
-  void finish(std::span<const TrackedObject> objects, const Clearance& waiting,
+  // Ends the tick. A pair that was not added is absent or unknown; or it was beyond its zones'
+  // thresholds since the last tick; or it waits, and `waiting` is a lower bound of its distance,
+  // margins not subtracted. `any_lost`: an object is not known or has made a discontinuity.
+  void finish(std::span<const TrackedObject> objects, const Clearance& waiting, bool any_lost,
               std::uint64_t cycle) noexcept;
   // After finish(), with all objects: finds why each zone is active.
   void explain(std::span<const TrackedObject> objects) noexcept;
 
  private:
   void begin_tick() noexcept;
+  void add_lost(std::uint32_t zone, std::span<const TrackedObject> objects) noexcept;
+  [[nodiscard]] std::optional<std::uint32_t> present_pair(
+      std::uint32_t zone, std::uint32_t preferred, std::uint32_t object,
+      std::span<const TrackedObject> objects) const noexcept;
 
   const Scene& scene_;
   const ZoneLevels& levels_;
   // By zone.
   std::vector<ZoneReport> reports_;      // of the last tick: whether it was active, and since when
   std::vector<ZoneHysteresis> updates_;  // from there to this tick
-  std::vector<std::uint32_t> added_;
+  std::vector<std::uint32_t> added_;     // pairs, in this tick
+  std::vector<std::uint32_t> absent_;    // pairs with an absent object
 };
 
 }  // namespace clearance

@@ -10,12 +10,12 @@
 
 namespace clearance {
 
-// A whole cell from what follows its first three lines: `sections` begins in line 4.
+// Returns a whole cell, of which `sections` begins in line 4.
 inline std::string cell_text(const std::string& sections) {
   return "name: test\nunits: {length: m, angle: deg}\nrate_hz: 500\n" + sections;
 }
 
-// A text that must be good.
+// Reads a text that must be a good cell.
 inline Cell read_good(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
   CellResult result = parse_cell(text, file);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
@@ -28,7 +28,7 @@ inline Scene scene_of(const std::string& text, const std::filesystem::path& file
   return read_good(text, file).scene;
 }
 
-// The errors of a text, a line each; empty for a good one.
+// Returns the errors of a text, a line each; none for a good one.
 inline std::string errors_of(const std::string& text,
                              const std::filesystem::path& file = "cell.yaml") {
   const CellResult result = parse_cell(text, file);

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -85,6 +86,15 @@ std::string ChildProcess::output() const {
 
 bool ChildProcess::wrote(const std::string& text) const {
   return output().find(text) != std::string::npos;
+}
+
+bool ChildProcess::told(const std::string& code, const std::vector<std::string>& names) const {
+  std::istringstream lines(output());
+  for (std::string line; std::getline(lines, line);) {
+    const auto has = [&](const std::string& name) { return line.find(name) != line.npos; };
+    if (line.ends_with(" [" + code + "]") && std::ranges::all_of(names, has)) return true;
+  }
+  return false;
 }
 
 }  // namespace clearance::test

@@ -34,6 +34,10 @@ class ChildProcess {
   // What it has written so far.
   [[nodiscard]] std::string output() const;
   [[nodiscard]] bool wrote(const std::string& text) const;
+  // Whether it has logged a line with this code (monitor/app/log_lines.hpp) that names all of
+  // these.
+  [[nodiscard]] bool told(const std::string& code,
+                          const std::vector<std::string>& names = {}) const;
 
  private:
   std::string output_file_;

@@ -44,7 +44,7 @@ class BagTool : public RunsPrograms {
   int replay(const std::string& bag, const std::vector<std::string>& more) {
     return run(
         kReplay,
-        with({"--offline", "--urdf", path("R.urdf"), "--srdf", path("R.srdf"), path(bag)}, more));
+        with({"check", "--urdf", path("R.urdf"), "--srdf", path("R.srdf"), path(bag)}, more));
   }
 };
 
@@ -62,14 +62,13 @@ TEST_F(BagTool, RobotIsTheOneThatTheBagDescribesUnlessItIsGiven) {
   messages.insert(messages.begin() + 3, ros_text(kStart, kScaraUrdf, "/scara/robot_description"));
   write_mcap_bag(folder / "described.mcap", messages);
   const auto replayed = [&](const std::string& out) {
-    EXPECT_EQ(0, run(kReplay, {"--offline", path("described.mcap"), "-o", path(out),
+    EXPECT_EQ(0, run(kReplay, {"check", path("described.mcap"), "-o", path(out),
                                "--expect-min-distance", "0.05"}))
         << output;
     return read_text(folder / out);
   };
   EXPECT_EQ(replayed("a.mcap"), replayed("b.mcap"));
-  EXPECT_EQ(0, run(kReplay, {"--offline", "--srdf", path("R.srdf"), path("described.mcap")}))
-      << output;
+  EXPECT_EQ(0, run(kReplay, {"check", "--srdf", path("R.srdf"), path("described.mcap")})) << output;
 }
 
 TEST_F(BagTool, JointTableAndGivenJointsDo) {
@@ -88,16 +87,16 @@ TEST_F(BagTool, JointTableAndGivenJointsDo) {
 }
 
 TEST_F(BagTool, TellsWhatIsMissing) {
-  EXPECT_EQ(1, run(kReplay, {"--offline", path("bag")}));
+  EXPECT_EQ(1, run(kReplay, {"check", path("bag")}));
   EXPECT_THAT(output, HasSubstr("expected --urdf R.urdf and --srdf R.srdf"));
   write_mcap_bag(folder / "none.mcap", {ros_text(kStart, "x", "/chatter")});
   EXPECT_EQ(1, replay("none.mcap", {}));
   EXPECT_THAT(output, HasSubstr("there are /chatter (std_msgs/msg/String, 1 messages)"));
   EXPECT_EQ(1, replay("nowhere.db3", {}));
   EXPECT_THAT(output, HasSubstr("nowhere.db3: No such file"));
-  EXPECT_EQ(2, run(kReplay, {path("bag"), "--tick-hz", "100"}));
-  EXPECT_EQ(1, run(kReplay, {path("bag")}));
-  EXPECT_THAT(output, HasSubstr("--offline replays it as it is"));
+  EXPECT_EQ(2, run(kReplay, {"publish", path("bag"), "--tick-hz", "100"}));
+  EXPECT_EQ(1, run(kReplay, {"publish", path("bag")}));
+  EXPECT_THAT(output, HasSubstr("'clearance-replay check' replays it as"));
 }
 
 TEST_F(BagTool, ConvertedBagReplaysToTheSameBytes) {
@@ -109,8 +108,8 @@ TEST_F(BagTool, ConvertedBagReplaysToTheSameBytes) {
       << output;
   EXPECT_THAT(output, HasSubstr("201 batches, 1.000 s"));
   const auto replayed = [&](const std::string& log, const std::string& out) {
-    EXPECT_EQ(0, run(kReplay, {"--offline", "--cell", path("cell.yaml"), path(log), "--tick-hz",
-                               "500", "-o", path(out)}))
+    EXPECT_EQ(0, run(kReplay, {"check", "--cell", path("cell.yaml"), path(log), "--tick-hz", "500",
+                               "-o", path(out)}))
         << output;
     return read_text(folder / out);
   };
@@ -144,7 +143,7 @@ TEST_F(BagTool, DaemonRecordsWhatItIsToldAndTheFilesCompareAsOne) {
   EXPECT_GE(files.size(), 3u);
   const std::vector<Kept> messages = messages_of(files[1]);
   EXPECT_EQ(0, std::ranges::count(messages, TopicKind::kHealth, &Kept::kind));
-  EXPECT_EQ(0, run(kReplay, with(with({"--offline"}, files), {"--compare"}))) << output;
+  EXPECT_EQ(0, run(kReplay, with(with({"check"}, files), {"--compare"}))) << output;
   EXPECT_THAT(output, HasSubstr("200 reports compared"));
 }
 
@@ -158,7 +157,8 @@ TEST_F(BagTool, RecorderTakesTheSameOptions) {
   ChildProcess recorder(kRecord, with({"-o", path("again.mcap"), "--every", "20", "--without",
                                        "poses", "--uncompressed"},
                                       where));
-  ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
+  ASSERT_EQ(
+      0, run(kReplay, with({"publish", path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
       << output;
   recorder.signal(SIGINT);
   EXPECT_EQ(0, recorder.wait()) << recorder.output();

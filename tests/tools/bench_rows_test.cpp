@@ -1,4 +1,4 @@
-// The names and counters of clearance-bench's rows, which others' scripts read.
+// The names and counters of the rows of clearance-bench and clearance-thesis, which scripts read.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -16,9 +16,10 @@ namespace clearance {
 namespace {
 
 const std::string kBench = std::string(CLEARANCE_BIN) + "/clearance-bench";
+const std::string kThesis = std::string(CLEARANCE_BIN) + "/clearance-thesis";
 
-std::set<std::string> names() {
-  test::ChildProcess bench(kBench, {"--benchmark_list_tests"});
+std::set<std::string> names(const std::string& program) {
+  test::ChildProcess bench(program, {"--benchmark_list_tests"});
   EXPECT_EQ(bench.wait(), 0) << bench.output();
   std::istringstream lines(bench.output());
   std::set<std::string> out;
@@ -37,12 +38,14 @@ nlohmann::json rows_of(const std::string& filter) {
 }
 
 TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
-  const std::set<std::string> there = names();
+  const std::set<std::string> there = names(kBench), thesis = names(kThesis);
   for (const char* kind : {"f", "v"}) {
     for (const char* order : {"2", "4", "6", "8", "10", "15", "20", "30", "40"}) {
-      for (const std::string how : {"tracked/", "cold/", "variant/base/tracked/"}) {
+      for (const std::string how : {"tracked/", "cold/"}) {
         EXPECT_TRUE(there.contains(how + kind + order)) << how << kind << order;
       }
+      const std::string variant = std::string("variant/base/tracked/") + kind + order;
+      EXPECT_TRUE(thesis.contains(variant)) << variant;
     }
   }
   for (const char* peer : {"fcl", "fcl-tight", "fcl-gjk", "bullet", "libccd", "qp"}) {
@@ -52,11 +55,16 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
   }
   for (const char* name :
        {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes", "batch/links",
-        "batch/own/boxes", "batch/single/boxes", "interval/100/f2", "variant/base/interval/100/f2",
-        "variant/moved-before/tracked/f2", "adjacency/walk/f2", "adjacency/core/f2",
-        "adjacency/qhull/f2", "overlap/tracked/boxes/middle", "cell/tracked/two_arms",
-        "cell/batch/two_arms", "robot/kinematics/seven_joint_arms/iterations:20000/manual_time"}) {
+        "batch/own/boxes", "batch/single/boxes", "overlap/tracked/boxes/middle",
+        "cell/tracked/two_arms", "cell/batch/two_arms",
+        "robot/kinematics/seven_joint_arms/iterations:20000/manual_time"}) {
     EXPECT_TRUE(there.contains(name)) << name;
+  }
+  for (const char* name :
+       {"tracked/f2", "interval/100/f2", "variant/base/interval/100/f2", "peer/qp/cold/f40",
+        "variant/moved-before/tracked/f2", "adjacency/walk/f2", "adjacency/core/f2",
+        "adjacency/qhull/f2", "ellipsoids/ours/0.5", "ellipsoids/fcl/0.5"}) {
+    EXPECT_TRUE(thesis.contains(name)) << name;
   }
 }
 
@@ -87,15 +95,21 @@ TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
   }
 }
 
-TEST(BenchRows, AreWrittenAsAReportWithItsPicture) {
+// The script that makes the pages in tools/bench/measured.
+TEST(BenchReport, ShowsTheRowsOfTheJsonThatItIsGiven) {
   const test::ScratchFolder folder;
+  const std::string file = (folder / "rows.json").string();
   test::ChildProcess bench(
-      kBench, {"--report", folder / "", "--benchmark_filter=^(tracked|peer/qp/tracked)/f2$",
-               "--benchmark_min_time=0.001", "--benchmark_repetitions=1"});
+      kBench, {"--benchmark_filter=^(tracked|peer/qp/tracked)/f2$", "--benchmark_min_time=0.001",
+               "--benchmark_out=" + file, "--benchmark_out_format=json"});
   ASSERT_EQ(bench.wait(), 0) << bench.output();
+  test::ChildProcess report("/usr/bin/env", {"python3", CLEARANCE_SOURCE "/tools/bench/report",
+                                             (folder / "").string(), "queries", "--json", file});
+  ASSERT_EQ(report.wait(), 0) << report.output();
   const std::string tables = test::read_text(folder / "report.md");
   EXPECT_THAT(tables, testing::HasSubstr("## Tracked, against peers"));
-  EXPECT_THAT(tables, testing::HasSubstr(std::string("Made by clearance-bench ") + kBuild));
+  EXPECT_THAT(tables, testing::ContainsRegex("[|] f2 [|] [0-9]+ [|] 4e-15 [|] 0 [|]"));
+  EXPECT_THAT(tables, testing::HasSubstr(std::string("Made from ") + kBuild));
   EXPECT_THAT(test::read_text(folder / "pareto.svg"), testing::HasSubstr("</svg>"));
 }
 

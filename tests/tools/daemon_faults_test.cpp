@@ -78,9 +78,8 @@ TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
 
   ChildProcess second(test::kDaemon, arguments);
   EXPECT_EQ(second.wait(), 4) << second.output();
-  EXPECT_TRUE(second.wrote("was here first: this one ends")) << second.output();
-  EXPECT_TRUE(eventually([&] { return first.wrote("it started later and has to give way"); }))
-      << first.output();
+  EXPECT_TRUE(second.told("other-daemon-first")) << second.output();
+  EXPECT_TRUE(eventually([&] { return first.told("other-daemon-later"); })) << first.output();
 
   // Until the second one knew, clients had reports of both, and could tell them apart.
   std::map<std::uint64_t, std::uint64_t> cycle_of;
@@ -96,9 +95,8 @@ TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
   });
   EXPECT_TRUE(went_on);
   EXPECT_LE(cycle_of.size(), 2u);
-  EXPECT_TRUE(eventually([&] {
-    return first.wrote("another writer of clearance/distances has left");
-  })) << first.output();
+  EXPECT_TRUE(eventually([&] { return first.told("other-writer-left", {"clearance/distances"}); }))
+      << first.output();
   first.signal(SIGTERM);
   EXPECT_EQ(first.wait(), 0) << first.output();
 }
@@ -132,7 +130,7 @@ TEST(TwoDaemons, AnotherProgramOnTheTopicIsNamedAndCountedInHealth) {
            sample->foreign_reports > 0;
   })) << daemon.output();
   EXPECT_NE(sample->daemon, 0u);
-  EXPECT_TRUE(daemon.wrote("a program that is no daemon (writer ")) << daemon.output();
+  EXPECT_TRUE(daemon.told("other-program")) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << "it goes on: " << daemon.output();
 }

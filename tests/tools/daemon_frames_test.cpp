@@ -50,8 +50,7 @@ TEST_F(DaemonFrames, PlaceAnObjectAndTheBaseOfARobot) {
   EXPECT_TRUE(step_until(5, send_joints, [&] {
     return is("box", PairStatus::kStale) && is("finger", PairStatus::kUnknown);
   })) << "nothing bounds how fast a base moves";
-  EXPECT_TRUE(step_until(5, send_joints, logged("the last pose of box that could be used")))
-      << daemon->output();
+  EXPECT_TRUE(step_until(5, send_joints, told("poses-late", {" box "}))) << daemon->output();
 }
 
 TEST_F(DaemonFrames, ThatAreMissingAreNamedWithThoseThatThereAre) {
@@ -135,7 +134,7 @@ TEST_F(DaemonFrames, OfARecordingReplayToTheBit) {
       [&] { return t > 1.0; }));
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
-  ChildProcess replay(kReplay, {"--offline", "--cell", cell, recording, "--compare"});
+  ChildProcess replay(kReplay, {"check", "--cell", cell, recording, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
 }
 

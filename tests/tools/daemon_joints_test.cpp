@@ -53,7 +53,7 @@ TEST_F(DaemonJoints, OfRos2PlaceTheLinksOfARobot) {
       [&] {
         joints.send(kNames, {0, 0, 0.1});
       },
-      logged("3 joints of arm are heard: shoulder, elbow, push")));
+      told("joints-heard", {"arm", "shoulder, elbow, push"})));
 }
 
 // The arm's driver and the gripper's, each with its joints; then the gripper's falls silent.
@@ -73,8 +73,7 @@ TEST_F(DaemonJoints, OfSeveralPublishersAreOneRobot) {
       [&] { return is("finger", PairStatus::kConverged); }));
   EXPECT_TRUE(step_until(5, send_arm, [&] { return is("finger", PairStatus::kStale); }));
   EXPECT_TRUE(is("lower", PairStatus::kConverged));
-  EXPECT_TRUE(step_until(5, send_arm, logged("the last positions of 1 joints of arm")))
-      << daemon->output();
+  EXPECT_TRUE(step_until(5, send_arm, told("joints-late", {"1 joint of arm"}))) << daemon->output();
 }
 
 // A joint_state_publisher that was left running: the first one keeps the joints.
@@ -91,11 +90,10 @@ TEST_F(DaemonJoints, OfAPublisherThatSendsZerosAreRefusedAndNamed) {
         real();
         zeros.send(kNames, {0, 0, 0});
       },
-      logged("joints of arm are sent by '/joint_states' and by '/joint_states#2'")))
+      told("two-joint-sources", {"arm", "'/joint_states'", "'/joint_states#2'"})))
       << daemon->output();
   EXPECT_EQ(pair("finger").distance, distance);
-  EXPECT_TRUE(daemon->wrote("positions of joint elbow refused in the last second: another source"))
-      << daemon->output();
+  EXPECT_TRUE(daemon->told("refused", {"joint elbow", "another source"})) << daemon->output();
 }
 
 TEST_F(DaemonJoints, ThatAreNoNumbersAreRefusedAndNamed) {
@@ -107,7 +105,7 @@ TEST_F(DaemonJoints, ThatAreNoNumbersAreRefusedAndNamed) {
       [&] {
         joints.send(kNames, {0.1, 0.1, kNaN}, {kNaN, kNaN, kNaN});
       },
-      logged("positions of joint push refused in the last second: not finite")))
+      told("refused", {"joint push", "not finite"})))
       << daemon->output();
   EXPECT_TRUE(is("lower", PairStatus::kConverged)) << "the rest of the message is used";
   EXPECT_TRUE(is("finger", PairStatus::kUnknown));
@@ -129,9 +127,9 @@ TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
       [&] {
         joints.send(kNames, {2.9, 0.0, 0.1});
       },
-      logged("joints of arm contradict each other")))
+      told("joints-contradict", {"arm"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("positions of joint shoulder refused")) << daemon->output();
+  EXPECT_TRUE(daemon->told("refused", {"joint shoulder"})) << daemon->output();
   EXPECT_FALSE(is("upper", PairStatus::kConverged));
 }
 
@@ -162,7 +160,7 @@ TEST_F(DaemonJoints, OfAThousandHertzAreAllTaken) {
       },
       [&] { return at > 0.1; }));
   EXPECT_TRUE(is("finger", PairStatus::kConverged));
-  EXPECT_FALSE(daemon->wrote("batches lost")) << daemon->output();
+  EXPECT_FALSE(daemon->told("batches-lost")) << daemon->output();
 }
 
 // A simulation's clock: seconds since its start.
@@ -200,12 +198,9 @@ TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
   EXPECT_GT(tf, 0);
   EXPECT_TRUE(step_until(
       50, [] {},
-      logged("nothing that could be used has come of 3 joints of arm "
-             "(shoulder, elbow, push): there is no publisher of")))
+      told("joints-silent", {"3 joints of arm", "shoulder, elbow, push", "rt/tf", "interface lo",
+                             "domain " + std::to_string(dds.domain)})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("rt/tf")) << daemon->output();
-  EXPECT_TRUE(daemon->wrote("domain " + std::to_string(dds.domain))) << daemon->output();
-  EXPECT_TRUE(daemon->wrote("interface lo")) << daemon->output();
 }
 
 TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
@@ -220,9 +215,9 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
   ASSERT_TRUE(eventually([&] {
     joints.send(kNames, {0, 0, 0.1});
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return daemon->wrote("3 joints of scara are heard");
+    return daemon->told("joints-heard", {"3 joints of scara"});
   })) << daemon->output();
-  EXPECT_TRUE(daemon->wrote("CYCLONEDDS_URI='<CycloneDDS>")) << daemon->output();
+  EXPECT_TRUE(daemon->told("how-to-reach", {"CYCLONEDDS_URI='<CycloneDDS>"})) << daemon->output();
 }
 
 TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
@@ -237,10 +232,10 @@ TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
   ASSERT_TRUE(eventually([&] {
     joints.send(kNames, {0, 0, 0.1});
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return daemon->wrote("3 joints of scara are heard");
+    return daemon->told("joints-heard", {"3 joints of scara"});
   })) << daemon->output();
   EXPECT_TRUE(
-      daemon->wrote("is kept as " + (folder / "cache/clearance/robot_description_").string()))
+      daemon->told("description-kept", {(folder / "cache/clearance/robot_description_").string()}))
       << daemon->output();
 }
 

@@ -64,7 +64,7 @@ class RecordingDaemon : public testing::Test {
   // What a fault of the file must lead to, whichever it is.
   void expect_told(const std::string& what) {
     EXPECT_TRUE(health_says(what)) << daemon->output();
-    EXPECT_TRUE(eventually([&] { return daemon->wrote("recording stopped: "); }));
+    EXPECT_TRUE(eventually([&] { return daemon->told("recording-stopped"); }));
     EXPECT_THAT(daemon->output(), HasSubstr(what));
     daemon->signal(SIGTERM);
     EXPECT_EQ(5, daemon->wait()) << daemon->output();
@@ -78,7 +78,7 @@ class RecordingDaemon : public testing::Test {
     return missing ? 0 : bytes;
   }
   int replay(const std::string& name, std::string& output) const {
-    ChildProcess child(kReplay, {"--offline", path(name)});
+    ChildProcess child(kReplay, {"check", path(name)});
     const int status = child.wait();
     output = child.output();
     return status;
@@ -100,7 +100,7 @@ TEST_F(RecordingDaemon, RecordsWhatAnOfflineReplayGivesAgain) {
                                  dds_arguments(dds)));
   EXPECT_EQ(0, run.wait()) << run.output();
   EXPECT_TRUE(run.wrote("recorded ")) << run.output();
-  ChildProcess compared(kReplay, {"--offline", path("run.mcap"), "--compare"});
+  ChildProcess compared(kReplay, {"check", path("run.mcap"), "--compare"});
   EXPECT_EQ(0, compared.wait()) << compared.output();
   EXPECT_TRUE(compared.wrote("150 reports compared")) << compared.output();
 }
@@ -131,8 +131,7 @@ TEST_F(RecordingDaemon, StartsAgainAfterACrashAndKeepsWhatWasRecorded) {
   daemon->wait();
   start();
   EXPECT_TRUE(health_says("recording " + path("run-2.mcap"))) << daemon->output();
-  EXPECT_THAT(daemon->output(),
-              HasSubstr(path("run.mcap") + " exists: recording to " + path("run-2.mcap")));
+  EXPECT_TRUE(daemon->told("recording-renamed", {path("run.mcap"), path("run-2.mcap")}));
   daemon->signal(SIGTERM);
   EXPECT_EQ(0, daemon->wait()) << daemon->output();
   std::string output;
@@ -201,7 +200,7 @@ TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
   expect_reports(200);
   daemon->signal(SIGTERM);
   EXPECT_EQ(5, daemon->wait(std::chrono::seconds(20))) << daemon->output();
-  EXPECT_THAT(daemon->output(), HasSubstr("the disk takes nothing"));
+  EXPECT_TRUE(daemon->told("disk-hangs")) << daemon->output();
   EXPECT_THAT(daemon->output(), HasSubstr("recording INCOMPLETE"));
   EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
 }
@@ -222,7 +221,7 @@ TEST_F(FastRecordingDaemon, CountsWhatADiskIsTooSlowFor) {
   start_on_a_disk_that_may_hang();
   write_text(folder / "hang", "");
   EXPECT_TRUE(health_says("recording " + path("run.mcap"), 1)) << daemon->output();
-  EXPECT_TRUE(eventually([&] { return daemon->wrote("the disk is too slow"); }));
+  EXPECT_TRUE(eventually([&] { return daemon->told("disk-too-slow"); }));
   std::filesystem::remove(folder / "hang");
   daemon->signal(SIGTERM);
   EXPECT_EQ(5, daemon->wait()) << daemon->output();

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -125,7 +125,7 @@ TEST(Daemon, EndsWithStatusZeroAndASummaryOnEitherSignal) {
   for (const int signal : {SIGTERM, SIGINT}) {
     ChildProcess daemon(test::kDaemon,
                         test::with({cell.path()}, test::dds_arguments(test::own_dds())));
-    ASSERT_TRUE(eventually([&] { return daemon.wrote("cell 'small'"); })) << daemon.output();
+    ASSERT_TRUE(eventually([&] { return daemon.told("started", {"'small'"}); })) << daemon.output();
     daemon.signal(signal);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
     EXPECT_TRUE(daemon.wrote(" ticks in ")) << daemon.output();
@@ -144,18 +144,16 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   Participant client(dds);
   test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
-  EXPECT_TRUE(eventually([&] { return daemon.wrote("zone 'near' entered at cycle"); }));
-  EXPECT_TRUE(daemon.wrote("left - right unknown")) << daemon.output();
+  EXPECT_TRUE(eventually([&] { return daemon.told("zone-unknown", {"'near'", "left - right"}); }));
   // Again and again: of poses that are a few milliseconds old the bodies may be elsewhere by now.
   EXPECT_TRUE(eventually([&] {
     poses.send(0.0);  // 0.8 m apart
-    return daemon.wrote("zone 'near' left at cycle");
+    return daemon.told("zone-left", {"'near'"});
   })) << daemon.output();
   EXPECT_TRUE(eventually([&] {
     poses.send(0.125);  // 0.57 m
-    return daemon.wrote("left - right, 0.");
+    return daemon.told("zone-near", {"left - right, 0."});
   })) << daemon.output();
-  EXPECT_TRUE(daemon.wrote(" m clear, ")) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }

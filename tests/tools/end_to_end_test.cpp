@@ -62,14 +62,15 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   ChildProcess daemon(kDaemon, with({path("cell.yaml")}, where));
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 2; })) << daemon.output();
   run(kReplay,
-      with({path("log.mcap"), "--only", "clearance/poses", "--restamp", "--wait", "20"}, where));
+      with({"publish", path("log.mcap"), "--only", "clearance/poses", "--restamp", "--wait", "20"},
+           where));
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
   client.signal(SIGINT);
   EXPECT_EQ(client.wait(), 0) << client.output();
 
-  const std::string offline = run(kReplay, {"--offline", path("log.mcap")});
-  const std::string online = run(kReplay, {"--offline", path("heard.mcap"), "--compare-bounds"});
+  const std::string offline = run(kReplay, {"check", path("log.mcap")});
+  const std::string online = run(kReplay, {"check", path("heard.mcap"), "--compare-bounds"});
   EXPECT_EQ(closest(offline), "closest: left - right, 0.2 m (0.2 to 0.2)");
   EXPECT_EQ(closest(online), closest(offline));
   EXPECT_TRUE(daemon.wrote("minimum  0.200000 m in [0.200000, 0.200000], left - right"))
@@ -107,9 +108,9 @@ TEST(EndToEnd, RestampedJointStatesKeepTheirScheduleAndTheirVelocitiesFollowTheR
   const DdsOptions dds = own_dds();
   Participant client(dds);
   const dds_entity_t reader = client.reader(TopicKind::kJointStates, cell.topics.joint_states, 64);
-  run(kReplay,
-      with({file, "--only", "clearance/joint_states", "--restamp", "--rate", "2", "--wait", "20"},
-           dds_arguments(dds)));
+  run(kReplay, with({"publish", file, "--only", "clearance/joint_states", "--restamp", "--rate",
+                     "2", "--wait", "20"},
+                    dds_arguments(dds)));
   std::int64_t last_ns = 0;
   int heard = 0;
   for (;; ++heard) {

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <dds/ddsi/ddsi_serdata.h>
-
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -15,6 +13,7 @@
 #include <thread>
 
 #include "monitor/wire/cdr.hpp"
+#include "monitor/wire/cyclone_private.hpp"
 #include "tests/shared/base64.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"

@@ -13,6 +13,7 @@ namespace clearance::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 constexpr const char* kCell = R"(name: bench
 units: {length: m, angle: deg}
@@ -69,13 +70,14 @@ class RecordReplay : public RunsPrograms {
                          path("cell.yaml")});
   }
   int replay(const std::vector<std::string>& more) {
-    return run(kReplay, with({"--offline", "--cell", path("cell.yaml"), path("run.mcap")}, more));
+    return run(kReplay, with({"check", "--cell", path("cell.yaml"), path("run.mcap")}, more));
   }
   // run.mcap over DDS into again.mcap, slowly.
   void publish_and_record_again(std::string& recorder_output) {
     const auto where = dds_arguments(own_dds());
     ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
-    ASSERT_EQ(0, run(kReplay, with({path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
+    ASSERT_EQ(0, run(kReplay,
+                     with({"publish", path("run.mcap"), "--wait", "20", "--rate", "0.25"}, where)))
         << output;
     recorder.signal(SIGINT);
     const int status = recorder.wait();
@@ -156,7 +158,7 @@ TEST_F(RecordReplay, RecordingOfAMonitorComparesEqualAndAnAlteredOneNamesTheFiel
   EXPECT_EQ(0, replay({"--compare"})) << output;
   EXPECT_THAT(output, HasSubstr("100 reports compared"));
   // The cell is in the recording, too.
-  EXPECT_EQ(0, run(kReplay, {"--offline", path("run.mcap"), "--compare"})) << output;
+  EXPECT_EQ(0, run(kReplay, {"check", path("run.mcap"), "--compare"})) << output;
   std::vector<Kept> messages = messages_of(folder / "run.mcap");
   Kept& last =
       *std::ranges::find(messages.rbegin(), messages.rend(), TopicKind::kDistances, &Kept::kind);
@@ -180,13 +182,13 @@ TEST_F(RecordReplay, DamagedRecordingGivesStatusFiveAndSaysHowMuchWasRead) {
 }
 
 TEST_F(RecordReplay, MistakesAreToldWithTheRightStatus) {
-  EXPECT_EQ(1, run(kReplay, {"--offline", path("none.mcap"), "--cell", path("cell.yaml")}));
+  EXPECT_EQ(1, run(kReplay, {"check", path("none.mcap"), "--cell", path("cell.yaml")}));
   EXPECT_THAT(output, HasSubstr("cannot read " + path("none.mcap") + ": No such file"));
-  EXPECT_EQ(1, run(kReplay, {"--offline", path(""), "--cell", path("cell.yaml")}));
+  EXPECT_EQ(1, run(kReplay, {"check", path(""), "--cell", path("cell.yaml")}));
   EXPECT_THAT(output, HasSubstr("is no bag: it has neither metadata.yaml nor .mcap"));
   EXPECT_EQ(1, run(kRecord, {"--from-csv", path("none.csv"), "-o", path("never.mcap")}));
   EXPECT_THAT(output, HasSubstr("cannot read " + path("none.csv") + ": No such file"));
-  EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--compare"}));
+  EXPECT_EQ(2, run(kReplay, {"publish", path("run.mcap"), "--compare"}));
   ASSERT_EQ(0, record_log());
   EXPECT_EQ(1, record_log());
   EXPECT_THAT(output, HasSubstr("run.mcap exists; --force overwrites it"));
@@ -235,7 +237,7 @@ TEST_F(RecordReplay, WhatASignalStopsEndsInOrderAndLeavesNothingHalf) {
     EXPECT_FALSE(std::filesystem::exists(folder / "no.mcap"));
     write_text(folder / "old.mcap", "precious");
     EXPECT_EQ(5, run_stopped(signal, kReplay,
-                             {"--offline", "--cell", path("cell.yaml"), path("run.mcap"), "--force",
+                             {"check", "--cell", path("cell.yaml"), path("run.mcap"), "--force",
                               "-o", path("old.mcap"), "--csv", path("t.csv")}));
     EXPECT_THAT(output, HasSubstr("stopped after 0 ticks"));
     EXPECT_THAT(output, HasSubstr(path("t.csv") + " was not finished and is removed"));
@@ -251,13 +253,30 @@ TEST_F(RecordReplay, TwoOutputsAreTwoFiles) {
   EXPECT_FALSE(std::filesystem::exists(folder / "both"));
 }
 
+// Before there were subcommands, --offline chose `check`, and `publish` had no name.
+TEST_F(RecordReplay, FormerSpellingsDoTheSameAndNameThePresentOnes) {
+  ASSERT_EQ(0, record_log()) << output;
+  const std::string csv = path("table.csv"), run_mcap = path("run.mcap"), cell = path("cell.yaml");
+  ASSERT_EQ(0, run(kReplay, {"check", "--cell", cell, run_mcap, "--csv", csv})) << output;
+  const std::string expected = read_text(csv);
+  ASSERT_EQ(0, run(kReplay, {"--cell", cell, run_mcap, "--csv", csv, "--offline", "--force"}));
+  EXPECT_EQ(expected, read_text(csv));
+  EXPECT_THAT(output, StartsWith("clearance-replay: note: 'clearance-replay --offline' is now "
+                                 "spelled 'clearance-replay check --cell " +
+                                 cell + " " + run_mcap));
+  ASSERT_EQ(
+      0, run(kReplay, with({run_mcap, "--wait", "0", "--rate", "100"}, dds_arguments(own_dds()))));
+  EXPECT_THAT(output, HasSubstr("is now spelled 'clearance-replay publish " + run_mcap));
+  EXPECT_THAT(output, HasSubstr("messages published"));
+}
+
 TEST_F(RecordReplay, ANumberThatIsNoneIsWrongUsage) {
   ASSERT_EQ(0, record_log()) << output;
   EXPECT_EQ(2, replay({"--expect-min-distance", "nan"}));
   EXPECT_THAT(output, HasSubstr("found 'nan'; expected a finite number"));
   EXPECT_EQ(2, replay({"--start", "-1"}));
   EXPECT_THAT(output, HasSubstr("found '-1'; expected a number, 0 or more"));
-  EXPECT_EQ(2, run(kReplay, {path("run.mcap"), "--rate", "inf"}));
+  EXPECT_EQ(2, run(kReplay, {"publish", path("run.mcap"), "--rate", "inf"}));
   EXPECT_THAT(output, HasSubstr("found 'inf'; expected a number above 0"));
 }
 
@@ -295,7 +314,7 @@ TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
     EXPECT_TRUE(a == b);
   }
   // And it still replays to the same reports, although topics overtook each other.
-  EXPECT_EQ(0, run(kReplay, {"--offline", path("again.mcap"), "--compare"})) << output;
+  EXPECT_EQ(0, run(kReplay, {"check", path("again.mcap"), "--compare"})) << output;
 }
 
 TEST_F(RecordReplay, RecorderTellsWhatItMissed) {
@@ -327,12 +346,13 @@ TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {
   EXPECT_THAT(output, HasSubstr("--start 0.1 lies after --end 0.05"));
   EXPECT_EQ(1, replay({"--start", "10"}));
   EXPECT_THAT(output, HasSubstr("no tick lies between the start and the end given"));
-  EXPECT_EQ(1, run(kReplay, with({path("run.mcap"), "--start", "10", "--wait", "0"},
+  EXPECT_EQ(1, run(kReplay, with({"publish", path("run.mcap"), "--start", "10", "--wait", "0"},
                                  dds_arguments(own_dds()))));
   EXPECT_THAT(output, HasSubstr("no message of these topics lies between"));
   EXPECT_THAT(output, HasSubstr("found there: none at all"));
-  EXPECT_EQ(1, run(kReplay, with({path("run.mcap"), "--only", "clearance/pose", "--wait", "0"},
-                                 dds_arguments(own_dds()))));
+  EXPECT_EQ(
+      1, run(kReplay, with({"publish", path("run.mcap"), "--only", "clearance/pose", "--wait", "0"},
+                           dds_arguments(own_dds()))));
   EXPECT_THAT(output, HasSubstr("found there: clearance/catalogue, clearance/poses"));
 }
 

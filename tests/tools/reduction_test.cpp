@@ -1,4 +1,4 @@
-// clearance-scene --reduce: its parts, and which model it calls the cheapest. Oracles: the closed
+// clearance-scene reduce: its parts, and which model it calls the cheapest. Oracles: the closed
 // form of an L's error, a cell made of what was printed, and the cost of every model by its
 // figures.
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ class Reduction : public testing::Test {
     return status;
   }
   json reduced(std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"--reduce", file("l.obj"), "--json"};
+    std::vector<std::string> arguments = {"reduce", file("l.obj"), "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(run(arguments), 0) << output_;
     return json::parse(output_).at(0);
@@ -80,7 +80,7 @@ TEST_F(Reduction, AHullAroundTwoBlocksIsHalfAsFarFromThemAsTheyAreApart) {
          "      - {box: {size: [1, 1, 1]}, pose: {xyz: [2, 0, 0]}}\n"
          "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], "
          "offset: -5}}\npairs: [{between: [blocks, floor]}]\n";
-  ASSERT_EQ(run({"--reduce", file("two.yaml"), "--object", "blocks", "--json"}), 0) << output_;
+  ASSERT_EQ(run({"reduce", file("two.yaml"), "--object", "blocks", "--json"}), 0) << output_;
   const json body = json::parse(output_).at(0);
   EXPECT_GE(model(body, "hull")["error"].get<double>(), 0.5);
   EXPECT_LE(model(body, "hull")["error"].get<double>(), 0.5 * 1.02 + 1e-5);
@@ -130,8 +130,8 @@ TEST_F(Reduction, NoModelKeepsAPairAwayThatIsWithinAFewTicks) {
 }
 
 TEST_F(Reduction, DrawsThePictureAndWritesThePageBesideIt) {
-  const std::vector<std::string> asked = {"--reduce", file("l.obj"), "--distance",
-                                          "1",        "--plot",      file("models.svg")};
+  const std::vector<std::string> asked = {"reduce", file("l.obj"), "--distance",
+                                          "1",      "--plot",      file("models.svg")};
   ASSERT_EQ(run(asked), 0) << output_;
   std::stringstream page;
   page << std::ifstream(file("models.md")).rdbuf();
@@ -142,7 +142,7 @@ TEST_F(Reduction, DrawsThePictureAndWritesThePageBesideIt) {
 }
 
 TEST_F(Reduction, APictureNeedsADistance) {
-  EXPECT_EQ(run({"--reduce", file("l.obj"), "--plot", file("models.svg")}), 2);
+  EXPECT_EQ(run({"reduce", file("l.obj"), "--plot", file("models.svg")}), 2);
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ class ReplayReport : public RunsPrograms {
         << output;
   }
   int replay(const std::vector<std::string>& more) {
-    return run(kReplay, with({"--offline", "--cell", path("cell.yaml"), path("run.mcap")}, more));
+    return run(kReplay, with({"check", "--cell", path("cell.yaml"), path("run.mcap")}, more));
   }
 };
 
@@ -129,7 +129,7 @@ TEST_F(ReplayReport, APlotShowsThePairsThatAreAskedForAndNoOthers) {
 
 TEST_F(ReplayReport, IsOnePageThatNamesExpectationsAndWorstMomentsWithPictures) {
   ChildProcess child(
-      kReplay, {"--offline", "--cell", path("cell.yaml"), path("run.mcap"), "--report",
+      kReplay, {"check", "--cell", path("cell.yaml"), path("run.mcap"), "--report",
                 path("run.html"), "--expect-no-zone", "stop", "--expect-min-distance", "0.05"});
   EXPECT_EQ(1, child.wait(std::chrono::seconds(250))) << child.output();  // a browser starts
   const std::string html = read_text(folder / "run.html");

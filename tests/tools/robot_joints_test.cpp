@@ -40,7 +40,7 @@ class RobotJoints : public testing::Test {
     EXPECT_TRUE(robot.wrote("joints sent, 0 failed")) << robot.output();
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(), 0);
-    EXPECT_FALSE(daemon.wrote("refused")) << daemon.output();
+    EXPECT_FALSE(daemon.told("refused")) << daemon.output();
   }
 
   DdsOptions dds = own_dds();

@@ -40,7 +40,7 @@ class SceneProgram : public testing::Test {
 };
 
 TEST_F(SceneProgram, WritesACellThatIsGood) {
-  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml")}), 0) << output_;
+  EXPECT_EQ(run({"import", file("robot.urdf"), "-o", file("cell.yaml")}), 0) << output_;
   EXPECT_NE(output_.find("two: 2 objects (2 moving, 0 fixed)"), std::string::npos) << output_;
   EXPECT_TRUE(std::filesystem::exists(file("cell.yaml")));
 }
@@ -60,7 +60,7 @@ std::string chain_urdf() {
 
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
-  EXPECT_EQ(run({"--from-urdf", file("chain.urdf"), "-o", file("cell.yaml")}), 0) << output_;
+  EXPECT_EQ(run({"import", file("chain.urdf"), "-o", file("cell.yaml")}), 0) << output_;
   EXPECT_NE(output_.find("note: no SRDF: neighbours are left out, and every other pair of links is "
                          "watched: a - b, b - c"),
             std::string::npos)
@@ -72,9 +72,9 @@ TEST_F(SceneProgram, RefusesTheSrdfOfAnotherRobotAndWritesNothing) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   std::ofstream(directory_ / "other.srdf")
       << "<robot name=\"other\">\n<disable_collisions link1=\"a\" link2=\"x\"/>\n</robot>\n";
-  EXPECT_EQ(run({"--from-urdf", file("chain.urdf"), "--srdf", file("other.srdf"), "-o",
-                 file("cell.yaml")}),
-            1);
+  EXPECT_EQ(
+      run({"import", file("chain.urdf"), "--srdf", file("other.srdf"), "-o", file("cell.yaml")}),
+      1);
   EXPECT_NE(output_.find("other.srdf:1: found the robot 'other'"), std::string::npos) << output_;
   EXPECT_NE(output_.find("other.srdf:2: found the link 'x'"), std::string::npos) << output_;
   EXPECT_FALSE(std::filesystem::exists(file("cell.yaml")));
@@ -82,11 +82,10 @@ TEST_F(SceneProgram, RefusesTheSrdfOfAnotherRobotAndWritesNothing) {
 
 TEST_F(SceneProgram, WritesOverAFileOnlyWhenForced) {
   std::ofstream(file("cell.yaml")) << "precious";
-  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml")}), 1);
+  EXPECT_EQ(run({"import", file("robot.urdf"), "-o", file("cell.yaml")}), 1);
   EXPECT_NE(output_.find("exists; --force overwrites it"), std::string::npos) << output_;
   EXPECT_EQ(std::filesystem::file_size(file("cell.yaml")), 8u);
-  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--force"}), 0)
-      << output_;
+  EXPECT_EQ(run({"import", file("robot.urdf"), "-o", file("cell.yaml"), "--force"}), 0) << output_;
 }
 
 TEST_F(SceneProgram, ACellThatIsNoGoodIsWrittenAndExplained) {
@@ -94,18 +93,18 @@ TEST_F(SceneProgram, ACellThatIsNoGoodIsWrittenAndExplained) {
       << "<robot name=\"alone\"><link name=\"a\"><collision><geometry><sphere "
          "radius=\"0.1\"/></geometry>"
          "</collision></link></robot>\n";
-  EXPECT_EQ(run({"--from-urdf", file("alone.urdf"), "-o", file("cell.yaml")}), 3);
+  EXPECT_EQ(run({"import", file("alone.urdf"), "-o", file("cell.yaml")}), 3);
   EXPECT_NE(output_.find("cell.yaml:"), std::string::npos) << output_;
 }
 
 TEST_F(SceneProgram, WhatCannotBeReadOrWrittenEndsWithOne) {
   std::ofstream(directory_ / "broken.urdf") << "<robot";
-  EXPECT_EQ(run({"--from-urdf", file("broken.urdf"), "-o", file("cell.yaml")}), 1);
-  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("nowhere/cell.yaml")}), 1);
+  EXPECT_EQ(run({"import", file("broken.urdf"), "-o", file("cell.yaml")}), 1);
+  EXPECT_EQ(run({"import", file("robot.urdf"), "-o", file("nowhere/cell.yaml")}), 1);
 }
 
 TEST_F(SceneProgram, WritesAWarehouseOfAsManyObjectsAsAskedFor) {
-  EXPECT_EQ(run({"--warehouse", "61", "-o", file("warehouse.yaml")}), 0) << output_;
+  EXPECT_EQ(run({"warehouse", "61", "-o", file("warehouse.yaml")}), 0) << output_;
   EXPECT_NE(output_.find("warehouse_61: 61 objects (12 moving, 49 fixed)"), std::string::npos)
       << output_;
 }
@@ -124,7 +123,7 @@ pairs: [{between: [block, floor]}]
 
 TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   std::ofstream(directory_ / "cell.yaml") << kTwoParts;
-  ASSERT_EQ(run({"--report", file("cell.yaml"), "--json"}), 0) << output_;
+  ASSERT_EQ(run({"report", file("cell.yaml"), "--json"}), 0) << output_;
   const auto objects = nlohmann::json::parse(output_);
   ASSERT_EQ(objects.size(), 2u);
   const auto& block = objects[0];
@@ -138,7 +137,7 @@ TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   EXPECT_FALSE(objects[1].contains("sphere"));
   EXPECT_FALSE(objects[1].contains("hull"));
 
-  ASSERT_EQ(run({"--report", file("cell.yaml")}), 0) << output_;
+  ASSERT_EQ(run({"report", file("cell.yaml")}), 0) << output_;
   EXPECT_NE(output_.find("block "), std::string::npos) << output_;
   EXPECT_NE(output_.find("2 objects, 1 with a hull"), std::string::npos) << output_;
 }
@@ -148,7 +147,7 @@ TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
                                             "v 0.9 0.5 1\nv 1.1 0.5 1\n"
                                             "f 1 2 3\nf 1 3 4\nf 1 2 6\nf 1 6 5\nf 3 4 5\nf 3 5 6\n"
                                             "f 2 3 6\nf 1 4 5\n";
-  ASSERT_EQ(run({"--reduce", file("tent.obj"), "--tolerance", "10", "--json"}), 0) << output_;
+  ASSERT_EQ(run({"reduce", file("tent.obj"), "--tolerance", "10", "--json"}), 0) << output_;
   const auto body = nlohmann::json::parse(output_).at(0);
   EXPECT_EQ(body["body"], "tent");
   int chosen = 0;
@@ -161,23 +160,72 @@ TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
 }
 
 TEST_F(SceneProgram, ReducesNothingThatIsMissing) {
-  EXPECT_EQ(run({"--reduce", file("none.obj")}), 2);
-  EXPECT_EQ(run({"--reduce", file("robot.urdf"), "-o", file("cell.yaml")}), 2);
-  EXPECT_EQ(run({"--reduce", file("robot.urdf"), "--tolerance", "1", "--facets", "8"}), 2);
+  EXPECT_EQ(run({"reduce", file("none.obj")}), 2);
+  EXPECT_EQ(run({"reduce", file("robot.urdf"), "-o", file("cell.yaml")}), 2);
+  EXPECT_EQ(run({"reduce", file("robot.urdf"), "--tolerance", "1", "--facets", "8"}), 2);
 }
 
 TEST_F(SceneProgram, ReportsTheErrorsOfACellThatIsNoGood) {
   std::ofstream(directory_ / "cell.yaml") << "name: empty\n";
-  EXPECT_EQ(run({"--report", file("cell.yaml")}), 3);
+  EXPECT_EQ(run({"report", file("cell.yaml")}), 3);
   EXPECT_NE(output_.find("cell.yaml:"), std::string::npos) << output_;
 }
 
 TEST_F(SceneProgram, WrongUsageEndsWithTwo) {
   EXPECT_EQ(run({}), 2);
-  EXPECT_EQ(run({"--warehouse", "100"}), 2);
-  EXPECT_EQ(run({"--warehouse", "10", "-o", file("cell.yaml")}), 2);
-  EXPECT_EQ(run({"--report", "x.yaml", "--warehouse", "100"}), 2);
-  EXPECT_EQ(run({"--from-urdf", file("robot.urdf"), "-o", file("cell.yaml"), "--package", "x"}), 2);
+  EXPECT_EQ(run({"warehouse", "100"}), 2);
+  EXPECT_EQ(run({"warehouse", "10", "-o", file("cell.yaml")}), 2);
+  EXPECT_EQ(run({"report", "x.yaml", "warehouse", "100"}), 2);
+  EXPECT_EQ(run({"import", file("robot.urdf"), "-o", file("cell.yaml"), "--package", "x"}), 2);
+}
+
+// Before there were subcommands, an option chose what to do.
+TEST_F(SceneProgram, FormerSpellingsDoTheSameAndNameThePresentOnes) {
+  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  ASSERT_EQ(run({"warehouse", "60", "-o", file("cell.yaml")}), 0) << output_;
+  struct Spellings {
+    std::vector<std::string> former, present;
+    std::string note;
+  };
+  const std::string urdf = file("robot.urdf"), obj = file("tent.obj"), cell = file("cell.yaml");
+  const Spellings all[] = {
+      {{"--from-urdf", urdf, "-o", file("a.yaml"), "--force"},
+       {"import", urdf, "-o", file("a.yaml"), "--force"},
+       "clearance-scene import " + urdf + " -o"},
+      {{"--samples=50", "--from-urdf=" + urdf, "--allow"},
+       {"allow", urdf, "--samples=50"},
+       "clearance-scene allow " + urdf + " --samples=50'"},
+      {{"--warehouse", "60", "-o", file("a.yaml"), "--force"},
+       {"warehouse", "60", "-o", file("a.yaml"), "--force"},
+       "clearance-scene warehouse 60 -o"},
+      {{"--report", cell, "--json"}, {"report", cell, "--json"}, "clearance-scene report " + cell},
+      {{"--reduce", obj, obj, "--tolerance", "10"},
+       {"reduce", obj, obj, "--tolerance", "10"},
+       "clearance-scene reduce " + obj + " " + obj + " --tolerance 10'"},
+  };
+  for (const Spellings& spelling : all) {
+    ASSERT_EQ(run(spelling.present), 0) << output_;
+    const std::string expected = output_;
+    ASSERT_EQ(run(spelling.former), 0) << output_;
+    EXPECT_EQ(output_.find("clearance-scene: note: '"), 0u) << output_;
+    EXPECT_LT(output_.find(spelling.note), output_.find('\n')) << output_;
+    EXPECT_EQ(output_.substr(output_.find('\n') + 1), expected);
+  }
+}
+
+TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
+  ASSERT_EQ(run({"import", "--help"}), 0);
+  EXPECT_NE(output_.find("Usage: clearance-scene import URDF --output TEXT [OPTIONS]"),
+            std::string::npos)
+      << output_;
+  EXPECT_LT(output_.find("-o,--output"), output_.find("--srdf")) << output_;
+  ChildProcess daemon(std::string(CLEARANCE_BIN) + "/clearanced", {"--help"});
+  ASSERT_EQ(daemon.wait(), 0);
+  EXPECT_NE(daemon.output().find(
+                "Usage: clearanced (CELL | --urdf TEXT | --robot-description TEXT) [OPTIONS]"),
+            std::string::npos)
+      << daemon.output();
 }
 
 // A post, a slide beside it, a tip that the slide moves through the post, and what is far from all
@@ -202,8 +250,7 @@ std::string crane_urdf() {
 
 TEST_F(SceneProgram, ProposesPairsThatMayTouchBySampling) {
   std::ofstream(directory_ / "crane.urdf") << crane_urdf();
-  const std::vector<std::string> arguments = {"--from-urdf", file("crane.urdf"), "--allow",
-                                              "--samples", "2000"};
+  const std::vector<std::string> arguments = {"allow", file("crane.urdf"), "--samples", "2000"};
   ASSERT_EQ(run(arguments), 0) << output_;
   const std::string proposed = output_;
   for (const char* pair : {"link1=\"post\" link2=\"slide\" reason=\"Adjacent\"",
@@ -231,8 +278,8 @@ TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
          "<disable_collisions link1=\"tip\" link2=\"far\" reason=\"Adjacent\"/>\n"
          "<disable_collisions link1=\"post\" link2=\"far\" reason=\"Never\"/>\n"
          "<disable_collisions link1=\"slide\" link2=\"far\" reason=\"Never\"/>\n</robot>\n";
-  ASSERT_EQ(run({"--from-urdf", file("crane.urdf"), "--allow", "--srdf", file("crane.srdf"), "--as",
-                 "cell", "--samples", "500", "-o", file("allowed.yaml")}),
+  ASSERT_EQ(run({"allow", file("crane.urdf"), "--srdf", file("crane.srdf"), "--as", "cell",
+                 "--samples", "500", "-o", file("allowed.yaml")}),
             0)
       << output_;
   EXPECT_NE(output_.find("5 of 6 pairs as in the SRDF: 5 left out by both, 0 watched by both"),

@@ -92,7 +92,7 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   const std::vector<Kept> messages = messages_of(run);
   EXPECT_EQ(std::ranges::count(messages, TopicKind::kSeparation, &Kept::kind),
             std::ranges::count(messages, TopicKind::kDistances, &Kept::kind));
-  ChildProcess replay(kReplay, {"--offline", run, "--compare"});
+  ChildProcess replay(kReplay, {"check", run, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
 
   recorder.signal(SIGINT);

@@ -15,11 +15,11 @@ struct Head {
   std::int64_t begin_ns = 0;
   int added = 1;
 };
-struct Cell {
+struct Least {
   double least = std::numeric_limits<double>::infinity();
 };
 void merge(const Head& later, Head& into) { into.added += later.added; }
-void merge(const Cell& later, Cell& into) { into.least = std::min(into.least, later.least); }
+void merge(const Least& later, Least& into) { into.least = std::min(into.least, later.least); }
 
 struct Added {
   std::int64_t time_ns;
@@ -32,14 +32,14 @@ TEST(Stretches, HoldOfEachTimeTheLeastThatWasAddedHoweverLongTheRunIs) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   for (const int count : {1, 2, 8, 9, 1000}) {
     SCOPED_TRACE(count);
-    Stretches<Head, Cell> run(2, 8, 3);
+    Stretches<Head, Least> run(2, 8, 3);
     std::vector<Added> all;
     std::int64_t time_ns = 1'000'000;
     for (int i = 0; i < count; ++i, time_ns += pause(random)) {
       all.push_back({time_ns, {any(random), any(random)}});
-      const std::span<Cell> cells = run.add({.begin_ns = time_ns});
+      const std::span<Least> cells = run.add({.begin_ns = time_ns});
       for (std::size_t column = 0; column < 2; ++column) {
-        merge(Cell{all.back().value[column]}, cells[column]);
+        merge(Least{all.back().value[column]}, cells[column]);
       }
     }
     ASSERT_LE(run.heads().size(), 8u);
@@ -60,7 +60,7 @@ TEST(Stretches, HoldOfEachTimeTheLeastThatWasAddedHoweverLongTheRunIs) {
 }
 
 TEST(Stretches, KeepApartWhatTheyHaveRoomFor) {
-  Stretches<Head, Cell> run(0, 100, 10);
+  Stretches<Head, Least> run(0, 100, 10);
   for (std::int64_t i = 0; i < 100; ++i) run.add({.begin_ns = 10 * i});
   EXPECT_EQ(run.heads().size(), 100u);
   run.add({.begin_ns = 1000});

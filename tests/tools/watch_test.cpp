@@ -147,10 +147,9 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
   // 0.8 m apart, until that is known; then silence.
   ASSERT_TRUE(eventually([&] {
     poses.send(0.0);
-    return daemon.wrote("zone 'near' left at cycle");
+    return daemon.told("zone-left", {"'near'"});
   }));
-  EXPECT_TRUE(eventually([&] { return daemon.wrote("because poses of left are late"); }))
-      << daemon.output();
+  EXPECT_TRUE(eventually([&] { return daemon.told("zone-late", {"left"}); })) << daemon.output();
   EXPECT_TRUE(eventually([&] {
     return watch.wrote("no minimum known, poses are late: least upper bound ") &&
            watch.wrote("zone near: poses of left are late");

@@ -42,6 +42,9 @@ class WatchedDaemon : public testing::Test {
   auto logged(const std::string& text) {
     return [this, text] { return daemon->wrote(text); };
   }
+  auto told(const std::string& code, const std::vector<std::string>& names = {}) {
+    return [this, code, names] { return daemon->told(code, names); };
+  }
   void take() {
     void* pointer = &*report;
     dds_sample_info_t info{};

@@ -1,4 +1,4 @@
-#include "tools/bench/batches.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 
@@ -19,13 +19,14 @@
 namespace clearance::bench {
 namespace {
 
-// As many as a cell with two arms has; all that is touched fits into the second-level cache.
+// The number of pairs in a cell with two arms. All data of the queries fit into the second-level
+// cache.
 constexpr std::size_t kPairs = 512;
 
 // Pairs that start on the same trajectory are this many steps apart.
 constexpr std::size_t kApart = 8;
 
-// Whether bodies share shapes, as in a cell, or each body has a shape of its own in memory.
+// Bodies share shapes, as in a cell, or each body has a shape of its own in memory.
 enum class Shapes { kInCommon, kOfTheirOwn };
 
 // Many pairs of a workload at once, each of two bodies that move by themselves, back and forth
@@ -133,8 +134,8 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
   count(state, verdict);
 }
 
-// With those before it, for single queries, which are not compiled for every one. Highway's bits
-// are the lower the wider the vectors. 0: all of this machine.
+// The mask of a target and all narrower ones, because single queries are not compiled for every
+// target. In Highway, wider vectors have lower bits. 0: all targets of this machine.
 std::int64_t up_to(std::int64_t target) {
   return target == 0 ? 0 : (hwy::SupportedTargets() & -target) | target;
 }

@@ -26,7 +26,7 @@ ConvexBody made(ShapeResult result) { return std::get<ConvexBody>(std::move(resu
 
 ConvexBody facet_ball(double radius, int order = 6) {
   std::vector<HalfSpace> rows;
-  // A facet-ball of order 6 or more has its corners within 1.2 of its inscribed radius.
+  // A facet-ball of order 6 or more has its vertices within 1.2 of its inradius.
   for (const Vec3& d : even_directions(order)) rows.push_back({d, radius / 1.2});
   return made(polyhedron_from_halfspaces(rows));
 }

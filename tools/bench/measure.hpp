@@ -24,7 +24,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/bench/chapter5/crossed_ellipsoids.hpp"
+#include "tools/bench/crossed_ellipsoids.hpp"
 #include "tools/bench/workload.hpp"
 
 namespace clearance::bench {

@@ -1,4 +1,4 @@
-#include "tools/bench/nearness.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-#include "tools/bench/ours.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 
 #include "core/distance.hpp"
-#include "tools/bench/intervals.hpp"
-#include "tools/bench/measure.hpp"
 #include "tools/bench/overlaps.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -31,10 +30,14 @@ class Ours {
 
 }  // namespace
 
-void register_ours() {
+void register_ours(RowSet set) {
+  if (set == RowSet::kThesis) {
+    register_facet_balls<Ours>("");
+    register_intervals<Ours>("");
+    return;
+  }
   register_rows<Ours>("");
   register_kind_rows<Ours>("");
-  register_intervals<Ours>("");
   for (const std::string& load : overlap_names()) {
     register_row<Ours>(fmt::format("overlap/tracked/{}", load), load, kTracked);
     register_row<Ours>(fmt::format("overlap/cold/{}", load), load, kCold);

@@ -1,4 +1,5 @@
-// Pairs of penetrating bodies, to measure the cost of a depth (tools/README.md, "Overlapping").
+// Pairs of penetrating bodies, to measure the cost of a depth (tools/bench/measured/report.md,
+// "Overlapping").
 #pragma once
 
 #include <string>
@@ -23,7 +24,7 @@ inline constexpr OverlapDepth kOverlapDepths[] = {
 [[nodiscard]] std::vector<Trajectory> overlapping(const std::string& kind,
                                                   const OverlapDepth& depth);
 
-// Of all kinds and depths, as workload() takes them: "boxes/shallow", ...
+// The names of all kinds and depths for workload(): "boxes/shallow", ...
 [[nodiscard]] std::vector<std::string> overlap_names();
 
 }  // namespace clearance::bench

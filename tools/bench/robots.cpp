@@ -1,4 +1,4 @@
-#include "tools/bench/robots.hpp"
+#include "tools/bench/rows.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "tools/bench/cells.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/ticks.hpp"
-#include "tools/robot/joint_sweep.hpp"
+#include "tools/shared/joint_sweep.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -47,7 +47,7 @@ class MovingRobots {
   }
   [[nodiscard]] const std::vector<JointSample>& joints() const noexcept { return joints_; }
 
-  // What the tick does with them: each is taken in, and all links are placed.
+  // Does the tick's work for joints: takes each in, and places all links.
   void place(std::int64_t now_ns) noexcept {
     for (const JointSample& joint : joints_) {
       const JointVariable& variable = scene_.variables[joint.variable];

@@ -6,10 +6,10 @@
 namespace clearance::bench {
 namespace {
 
-// Until everything is known and has been looked at once; for times that are no longer of the
-// beginning the last of them are taken.
+// Ticks until everything is known and has been evaluated once. The last of them give times without
+// the effects of the start.
 constexpr int kStartUpTicks = 3'000;
-constexpr int kShortStartUpTicks = 10;       // where each is looked at in every tick
+constexpr int kShortStartUpTicks = 10;       // where each pair is evaluated in every tick
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 constexpr std::int64_t kFirst = 1'000'000'000;
 
@@ -17,8 +17,7 @@ constexpr std::int64_t kFirst = 1'000'000'000;
 
 std::int64_t stamp_ns(int tick) { return kFirst + (kStartUpTicks + tick) * kPeriod; }
 
-TickRun::TickRun(const Crowd& crowd, unsigned workers)
-    : crowd_(crowd), monitor_(crowd.scene, {.workers = workers}) {}
+TickRun::TickRun(const Crowd& crowd) : crowd_(crowd), monitor_(crowd.scene) {}
 
 std::vector<double> TickRun::start_up() {
   std::vector<double> times;

@@ -16,7 +16,7 @@ namespace clearance::bench {
 // A monitor of a crowd and the time in its world. Two runs of the same crowd agree to the bit.
 class TickRun {
  public:
-  explicit TickRun(const Crowd& crowd, unsigned workers = 1);
+  explicit TickRun(const Crowd& crowd);
 
   // Ticks until every pair has been evaluated or bounded once; returns the time of each tick, ns.
   std::vector<double> start_up();

@@ -110,19 +110,6 @@ void register_plain(const std::string& name, int ticks, const MakeCrowd& make) {
   register_crowd(fmt::format("{}/plain", name), ticks, 1, [make] { return all_evaluated(make()); });
 }
 
-void time_workers(benchmark::State& state, const Crowd& crowd, unsigned workers) {
-  TickRun run(crowd, workers);
-  run.start_up();
-  std::vector<double> times;
-  for (auto _ : state) {
-    run.prepare();
-    times.push_back(run.tick());
-    state.SetIterationTime(1e-9 * times.back());
-  }
-  state.counters["least_us"] = 1e-3 * *std::min_element(times.begin(), times.end());
-  count_times(times, state);
-}
-
 struct Ticks {
   int ours, plain, fcl;  // how many are timed; 0: none
   int runs = 1;          // of ours, for what each tick takes at its best
@@ -134,14 +121,6 @@ void register_all(const std::string& name, const Ticks& ticks, const MakeCrowd& 
 #ifdef CLEARANCE_BENCH_FCL
   if (ticks.fcl > 0) register_fcl_manager(fmt::format("{}/fcl", name), ticks.fcl, make);
 #endif
-}
-
-void register_workers(const std::string& name, int ticks, const MakeCrowd& make) {
-  for (const unsigned workers : {1u, 2u}) {
-    register_tick_row(
-        fmt::format("{}/plain/workers:{}", name, workers), ticks,
-        [make, workers](benchmark::State& s) { time_workers(s, all_evaluated(make()), workers); });
-  }
 }
 
 Crowd swept_crowd(const OrbitingOptions& options) {
@@ -199,7 +178,6 @@ void register_ticks() {
   register_all("tick/robot_2k", {20'000, 2'000, 1'000, 10}, [] { return robot_in_crowd(100); });
   register_all("tick/100_all_moving_5k", {20'000, 2'000, 1'000, 10}, all_moving(100));
   register_all("tick/300_all_moving_45k", {10'000, 200, 300, 7}, all_moving(300));
-  register_workers("tick/300_all_moving_45k", 500, all_moving(300));
   register_all("tick/300_of_510_facets_45k", {10'000, 50, 100, 7},
                [] { return orbiting_crowd({.count = 300, .moving = 300, .order = 20}); });
   register_all("tick/warehouse_49k", {10'000, 100, 300, 7}, [] { return warehouse_crowd(1000); });

@@ -11,7 +11,7 @@ namespace {
 using Real = long double;
 using Matrix = Eigen::Matrix<Real, 3, 3>;
 
-// Of q / |q|, by N(q) / |q|^2.
+// The rotation matrix of q / |q|, as N(q) / |q|^2.
 Matrix rotation(const Eigen::Quaterniond& unnormalised) {
   const Eigen::Quaternion<Real> q = unnormalised.cast<Real>();
   const Real s = 2.0L / q.squaredNorm();
@@ -68,7 +68,7 @@ TrueDistance::Point TrueDistance::nearest() const {
   return sum;
 }
 
-// Wolfe's minor cycle: to the nearest point of the corners' affine hull, dropping corners whose
+// Wolfe's minor cycle: to the nearest point of the vertices' affine hull, dropping vertices whose
 // weight would become negative.
 void TrueDistance::minimise() {
   while (corners_.size() > 1) {

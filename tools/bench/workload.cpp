@@ -8,7 +8,7 @@
 
 #include "core/shapes.hpp"
 #include "tools/bench/bodies.hpp"
-#include "tools/bench/chapter5/crossed_ellipsoids.hpp"
+#include "tools/bench/crossed_ellipsoids.hpp"
 #include "tools/bench/overlaps.hpp"
 
 namespace clearance::bench {
@@ -46,7 +46,7 @@ double closest_centres(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   return least;
 }
 
-// Ways of two bodies whose centres come as close as `nearest` to `farthest`, no closer.
+// Trajectories of two bodies. The least distance of their centres is from `nearest` to `farthest`.
 std::vector<std::pair<Pose, Pose>> pass(Random& random, const Drift& by, double nearest,
                                         double farthest) {
   for (;;) {

@@ -29,15 +29,15 @@ struct Workload {
 };
 
 // The same on every machine; 40 trajectories of 100 steps, but for those of overlaps.hpp:
-//   fN, vN          §3.5, §4.1: two facet-balls of order N, or their duals; each moves 0.02 radius
-//                   and turns 0.01 rad a step; centres come as close as 2.6 to 7 radii
-//   boxes           random boxes on the same kind of trajectory, centres 0.8 to 2 m apart at
-//   closest parallel-boxes  boxes of one orientation (half of them along the axes) that slide past
-//   each
+//   fN, vN          §3.5, §4.1: two facet-balls of order N, or their duals; each moves by 0.02
+//                   radius and 0.01 rad per step; centres come as close as 2.6 to 7 radii
+//   boxes           random boxes on the same kind of trajectory; the least distance of the centres
+//                   is 0.8 to 2 m
+//   parallel-boxes  boxes of one orientation (half of them along the axes) that slide past each
 //                   other face to face
-//   links           hulls like those of robot links, 2 mm and 5 mrad a step
-//   A-B             of the kinds below, one each of 0.1 to 0.5 m, on the trajectories of links
-//   crossed/D       the standard test of chapter 5, one pose (chapter5/crossed_ellipsoids.hpp)
+//   links           hulls like those of robot links, 2 mm and 5 mrad per step
+//   A-B             two bodies of the kinds below, of 0.1 to 0.5 m, on the trajectories of links
+//   crossed/D       the standard test of chapter 5, one pose (crossed_ellipsoids.hpp)
 // Made at first use and kept. Throws std::invalid_argument for any other name.
 [[nodiscard]] const Workload& workload(const std::string& name);
 
@@ -60,7 +60,7 @@ struct KindPair {
   // "curved" if one of them is, else "pair": rows are curved/tracked/A-B, pair/cold/A-B ...
   [[nodiscard]] std::string group() const;
 };
-// Each with each.
+// All pairs of kinds.
 [[nodiscard]] std::vector<KindPair> kind_pairs();
 
 }  // namespace clearance::bench

@@ -17,8 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
-// A point of both bodies, in frame A, when they penetrate: where a search for the closest points
-// ends.
+// A point of two penetrating bodies, in frame A, where a search for the closest points ends.
 Vec3 shared_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b) {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   side_a.place_cold(side_b.point_to_a(b.interior));
@@ -40,7 +39,7 @@ OrderedJson figures(const ConvexBody& a, const ConvexBody& b, const Pose& world_
   const auto positive = [](double value) { return std::max(0.0, value); };
   const Vec3 normal = transform({Vec3::Zero(), world_from_a.orientation}, r.normal);
   const Vec3 on_a = transform(world_from_a, r.point_on_a);
-  // Computed through A's frame it would have a rounding error that grows with the distance.
+  // The rounding error of a point computed through A's frame would grow with the distance.
   const Vec3 on_b = on_rounded_b(transform(world_from_b, answer.own_point_on_b), normal, b);
   OrderedJson out;
   out["distance"] = overlapping ? 0.0 : positive(r.distance);

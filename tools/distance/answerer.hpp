@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "core/distance.hpp"
-#include "tools/distance/case.hpp"
+#include "tools/cases/case.hpp"
 
 namespace clearance {
 
 struct DistanceAnswer {
   DistanceResult result;
-  Vec3 own_point_on_b;  // the witness point in B's own frame, before the radius
+  Vec3 own_point_on_b;  // the witness point in B's local frame, before the radius
 };
 
-// How many answers each method gave, by DistancePath; and how many pairs touch or overlap of those
-// that feature tracking did not answer.
+// The number of answers of each method, by DistancePath, and the number of pairs that touch or
+// overlap among those that feature tracking did not answer.
 struct PathCount {
   std::array<std::size_t, static_cast<std::size_t>(DistancePath::kDirection) + 1> by_path{};
   std::size_t met = 0;

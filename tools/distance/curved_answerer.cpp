@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/curved/curved_distance.hpp"
+#include "core/curved/thorough.hpp"
 #include "monitor/app/print.hpp"
 
 namespace clearance {
@@ -14,34 +15,48 @@ using Clock = std::chrono::steady_clock;
 
 OrderedJson json_of(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
 
-// One pose, all pairs of parts.
+// The answer for one pose over all pairs of parts.
 struct UnionAnswer {
   DistanceResult nearest;
   double lower = kInfinity, upper = kInfinity;
   Vec3 normal, on_a, on_b;  // of the nearest parts; where they overlap, both points are the same
 };
 
-// The point of B is placed by B's own pose: through A's frame it would have a rounding error that
-// grows with the distance.
-void add(UnionAnswer& answer, const DistanceResult& r, const Pose& world_from_a,
-         const Pose& world_from_b, double radius_b, const CurvedTrackingState& state) {
+// A point of both bodies that overlap, in frame A. GJK finds one, unless the bodies without their
+// radii are apart or hardly overlap; then the point halfway between the deepest points is one.
+Vec3 common_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                  const DistanceResult& r) {
+  if (a.is_half_space()) return r.point_on_b;
+  if (b.is_half_space()) return r.point_on_a;
+  CurvedPair pair(a, b, a_from_b);
+  const bool found = start_direction(pair).meet || pair.bounds.upper <= pair.gap_tolerance();
+  if (found) return pair.bounds.points.a;
+  return 0.5 * (r.point_on_a + r.point_on_b);
+}
+
+// B's pose places the point of B, because through A's frame its rounding error would grow with the
+// distance.
+void add(UnionAnswer& answer, const DistanceResult& r, const CurvedPart& a, const CurvedPart& b,
+         const Pose& world_from_a, const Pose& world_from_b, const RelativePose& a_from_b,
+         const TrackingState& state) {
   answer.lower = std::min(answer.lower, r.lower);
   answer.upper = std::min(answer.upper, r.upper);
   if (r.distance >= answer.nearest.distance) return;
   answer.nearest = r;
   answer.normal = rotation_matrix(world_from_a.orientation) * r.normal;
   if (r.distance < 0.0) {
-    answer.on_a = answer.on_b = transform(world_from_a, state.shared);
+    answer.on_a = answer.on_b =
+        transform(world_from_a, common_point(a.shape, b.shape, a_from_b, r));
     return;
   }
   answer.on_a = transform(world_from_a, r.point_on_a);
-  const Vec3 own = transform(world_from_b, state.own_point_on_b);
-  const Vec3 to_a = unit_along(Vec3(answer.on_a - own));
-  answer.on_b = own + radius_b * (to_a.isZero(0.0) ? Vec3(-answer.normal) : to_a);
+  const Vec3 on_core = transform(world_from_b, state.b.point);
+  const Vec3 to_a = unit_along(Vec3(answer.on_a - on_core));
+  answer.on_b = on_core + b.shape.radius * (to_a.isZero(0.0) ? Vec3(-answer.normal) : to_a);
 }
 
 UnionAnswer nearest_of_parts(const CurvedCase& question, const Pose& pose_a, const Pose& pose_b,
-                             std::vector<CurvedTrackingState>& states) {
+                             std::vector<TrackingState>& states) {
   UnionAnswer answer;
   answer.nearest.distance = kInfinity;
   std::size_t pair = 0;
@@ -52,9 +67,9 @@ UnionAnswer nearest_of_parts(const CurvedCase& question, const Pose& pose_a, con
       const bool whole_b = question.b.size() == 1 && b.body_from_part.position.isZero(0.0);
       const Pose world_from_b = whole_b ? pose_b : compose(pose_b, b.body_from_part);
       const RelativePose a_from_b = relative_pose(world_from_a, world_from_b);
-      CurvedTrackingState& state = states[pair++];
+      TrackingState& state = states[pair++];
       const DistanceResult r = curved_distance(a.shape, b.shape, a_from_b, state);
-      add(answer, r, world_from_a, world_from_b, b.shape.radius, state);
+      add(answer, r, a, b, world_from_a, world_from_b, a_from_b, state);
     }
   }
   return answer;
@@ -86,10 +101,10 @@ OrderedJson CurvedAnswerer::answer(const CurvedCase& question) {
   const std::size_t pairs = question.a.size() * question.b.size();
   std::vector<UnionAnswer> answers(question.poses.size());
   for (int pass = 0; pass < repeat_; ++pass) {
-    std::vector<CurvedTrackingState> states(pairs);
+    std::vector<TrackingState> states(pairs);
     const Clock::time_point start = Clock::now();
     for (std::size_t k = 0; k < answers.size(); ++k) {
-      if (cold_) std::fill(states.begin(), states.end(), CurvedTrackingState{});
+      if (cold_) std::fill(states.begin(), states.end(), TrackingState{});
       const auto& [pose_a, pose_b] = question.poses[k];
       answers[k] = nearest_of_parts(question, pose_a, pose_b, states);
     }

@@ -11,13 +11,13 @@ namespace clearance {
 
 class CurvedAnswerer {
  public:
-  // As of Answerer.
+  // As for Answerer.
   CurvedAnswerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
-  // As of Answerer, without the deepest points; of parts that overlap no depth is given.
+  // As for Answerer, without the deepest points. Overlapping parts have no depth.
   [[nodiscard]] nlohmann::ordered_json answer(const CurvedCase& question);
 
-  // Prints to stderr, where there were any.
+  // Prints to stderr if there were any answers.
   void print_summary() const;
 
  private:

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/distance/case.hpp"
+#include "tools/cases/case.hpp"
 
 namespace clearance {
 
@@ -24,7 +24,7 @@ struct CurvedCase {
   bool motion = false;
 };
 
-// Does a or b have a key that polyhedra do not have?
+// Whether a or b has a key that polyhedra do not have.
 [[nodiscard]] bool is_curved_case(const nlohmann::json& line);
 
 // Throws BadLine.

@@ -12,7 +12,7 @@
 #include "core/distance.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "monitor/app/print.hpp"
-#include "tools/distance/rational.hpp"
+#include "tools/cases/rational.hpp"
 
 namespace clearance {
 namespace {
@@ -26,7 +26,7 @@ const Rational& digits_left_out() {
   return share;
 }
 
-// For two points in the origins of their frames, where any error is too large.
+// The measure of two points in the origins of their frames, where any error is too large.
 constexpr double kLeastScale = std::numeric_limits<double>::min();
 
 ExactNumber exact_number(const Json& value, const char* key) {
@@ -61,7 +61,7 @@ double outside(const Json& rows, const RationalPoint& in_body_frame) {
   return worst;
 }
 
-// World coordinates are doubles: a point cannot be given more precisely than this, m.
+// World coordinates are doubles; no point can be given more precisely than this, m.
 double rounding_of(const RationalPoint& point) {
   return 0x1p-53 * root_of(squared_distance(point, {0, 0, 0}));
 }
@@ -106,10 +106,10 @@ struct ExactCheck::Question {
   ExactNumber distance;
   std::optional<ExactNumber> penetration;
   double scale, size;
-  bool promises_near_bounds;  // one of the bodies is bounded; of two unbounded ones bounds are true
+  bool promises_near_bounds;  // one of the bodies is bounded; two unbounded ones only have true bounds
 };
 
-// What was answered to it, and what is wrong with that.
+// The answer to it, and the faults of the answer.
 class ExactCheck::Judge {
  public:
   Judge(const Question& question, double tolerance, double widest)
@@ -212,7 +212,7 @@ class ExactCheck::Judge {
 
   const Question& question_;
   double tolerance_, widest_;
-  double measure_;  // what errors of distance and points are relative to, m
+  double measure_;  // errors of distance and points are relative to this, m
 };
 
 void ExactCheck::Figures::add(const Figures& other) {

@@ -1,10 +1,10 @@
 // Compares answers with the exact ones that a line of cases may carry, in exact rational
 // arithmetic:
-//   distance            text, "0.0625": right to 30 digits; of a motion `distances`, one a pose
+//   distance            text, "0.0625": right to 30 digits; for a motion `distances`, one per pose
 //   penetration         text or null, the length of the shortest translation that separates them;
-//                       of a motion `penetrations`
-//   scale               the length to measure errors with, m; else the bodies' reach
-//   family              what kind of case it is, for the table
+//                       for a motion `penetrations`
+//   scale               the length to measure errors with, m; otherwise the bodies' bounding radii
+//   family              the kind of case, for the table
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/distance/case.hpp"
+#include "tools/cases/case.hpp"
 
 namespace clearance {
 
@@ -22,7 +22,7 @@ class ExactCheck {
   // `tolerance` is relative: for distance and witness points to the larger of scale and distance,
   // for depth to the scale. Bounds have no tolerance. `widest` is the largest accepted gap between
   // the bounds, relative to the bounding radii plus the distance of the origins; a converged answer
-  // promises 1e-14 (and kUnderflow). Of two unbounded bodies only true bounds are promised.
+  // promises 1e-14 (and kUnderflow). Two unbounded bodies only have true bounds.
   ExactCheck(double tolerance, double widest) : tolerance_(tolerance), widest_(widest) {}
 
   // One sentence for each thing that is wrong with the answer. Throws BadLine when the exact answer

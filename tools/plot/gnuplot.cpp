@@ -2,18 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/pipe.hpp>
 #include <fstream>
+#include <iterator>
+#include <vector>
 
 namespace clearance {
+
+namespace bp = boost::process;
 
 std::string plot_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    // A backslash for the string, and one for the markup.
+    // One backslash is for the string, one for the markup.
     if (c == '_' || c == '^' || c == '@' || c == '&' || c == '{' || c == '}' || c == '~') {
       out += "\\\\";
     }
@@ -22,30 +27,26 @@ std::string plot_text(const std::string& text) {
   return out + "\"";
 }
 
-// The script goes through a file: what gnuplot says comes back through the pipe.
+// The script is a file, so that the pipe is free for gnuplot's own words. env finds gnuplot in
+// PATH, and ends with 127 when it is not there.
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
-  const std::filesystem::path file = svg.string() + ".gnuplot";
+  const std::string file = svg.string() + ".gnuplot";
   std::ofstream(file) << fmt::format(
       "set terminal svg size {},{} dynamic enhanced font 'sans,12' background '#ffffff'\n"
       "set output '{}'\nset encoding utf8\n{}\nunset output\n",
       width, height, svg.string(), script);
-  std::FILE* const pipe = popen(fmt::format("gnuplot '{}' 2>&1", file.string()).c_str(), "r");
-  std::string said;
-  if (pipe != nullptr) {
-    std::array<char, 4096> piece;
-    while (const std::size_t read = std::fread(piece.data(), 1, piece.size(), pipe)) {
-      said.append(piece.data(), read);
-    }
-  }
-  const int status = pipe == nullptr ? -1 : pclose(pipe);
+  bp::ipstream output;
+  bp::child gnuplot(bp::exe = "/usr/bin/env", bp::args = std::vector<std::string>{"gnuplot", file},
+                    (bp::std_out & bp::std_err) > output, bp::std_in < bp::null);
+  const std::string words(std::istreambuf_iterator<char>(output), {});
+  gnuplot.wait();
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
-  if (status == 0) return {};
-  if (status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+  if (gnuplot.exit_code() == 0) return {};
+  if (gnuplot.exit_code() == 127)
     return "gnuplot is needed for plots: Debian's package gnuplot-nox";
-  }
-  return fmt::format("gnuplot failed: {}", said.substr(0, 500));
+  return fmt::format("gnuplot failed: {}", words.substr(0, 500));
 }
 
 }  // namespace clearance

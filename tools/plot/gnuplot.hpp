@@ -1,5 +1,4 @@
-// Pictures by gnuplot, which Debian packages: whoever plots writes what is to be seen, not how SVG
-// is written.
+// Pictures by gnuplot: callers say what to show, not how SVG is written.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +10,12 @@ namespace clearance {
 inline constexpr const char* kPlotColours[] = {"#D55E00", "#0072B2", "#009E73", "#CC79A7",
                                                "#E69F00", "#56B4E9", "#000000", "#999999"};
 
-// Runs a script, after setting a terminal of this size (px) that writes `svg`. Empty, or what went
-// wrong: gnuplot is not there, or its own words.
+// Runs a script after setting a terminal of this size (px) that writes `svg`. Returns an empty text
+// or the fault: gnuplot is missing, or its own words.
 [[nodiscard]] std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                                    const std::string& script);
 
-// For titles and labels: what gnuplot would take as markup, escaped; with quotes around it.
+// For titles and labels: escapes gnuplot's markup and adds quotes.
 [[nodiscard]] std::string plot_text(const std::string& text);
 
 }  // namespace clearance

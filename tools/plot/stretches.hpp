@@ -1,5 +1,5 @@
-// A run of any length, in as many stretches of time as there is room for: what curves are drawn
-// from. When all are in use, each becomes twice as long, and those that fall together are joined.
+// A run of any length in a bounded number of stretches of time, for curves. When all are in use,
+// each becomes twice as long, and those that fall together are joined.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace clearance {
 
-// Of each stretch a Head, whose `begin_ns` is when what came first in it was, and a row of Cells,
-// which begin as Cell{}. merge(later, into), found by their namespace, joins two Heads or Cells.
+// Each stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells,
+// which begin as Cell{}. merge(later, into), found in their namespace, joins two Heads or Cells.
 template <class Head, class Cell>
 class Stretches {
  public:
-  // `most` stretches, at least 2, the first of them `length_ns` > 0 long, with `columns` cells
-  // each.
+  // Makes at most `most` (at least 2) stretches with `columns` cells each; the first ones are
+  // `length_ns` > 0 long.
   Stretches(std::size_t columns, std::size_t most, std::int64_t length_ns)
       : columns_(columns), most_(most), length_ns_(length_ns) {}
 
-  // Takes what is of a time not before the last one into its stretch, whose cells are returned.
+  // Adds an entry whose time is not before the last one, and returns the cells of its stretch.
   std::span<Cell> add(const Head& head) {
     for (;; halve()) {
       if (!heads_.empty() && number_of(head) <= number_of(heads_.back())) {
@@ -69,7 +69,7 @@ class Stretches {
   std::size_t columns_, most_;
   std::int64_t length_ns_;
   std::vector<Head> heads_;
-  std::vector<Cell> cells_;  // a row a stretch
+  std::vector<Cell> cells_;  // a row per stretch
 };
 
 }  // namespace clearance

@@ -25,11 +25,11 @@ struct RecordArguments {
   DdsArguments dds;
 };
 
-// tools/record/from_csv.cpp, from_log.cpp, subscribe.cpp. All return the exit code. `cell` is the
+// convert.cpp and subscribe.cpp. All return the exit code. `cell` is the
 // cell, or null when none was given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Cell* cell,
                                   StopSignal& stop);
-// Of a bag, or joints as CSV.
+// From a bag, or from joints as CSV.
 [[nodiscard]] int record_from_log(const RecordArguments& arguments, const std::string& log,
                                   const Cell& cell, StopSignal& stop);
 [[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Cell* cell,

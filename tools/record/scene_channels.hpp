@@ -1,4 +1,4 @@
-// The channels of a recording that 3D viewers draw: bodies once a file, transforms and closest
+// The channels of a recording that 3D viewers draw: bodies once per file, transforms and closest
 // pairs of some reports.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/visual/ros_types.hpp"
+#include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
@@ -24,26 +25,32 @@ class SceneChannels {
     write_bodies(now_ns);
   }
 
-  // Belongs into every file.
-  void write_bodies(std::int64_t now_ns) { writer_.write(bodies_, now_ns, bodies_message(scene_)); }
+  // Every file needs this.
+  void write_bodies(std::int64_t now_ns) { write(bodies_, now_ns, bodies_message(scene_)); }
 
   void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
   void take(const clearance_msg_JointStates& states) { poses_.take(states); }
 
-  // Written 60 times a second: more is not seen.
+  // Written 60 times a second, as fast as a screen shows it.
   void take(const clearance_msg_Distances& report, std::int64_t now_ns) {
     constexpr std::int64_t kPeriodNs = 1'000'000'000 / 60;
     poses_.use(report);
     if (now_ns - written_ns_ < kPeriodNs) return;
     written_ns_ = now_ns;
-    writer_.write(transforms_, now_ns, transforms_message(scene_, poses_, now_ns));
-    writer_.write(closest_, now_ns, closest_message(scene_, report, now_ns));
+    write(transforms_, now_ns, transforms_message(scene_, poses_, now_ns));
+    write(closest_, now_ns, closest_message(scene_, report, now_ns));
   }
 
  private:
+  template <class T>
+  void write(std::uint16_t channel, std::int64_t now_ns, const Sample<T>& message) {
+    writer_.write(channel, now_ns, encoder_.encode(*message));
+  }
+
   const Scene& scene_;
   RecordingWriter& writer_;
   ObjectPoses poses_;
+  CdrEncoder encoder_;
   std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };

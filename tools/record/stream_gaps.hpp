@@ -14,8 +14,8 @@ class StreamGaps {
   // that the sender was started again.
   void note(const std::string& kind, const std::string& stream, std::uint64_t number);
 
-  // Sentences about streams that begin later than with their first sample, and about the number of
-  // samples that are missing after that.
+  // Sentences about streams that begin after their first sample, and about the number of samples
+  // missing after that.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:

@@ -28,7 +28,7 @@ namespace {
 constexpr std::int32_t kDepth = 2048;
 constexpr std::size_t kMostWaiting = 8192;  // samples taken before the other topics are checked
 
-// Readers of all topics; what they take goes into the recording byte for byte.
+// Readers of all topics. Their samples go into the recording byte for byte.
 class Subscription {
  public:
   // `scene`: channels for 3D viewers, or null.
@@ -105,7 +105,7 @@ class Subscription {
     message.pairs._length = pairs;
   }
 
-  // False: it is of a kind of which nothing needs to be known, or does not decode.
+  // False: the sample does not decode, or nothing needs to be known of its kind.
   bool look_into(TopicKind kind) {
     if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue_)) {
       writer_.describe(*catalogue_);
@@ -147,7 +147,7 @@ void show(const Subscription& subscription, const RecordingWriter& writer, const
         subscription.count(TopicKind::kHealth), static_cast<double>(writer.bytes()) * 1e-6, end);
 }
 
-// Records until it is stopped, the time is up, or the file cannot be written.
+// Records until a signal comes, the time is up, or the file cannot be written.
 void record_until(std::int64_t end_ns, Subscription& subscription, Participant& participant,
                   RecordingWriter& writer, SceneChannels* scene, StopSignal& stop) {
   constexpr std::int64_t kSecond = 1'000'000'000;

@@ -1,4 +1,4 @@
-// The arguments of clearance-replay.
+// The arguments of clearance-replay's two subcommands.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,30 @@
 
 namespace clearance {
 
-struct ReplayArguments {
+// Which part of which recording is replayed.
+struct RecordedSpan {
   std::vector<std::string> recordings;  // at least one
-
-  [[nodiscard]] const std::string& recording() const { return recordings.front(); }
-  double start_s = 0.0;
+  double start_s = 0.0;                 // after the first message
   double end_s = 1e18;
   bool progress = false;
 
-  // Over DDS.
+  [[nodiscard]] const std::string& recording() const { return recordings.front(); }
+};
+
+struct PublishArguments {
+  RecordedSpan span;
   DdsArguments dds;
+  std::string cell;  // names domain and partition; empty: none
   double rate = 1.0;
   double wait_s = 1.0;
   bool restamp = false;
   std::vector<std::string> only;  // topics; empty: all
+};
 
-  // Offline.
-  bool offline = false;
-  std::string cell;                   // empty: the one in the recording, or
-  SingleRobotOptions robot;           // this, if it has a URDF
-  std::vector<std::string> packages;  // NAME=DIRECTORY
+struct CheckArguments {
+  RecordedSpan span;
+  std::string cell;          // empty: the one in the recording, or
+  SingleRobotOptions robot;  // this, if it has a URDF
   std::optional<double> tick_hz;
   std::vector<std::string> joint_topics;
   std::vector<std::string> joints;  // NAME=POSITION
@@ -50,10 +54,12 @@ struct ReplayArguments {
   bool compare_bounds = false;
   std::optional<double> expect_min_distance;
   std::vector<std::string> expect_no_zone;
+
+  [[nodiscard]] const std::string& recording() const { return span.recording(); }
 };
 
-// tools/replay/offline.cpp, tools/replay/publish.cpp. Both return the exit code.
-[[nodiscard]] int replay_without_dds(const ReplayArguments& arguments, StopSignal& stop);
-[[nodiscard]] int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop);
+// Both return the exit code.
+[[nodiscard]] int publish_recording(const PublishArguments& arguments, StopSignal& stop);
+[[nodiscard]] int check_recording(const CheckArguments& arguments, StopSignal& stop);
 
 }  // namespace clearance

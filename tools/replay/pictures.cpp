@@ -11,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// The status of a program whose output nobody reads; -1 when it cannot be started.
+// Runs a program without its output. Returns its exit status, or -1 when it cannot be started.
 int run_quietly(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -21,7 +21,7 @@ int run_quietly(std::vector<std::string> words) {
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
     posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
   }
-  // Signals are blocked in this program, and would be in that one.
+  // The other program would inherit the blocked signals of this one.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -40,7 +40,7 @@ int run_quietly(std::vector<std::string> words) {
 
 }  // namespace
 
-std::string take_pictures(const ReplayArguments& arguments, const std::string& cell,
+std::string take_pictures(const CheckArguments& arguments, const std::string& cell,
                           const std::vector<PicturedMoment>& moments) {
   if (moments.empty()) return "no pair was ever known";
   const auto view =

@@ -1,4 +1,4 @@
-// Pictures of a run, by clearance-view, which stands beside this program.
+// Pictures of a run by clearance-view, which lies in the same folder as this program.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Writes the pictures that the moments name. Empty, or why there are none.
-[[nodiscard]] std::string take_pictures(const ReplayArguments& arguments, const std::string& cell,
+// Writes the pictures that the moments name. Returns an empty text, or why there are none.
+[[nodiscard]] std::string take_pictures(const CheckArguments& arguments, const std::string& cell,
                                         const std::vector<PicturedMoment>& moments);
 
 }  // namespace clearance

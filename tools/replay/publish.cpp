@@ -17,7 +17,7 @@
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/replay/arguments.hpp"
-#include "tools/replay/progress_bar.hpp"
+#include "tools/shared/progress_bar.hpp"
 
 namespace clearance {
 namespace {
@@ -54,7 +54,7 @@ class Writers {
   std::map<std::string, dds_entity_t> writers_;
 };
 
-// Log times to times at which a replay of some rate publishes, CLOCK_REALTIME.
+// Maps log times to the times at which a replay at some rate publishes, CLOCK_REALTIME.
 struct Schedule {
   double rate = 1.0;
   std::int64_t began_log_ns = 0, began_ns = 0;
@@ -64,8 +64,7 @@ struct Schedule {
   }
 };
 
-// Decodes and writes one message, under its original source stamp, or as it would be at the rate of
-// the schedule.
+// Decodes and writes one message, under its original source stamp or under that of the schedule.
 class Sender {
  public:
   explicit Sender(bool restamp) : restamp_(restamp) {}
@@ -108,7 +107,8 @@ class Sender {
     return true;
   }
 
-  // By the schedule, not by the moment of sending: stamps are no more uneven than they were.
+  // The schedule gives the stamp, not the moment of sending, so that stamps stay as even as they
+  // were.
   std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) const {
     for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
       clearance_msg_ObjectPose& pose = batch.poses._buffer[i];
@@ -142,7 +142,7 @@ class Sender {
   Sample<clearance_msg_Gradients> gradients_;
 };
 
-// Sleeps until a time, but reacts to a signal within 20 ms. False: it was stopped.
+// Sleeps until a time, but reacts to a signal within 20 ms. False: a signal came.
 bool wait_until(std::int64_t due_ns, StopSignal& stop) {
   constexpr std::int64_t kPatienceNs = 20 * kMillisecond;
   for (;;) {
@@ -156,7 +156,7 @@ bool wait_until(std::int64_t due_ns, StopSignal& stop) {
 
 class Publishing {
  public:
-  Publishing(const ReplayArguments& arguments, const DdsOptions& dds, std::int64_t first_ns,
+  Publishing(const PublishArguments& arguments, const DdsOptions& dds, std::int64_t first_ns,
              StopSignal& stop)
       : arguments_(arguments),
         first_ns_(first_ns),
@@ -164,14 +164,14 @@ class Publishing {
         participant_(dds),
         writers_(participant_),
         sender_(arguments.restamp),
-        bar_(arguments.progress) {}
+        bar_(arguments.span.progress) {}
 
   int run();
 
  private:
   [[nodiscard]] McapWindow window() const;
   [[nodiscard]] std::vector<std::filesystem::path> files() const {
-    return {arguments_.recordings.begin(), arguments_.recordings.end()};
+    return {arguments_.span.recordings.begin(), arguments_.span.recordings.end()};
   }
   bool wanted(const RecordedMessage& message) {
     topics_.insert(message.channel->topic);
@@ -182,7 +182,7 @@ class Publishing {
   bool publish(const RecordedMessage& message);
   int finish(const RecordingReader& reader);
 
-  const ReplayArguments& arguments_;
+  const PublishArguments& arguments_;
   std::int64_t first_ns_;
   StopSignal& stop_;
   Participant participant_;
@@ -193,7 +193,7 @@ class Publishing {
   std::int64_t began_log_ns_ = -1;  // log time of the first message published
   std::int64_t shown_ns_ = 0;
   std::uint64_t published_ = 0, undecodable_ = 0;
-  std::set<std::string> topics_;  // met between start and end
+  std::set<std::string> topics_;  // found between start and end
 };
 
 McapWindow Publishing::window() const {
@@ -201,8 +201,8 @@ McapWindow Publishing::window() const {
     return static_cast<std::uint64_t>(first_ns_ + std::llround(seconds * 1e9));
   };
   McapWindow window;
-  if (arguments_.start_s > 0.0) window.start_ns = at(arguments_.start_s);
-  if (arguments_.end_s < 1e9) window.end_ns = at(arguments_.end_s);
+  if (arguments_.span.start_s > 0.0) window.start_ns = at(arguments_.span.start_s);
+  if (arguments_.span.end_s < 1e9) window.end_ns = at(arguments_.span.end_s);
   return window;
 }
 
@@ -226,7 +226,7 @@ bool Publishing::prepare() {
     if (stop_.wait(5)) return false;
   }
   if (writers_.heard() == 0) {
-    print(stderr, "clearance-replay: nobody listens on {}; publishing all the same\n",
+    print(stderr, "clearance-replay: no reader on {}; publishing all the same\n",
           participant_.where());
   }
   return true;
@@ -293,15 +293,16 @@ int Publishing::finish(const RecordingReader& reader) {
 
 }  // namespace
 
-int replay_over_dds(const ReplayArguments& arguments, StopSignal& stop) {
-  if (is_input_log(arguments.recording())) {
-    print(stderr,
-          "clearance-replay: {} holds no topics of Clearance; --offline replays it as it is, and "
-          "clearance-record --from-bag (or --from-csv) makes a recording of it\n",
-          arguments.recording());
+int publish_recording(const PublishArguments& arguments, StopSignal& stop) {
+  if (is_input_log(arguments.span.recording())) {
+    print(
+        stderr,
+        "clearance-replay: {} holds no topics of Clearance; 'clearance-replay check' replays it as "
+        "it is, and clearance-record --from-bag (or --from-csv) makes a recording of it\n",
+        arguments.span.recording());
     return kFailed;
   }
-  const RecordingOutline found = outline(arguments.recording());
+  const RecordingOutline found = outline(arguments.span.recording());
   if (!found.error.empty()) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;

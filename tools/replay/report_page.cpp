@@ -141,7 +141,7 @@ std::string zones(const Scene& scene, const RunSeries& series) {
   return out;
 }
 
-// gnuplot's file without what stands before its element.
+// gnuplot's file without the lines before its <svg> element.
 std::string inline_svg(const std::string& svg) {
   const std::size_t begin = svg.find("<svg");
   return begin == std::string::npos ? "" : svg.substr(begin);

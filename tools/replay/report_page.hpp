@@ -1,4 +1,4 @@
-// A run as one page of HTML that needs nothing beside it: what someone attaches to a review.
+// A run as one self-contained page of HTML, to attach to a review.
 #pragma once
 
 #include <filesystem>
@@ -9,20 +9,20 @@
 
 namespace clearance {
 
-// A moment of the run with its picture; without one where no browser is there.
+// A moment of the run with its picture; without a browser there is no picture.
 struct PicturedMoment {
   double time_s = 0.0;
   std::string what;
   std::filesystem::path picture;  // PNG; need not exist
 };
 
-// What the page is made of.
+// The content of the page.
 struct ReportPage {
   std::string recording, cell, build;
-  std::vector<std::string> expectations = {};  // what was asked for, a sentence each
+  std::vector<std::string> expectations = {};  // each as a sentence
   std::vector<PicturedMoment> moments = {};
   std::string svg = {};      // the plot; empty: none
-  std::string no_plot = {};  // why there is none
+  std::string no_plot = {};  // the reason for an empty plot
   std::string no_pictures = {};
 };
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/files/file_error.hpp"
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/pair_name.hpp"
@@ -20,10 +20,10 @@ namespace clearance {
 namespace {
 
 constexpr std::size_t kMostPairs = 4;
-// Moments nearer to each other than this are one, s.
+// Moments nearer to each other than this count as one, s.
 constexpr double kSameMoment = 0.05;
 
-std::vector<std::string> expectations_of(const ReplayArguments& arguments) {
+std::vector<std::string> expectations_of(const CheckArguments& arguments) {
   std::vector<std::string> all;
   if (arguments.expect_min_distance) {
     all.push_back(fmt::format("every distance is at least {:g} m", *arguments.expect_min_distance));
@@ -39,7 +39,8 @@ std::vector<std::string> expectations_of(const ReplayArguments& arguments) {
   return all;
 }
 
-// When each of these pairs was nearest, nearest first, without those that are one moment.
+// The moments at which these pairs were nearest, in the order of the pairs; equal moments are
+// merged.
 std::vector<PicturedMoment> moments_of(const Scene& scene, const RunSeries& series,
                                        const std::vector<std::size_t>& places,
                                        const TemporaryFolder& folder) {

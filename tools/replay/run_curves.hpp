@@ -1,4 +1,4 @@
-// --plot and --report: gathers the curves of a replay and writes what is made of them.
+// --plot and --report: gathers the curves of a replay and writes picture and page.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@ namespace clearance {
 
 class RunCurves {
  public:
-  // Both must outlive it.
-  RunCurves(const ReplayArguments& arguments, const Cell& cell)
+  // Both arguments must outlive the object.
+  RunCurves(const CheckArguments& arguments, const Cell& cell)
       : arguments_(arguments), cell_(cell), scene_(cell.scene), series_(cell.scene) {}
 
   void add(const ReplayedTick& tick) { series_.add(tick); }
 
-  // Empty, or what could not be written and why.
+  // Returns an empty text, or the file that could not be written and why.
   [[nodiscard]] std::string write(const OfflineReplay& replay) const;
 
  private:
   [[nodiscard]] std::string write_report(const OfflineReplay& replay) const;
   [[nodiscard]] std::string unknown_pair() const;
 
-  const ReplayArguments& arguments_;
+  const CheckArguments& arguments_;
   const Cell& cell_;
   const Scene& scene_;
   RunSeries series_;

@@ -19,7 +19,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN";
 }
 
-// A block of data for each pair: time, distance mm, lower mm, closing speed.
+// A block of data for each pair: time, distance in mm, lower bound in mm, closing speed.
 std::string data_of(const RunSeries& series, std::span<const std::size_t> places) {
   std::string text;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -34,7 +34,7 @@ std::string data_of(const RunSeries& series, std::span<const std::size_t> places
   return text;
 }
 
-// Times in which a zone was active, behind the curves.
+// Rectangles behind the curves for the times in which a zone was active.
 std::string zone_times(const RunSeries& series) {
   std::string text;
   std::size_t shown = 0;
@@ -48,7 +48,7 @@ std::string zone_times(const RunSeries& series) {
   return text;
 }
 
-// Thresholds of the zones that hold one of these pairs.
+// Lines for the thresholds of the zones that contain one of these pairs.
 std::string thresholds(const Scene& scene, const RunSeries& series,
                        std::span<const std::size_t> places) {
   std::string text;

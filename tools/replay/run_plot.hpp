@@ -1,4 +1,4 @@
-// The curves of a replay as a picture.
+// Draws the curves of a replay.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Distances with their lower bounds, thresholds and times of zones, and closing speeds of these
-// pairs. Empty, or what went wrong.
+// Draws distances with their lower bounds, thresholds and times of zones, and closing speeds of
+// these pairs. Returns an empty text, or the fault.
 [[nodiscard]] std::string plot_run(const Scene& scene, const RunSeries& series,
                                    std::span<const std::size_t> places,
                                    const std::filesystem::path& svg);

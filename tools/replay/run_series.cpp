@@ -20,7 +20,7 @@ std::vector<std::uint32_t> published(const Scene& scene) {
 
 }  // namespace
 
-// fmin and fmax pass over a NaN.
+// fmin and fmax ignore a NaN.
 void merge(const StretchOfPair& later, StretchOfPair& into) {
   into.distance = std::fmin(into.distance, later.distance);
   into.lower = std::fmin(into.lower, later.lower);

@@ -1,5 +1,5 @@
-// A replay as curves: of every published pair the least distance, least bound and largest closing
-// speed over stretches of time, as many as a picture has columns, however long the run.
+// A replay as curves: for every published pair the least distance, least bound and largest closing
+// speed in each stretch of time. There are as many stretches as a picture has columns.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace clearance {
 
-// Of one stretch; NaN where nothing was known in it.
+// A pair in one stretch; NaN where nothing was known.
 struct StretchOfPair {
   float distance = std::numeric_limits<float>::quiet_NaN(), lower = distance;  // m, the least
   float closing_speed = distance;                                              // m/s, the largest
@@ -22,7 +22,7 @@ struct StretchOfPair {
 struct StretchOfRun {
   std::int64_t begin_ns = 0;  // after the first tick
 };
-// As Stretches asks for it.
+// Merges two cells, as Stretches requires.
 void merge(const StretchOfPair& later, StretchOfPair& into);
 void merge(const StretchOfRun& later, StretchOfRun& into);
 
@@ -45,8 +45,8 @@ class RunSeries {
 
   void add(const ReplayedTick& tick);
 
-  // How many stretches there are, when each began, and what was of a pair in it; `place`: into the
-  // list of published pairs.
+  // The number of stretches, the begin of each, and a pair in it. `place`: index into the list of
+  // published pairs.
   [[nodiscard]] std::size_t stretches() const noexcept { return curves_.heads().size(); }
   [[nodiscard]] double time_s(std::size_t stretch) const {
     return 1e-9 * static_cast<double>(curves_.heads()[stretch].begin_ns);
@@ -56,11 +56,12 @@ class RunSeries {
   }
   [[nodiscard]] const std::vector<std::uint32_t>& pairs() const noexcept { return pairs_; }
   [[nodiscard]] const NearestTick& nearest(std::size_t place) const { return nearest_[place]; }
-  // Finished ones and, until the last tick, those that are active.
+  // Finished visits, and those that were active in the last tick.
   [[nodiscard]] std::vector<ZoneVisit> visits() const;
   [[nodiscard]] double duration_s() const noexcept { return last_s_; }
 
-  // The places of these pairs; of none: of those that came nearest, at most `most`, nearest first.
+  // The places of these pairs. If none are given: of at most `most` pairs that came nearest,
+  // nearest first.
   [[nodiscard]] std::vector<std::size_t> choose(
       const std::vector<std::pair<std::string, std::string>>& objects, std::size_t most) const;
 
@@ -73,7 +74,7 @@ class RunSeries {
   Stretches<StretchOfRun, StretchOfPair> curves_;
   std::vector<NearestTick> nearest_;
   std::vector<ZoneVisit> visits_;
-  std::vector<std::int64_t> visit_of_;  // by zone: into visits_; -1: not active
+  std::vector<std::int64_t> visit_of_;  // by zone, index into visits_; -1: not active
   std::int64_t first_ns_ = 0;
   double last_s_ = 0.0;
   std::uint64_t ticks_ = 0;

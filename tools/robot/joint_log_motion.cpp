@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "monitor/csv/table.hpp"
-#include "tools/robot/joint_sweep.hpp"
+#include "tools/shared/joint_sweep.hpp"
 
 namespace clearance {
 namespace {
 
-// Nearest to 0 within the limits.
+// The position nearest to 0 within the limits.
 double rest_of(const JointVariable& variable) noexcept {
   return std::clamp(0.0, variable.lower, std::max(variable.lower, variable.upper));
 }

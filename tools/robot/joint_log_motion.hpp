@@ -1,4 +1,4 @@
-// How the robots of a cell move after a log of their joints.
+// The motion of a cell's robots along a log of their joints.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@
 
 namespace clearance {
 
-// Positions from a CSV: t_ns and one column a joint, by its name in the cell; others are ignored.
-// In between on a straight line. Joints without a column stand still, as near to 0 as they can.
+// Positions from a CSV: t_ns and one column per joint, with its name in the cell. Other columns are
+// ignored. Positions between rows are interpolated. Joints without a column stay as near to 0 as
+// their limits allow.
 class JointLogMotion {
  public:
   JointLogMotion(const std::filesystem::path& file, const Scene& scene);
 
-  // What is wrong with the file: "FILE:LINE: ..."; empty: nothing.
+  // The fault in the file as "FILE:LINE: ..."; empty: none.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] double seconds() const noexcept;  // from its first row to its last
-  // As JointSweep::at; before the first row and after the last they stand.
+  // As JointSweep::at. The joints stand still before the first row and after the last.
   void at(double t_s, std::vector<JointSample>& joints);
 
  private:
@@ -28,10 +29,10 @@ class JointLogMotion {
     std::int64_t t_ns;
     std::vector<double> positions;  // by column
   };
-  std::vector<std::uint32_t> variables_;  // of each column
+  std::vector<std::uint32_t> variables_;  // by column
   std::vector<double> resting_;           // by variable
   std::vector<Row> rows_;
-  std::size_t at_ = 0;  // the row before the last time asked for
+  std::size_t at_ = 0;  // the row before the last requested time
   std::string error_;
 };
 

@@ -1,4 +1,4 @@
-// How soon the daemon's answer to what a robot sends is back.
+// The latency of the daemon's answer to a robot's poses.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace clearance {
 
-// Measures the age of the newest pose when the first report that used it arrived here.
+// Measures the age of the newest pose when the first report that used it arrives.
 class LatencyMeter {
  public:
   explicit LatencyMeter(client::Connection& connection)
@@ -27,7 +27,7 @@ class LatencyMeter {
     thread_.join();
   }
 
-  // `where`: the domain in which reports were awaited.
+  // `where`: the domain of the reports.
   void tell(const std::string& where) {
     const std::lock_guard lock(mutex_);
     if (all_.count() == 0) {

@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-// One name belongs to one writer: where there are both, joints have one of their own.
+// A source name belongs to one writer. Beside poses, joints therefore have a name of their own.
 SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
                                const SimulatedRobotOptions& options, JointMotion joints)
     : scene_(cell.scene), simulation_(cell.simulation), motion_(std::move(joints)) {
@@ -29,7 +29,7 @@ SimulatedRobot::~SimulatedRobot() {
   if (ros_writer_ != 0) dds_delete(ros_writer_);
 }
 
-// Its names are always the same.
+// The names never change, so they are written once.
 void SimulatedRobot::make_ros_message() {
   const std::size_t count = scene_.variables.size();
   ros_message_->header.frame_id = dds_string_dup("");

@@ -1,5 +1,4 @@
-// What moves in a cell, sent over DDS: the poses that its simulation says, and the joints of its
-// robots.
+// Sends the motion of a cell over DDS: the poses of its simulation, and the joints of its robots.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +15,12 @@
 
 namespace clearance {
 
-// Positions of all variables of a cell's robots, so many seconds after the start.
+// Returns the positions of all variables of a cell's robots at a time after the start, s.
 using JointMotion = std::function<void(double t_s, std::vector<JointSample>& joints)>;
 
 struct SimulatedRobotOptions {
   std::string source = "robot";
-  // Of joints: the topic of ROS 2 that they are sent on, "/joint_states"; empty: ours.
+  // The topic of ROS 2 for joints, "/joint_states"; empty: our own topic.
   std::string ros_topic = {};
 };
 
@@ -38,7 +37,7 @@ class SimulatedRobot {
   [[nodiscard]] std::size_t objects() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t joints() const noexcept { return scene_.variables.size(); }
 
-  // Where everything is `t_s` seconds after the start, stamped with the time of sending.
+  // Sends the state `t_s` seconds after the start, stamped with the time of sending.
   void send(double t_s);
 
   [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }

@@ -33,7 +33,7 @@ const char* word(AllowedReason reason) {
   return "watched";
 }
 
-// "in contact in 12 of 10000 positions", with the least distance where that is none.
+// "in contact in 12 of 10000 positions"; for none of them, also the least distance.
 std::string counts(const SampledPair& pair, std::uint64_t samples) {
   const std::string text = fmt::format("in contact in {} of {} positions", pair.touching, samples);
   return pair.touching > 0 ? text : fmt::format("{}, at least {:.4f} m apart", text, pair.least);

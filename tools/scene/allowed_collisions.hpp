@@ -1,4 +1,4 @@
-// A proposal which pairs of a robot's links need not be watched, as setup assistants make it.
+// Proposes which pairs of a robot's links need not be watched, as setup assistants do.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace clearance {
 
-// In the words of SRDFs, in their order of weight; kWatch: it is to be watched.
+// The reasons of SRDFs, by weight. kWatch: there is no reason, and the pair is watched.
 enum class AllowedReason : std::uint8_t { kWatch, kAdjacent, kDefault, kAlways, kNever };
 
-// Adjacent; touching at zero; touching in 19 of 20 samples or more; in none.
+// Adjacent; in contact at zero; in contact in 19 of 20 samples or more; in contact in none.
 [[nodiscard]] AllowedReason reason_to_allow(const SampledPair& pair, std::uint64_t samples);
 
 // <disable_collisions> lines of an SRDF, with the counts as comments.
@@ -23,7 +23,7 @@ enum class AllowedReason : std::uint8_t { kWatch, kAdjacent, kDefault, kAlways, 
 [[nodiscard]] std::string as_cell(const Scene& scene, const std::vector<SampledPair>& pairs,
                                   std::uint64_t samples);
 
-// What both have, and what only one of them has, with the counts.
+// Lists the pairs that both allow, and those that only one allows, with the counts.
 [[nodiscard]] std::string agreement(const Scene& scene, const std::vector<SampledPair>& pairs,
                                     std::uint64_t samples, const Srdf& srdf);
 

@@ -10,8 +10,10 @@
 
 #include "core/enclosing_polyhedron.hpp"
 #include "core/query_tables.hpp"
+#include "core/shapes.hpp"
 #include "monitor/geometry/bounding_hull.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
+#include "tools/scene/fitting/certified_error.hpp"
 
 namespace clearance {
 namespace {
@@ -37,6 +39,11 @@ struct Models {
   std::optional<double> mesh_error;
 };
 
+double sphere_error(const Sphere& sphere, const std::vector<PlacedShape>& shapes) {
+  const ConvexBody ball = std::get<ConvexBody>(point(Vec3::Zero(), sphere.radius));
+  return certified_error(ball, Pose{.position = sphere.centre}, shapes);
+}
+
 // Objects with the same parts share their hull, so its error is computed once.
 class Judge {
  public:
@@ -52,7 +59,7 @@ class Judge {
     const Sphere& sphere = spheres_[i].in_object;
     if (sphere.radius < kInfinity) {
       all.sphere_radius = sphere.radius;
-      all.sphere_error = excess_of_sphere(sphere.centre, sphere.radius, shapes);
+      all.sphere_error = sphere_error(sphere, shapes);
     }
     if (hulls_[i]) all.hull = {size_of(*hulls_[i]), hull_error(i, shapes)};
     for (const Part& part : object.parts) {
@@ -71,7 +78,7 @@ class Judge {
     for (const auto& [hull, error] : errors_) {
       if (hull == hulls_[i].get()) return error;
     }
-    errors_.emplace_back(hulls_[i].get(), excess(*hulls_[i], shapes));
+    errors_.emplace_back(hulls_[i].get(), certified_error(*hulls_[i], Pose{}, shapes));
     return errors_.back().second;
   }
 

@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-// By an object's name, how far its parts reach beyond its meshes, m (CellOptions::mesh_errors).
+// Maps an object's name to the error of its parts against its meshes, m (CellOptions::mesh_errors).
 using MeshErrors = std::map<std::string, double>;
 
 // A table with one line for each object, and an explanation of its columns.

@@ -12,15 +12,16 @@
 #include "core/shapes.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/geometry/bounding_hull.hpp"
+#include "tools/scene/fitting/certified_error.hpp"
 
 namespace clearance {
 namespace {
 
 using Faults = std::vector<std::string>;
 
-// A hull that reaches no farther beyond its mesh, as a share of its radius, is not split.
+// A mesh whose hull has at most this error, as a share of the hull's radius, is not split.
 constexpr double kConvexEnough = 0.005;
-// Far more than what placing parts is off, as a share of their size.
+// Far more than the rounding of placed parts, as a share of their size.
 constexpr double kRounding = 1e-12;
 
 EnclosingModel part_of(ConvexBody shape, const Pose& pose) {
@@ -29,7 +30,7 @@ EnclosingModel part_of(ConvexBody shape, const Pose& pose) {
   return part;
 }
 
-// A fan for each facet, in the object's frame.
+// Adds a fan of triangles for each facet, in the object's frame.
 void add_facets(const Part& part, TriangleMesh& mesh) {
   const ConvexBody& shape = part.shape;
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -47,17 +48,17 @@ void add_facets(const Part& part, TriangleMesh& mesh) {
   }
 }
 
-// Of several parts. How far the hull's surface is from theirs is known to 2 %; `excess` also bounds
-// points within the hull, but not as closely where there are many facets.
+// For a hull around several parts. surface_error() knows to 2 % how far the hull's surface is from
+// theirs. certified_error() also bounds points inside the hull, less closely for many facets.
 double hull_error_of(const Object& object, const ConvexBody& hull) {
   TriangleMesh surface;
   for (const Part& part : object.parts) add_facets(part, surface);
   const double rounding = kRounding * hull.bounding_radius;
-  return std::min(excess(hull, shapes_of(object)),
+  return std::min(certified_error(hull, Pose{}, shapes_of(object)),
                   surface_error({&hull, 1}, TriangleTree(surface)) + rounding);
 }
 
-// Nothing where one of the parts is curved, rounded or unbounded.
+// Returns nothing where one of the parts is curved, rounded or unbounded.
 std::optional<Original> original_of(const Object& object) {
   std::vector<Vec3> points;
   PartsModel own;
@@ -78,7 +79,7 @@ std::optional<Original> original_of(const Object& object) {
   return original;
 }
 
-// Nothing: the parts are no more than `already`, or there are none.
+// Returns nothing if there are no more parts than `already`.
 std::optional<PartsModel> split(const TriangleMesh& mesh, const PartLimits& limits,
                                 std::size_t already) {
   const auto found = convex_parts(mesh, limits);

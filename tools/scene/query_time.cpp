@@ -13,19 +13,20 @@ namespace {
 
 constexpr int kRounds = 15, kSteps = 3142;
 
-std::vector<Pose> way_around(double size) {
+std::vector<Pose> poses_around(double size) {
   std::vector<Pose> poses(kSteps);
   for (int k = 0; k < kSteps; ++k) {
     const double t = 2.0 * std::numbers::pi * k / kSteps;
-    const Vec3 way(std::cos(t), std::sin(t) * std::cos(2.0 * t), std::sin(t) * std::sin(2.0 * t));
-    poses[static_cast<std::size_t>(k)].position = 2.5 * size * way;
+    const Vec3 direction(std::cos(t), std::sin(t) * std::cos(2.0 * t),
+                         std::sin(t) * std::sin(2.0 * t));
+    poses[static_cast<std::size_t>(k)].position = 2.5 * size * direction;
     poses[static_cast<std::size_t>(k)].orientation =
         Eigen::Quaterniond(std::cos(t), 0.6 * std::sin(t), 0.0, 0.8 * std::sin(t));
   }
   return poses;
 }
 
-// Of one round, a query.
+// Time per query of one round.
 double round_ns(const ReducedModel& model, const ConvexBody& other, const std::vector<Pose>& poses,
                 bool tracked) {
   std::vector<TrackingState> states(model.parts.size());
@@ -47,12 +48,12 @@ void measure_queries(std::vector<ReducedModel>& models) {
   double size = 0.0;
   for (const ReducedModel& model : models) {
     for (const EnclosingModel& part : model.parts) {
-      const double reach = part.frame_from_shape.position.norm() + part.shape.bounding_radius;
-      size = std::max(size, reach + part.shape.radius);
+      const double extent = part.frame_from_shape.position.norm() + part.shape.bounding_radius;
+      size = std::max(size, extent + part.shape.radius);
     }
   }
   const auto other = std::get<ConvexBody>(box(Vec3::Constant(0.25 * size)));
-  const std::vector<Pose> poses = way_around(size);
+  const std::vector<Pose> poses = poses_around(size);
   for (ReducedModel& model : models) model.time = QueryTimes{kInfinity, kInfinity};
   for (int round = 0; round < kRounds; ++round) {
     for (ReducedModel& model : models) {

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// Cheapest first: what a tracked query against a box takes (--time measures it).
+// A model's rank by the cost of a tracked query against a box; --time measures that cost.
 std::size_t rank(const ReducedModel& model) {
   const std::size_t parts = 1000 * (model.parts.size() - 1);
   switch (model.parts.front().kind) {
@@ -53,7 +53,7 @@ std::optional<std::size_t> choice(const Reduction& made, const ReductionOptions&
   return best;
 }
 
-// Around the hull, which itself reaches beyond the body.
+// Adds the hull's own error to that of a model around the hull.
 ReducedModel around(EnclosingModel model, double hull_error) {
   ReducedModel made{name(model.kind), {}, model.error + hull_error, {}};
   made.parts.push_back(std::move(model));

@@ -1,6 +1,5 @@
-// Simpler models around the bodies of meshes, cells or robots: a table of what each costs and how
-// far it reaches beyond the body, the one that costs least at a given distance and speed, and the
-// chosen one as parts to paste into a cell.
+// Makes simpler models around the bodies of meshes, cells or robots: a table of their costs and
+// errors, the cheapest model at a given distance and speed, and the chosen one as parts for a cell.
 #pragma once
 
 #include <filesystem>
@@ -9,22 +8,22 @@
 #include <variant>
 #include <vector>
 
-#include "core/enclosing_models.hpp"
+#include "tools/scene/fitting/enclosing_models.hpp"
 #include "tools/scene/watching.hpp"
 
 namespace clearance {
 
 struct ReductionOptions {
   std::vector<std::filesystem::path> files;  // cells (.yaml, .yml), robots (.urdf), meshes
-  std::string object;                        // of cells and robots; empty: all
-  std::optional<double> tolerance;           // m: the cheapest model whose error is no more
-  std::optional<std::size_t> facets;         // the least error of polyhedra with no more facets
+  std::string object;                        // or link; empty: all
+  std::optional<double> tolerance;           // m: choose the cheapest with at most this error
+  std::optional<std::size_t> facets;         // choose the best with at most so many facets
   bool time = false;                         // measure queries
-  std::vector<double> distances;             // m: where to ask for the cheapest, see Watching
-  double speed = 1.0;                        // m/s, the same
+  std::vector<double> distances;             // m: Watching::distance
+  double speed = 1.0;                        // m/s: Watching::speed
 };
 
-// One convex body around another one, or several whose union holds it.
+// One convex body around another one, or several bodies whose union holds it.
 struct ReducedModel {
   std::string name;
   std::vector<EnclosingModel> parts;
@@ -37,11 +36,11 @@ struct ReducedModel {
 struct Reduction {
   std::string name;
   std::size_t facets = 0, vertices = 0;  // of the hull
-  std::vector<ReducedModel> models;      // from the simplest on: the hull, then parts, come last
+  std::vector<ReducedModel> models;      // simplest first; the hull and the parts come last
   std::optional<std::size_t> chosen;
 };
 
-// What was made, and notes on objects that were left out; or why nothing could be.
+// The models, and notes on objects that were left out.
 struct Reductions {
   std::vector<Reduction> bodies;
   std::vector<std::string> notes;
@@ -52,11 +51,11 @@ struct Reductions {
 // "capsule", "32 facets", "2 parts".
 [[nodiscard]] std::string label_of(const ReducedModel& model);
 
-// For people, m: rounded upwards to 0.01 mm; what is only rounding is 0.
+// The error as it is printed, m: rounded upwards to 0.01 mm; 0 for an error of mere rounding.
 [[nodiscard]] double rounded_up_error(double error);
 
-// Errors and cold times of a body's models, in their order; none where nothing was measured. The
-// broad phase asks its models cold.
+// Errors and cold times of a body's models, in their order; empty where nothing was measured. The
+// queries of the broad phase are cold.
 [[nodiscard]] std::vector<Level> levels_of(const Reduction& body);
 
 [[nodiscard]] std::string reduction_table(const std::vector<Reduction>& bodies,
@@ -64,11 +63,11 @@ struct Reductions {
 [[nodiscard]] std::string reduction_json(const std::vector<Reduction>& bodies,
                                          const ReductionOptions& options);
 
-// The same for a page, with a picture `svg` beside it.
+// The same as a page in Markdown, with a picture `svg` beside it.
 [[nodiscard]] std::string reduction_page(const std::vector<Reduction>& bodies,
                                          const ReductionOptions& options, const std::string& svg);
-// Error against time a query, a panel a body, and which model is the cheapest at the options'
-// distances. Empty, or what went wrong.
+// Draws error against time per query, one panel per body, and the cheapest model at the options'
+// distances. Returns an empty text, or the fault.
 [[nodiscard]] std::string plot_reductions(const std::vector<Reduction>& bodies,
                                           const ReductionOptions& options,
                                           const std::filesystem::path& svg);

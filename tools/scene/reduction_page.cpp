@@ -1,4 +1,4 @@
-// A reduction as a page of Markdown.
+// Writes a reduction as a page of Markdown.
 #include <fmt/format.h>
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace clearance {
 namespace {
 
 std::string command(const ReductionOptions& options, const std::string& svg) {
-  std::string text = "clearance-scene --reduce";
+  std::string text = "clearance-scene reduce";
   for (const std::filesystem::path& file : options.files) {
     text += " " + file.filename().string();
   }
@@ -35,7 +35,7 @@ std::string cost(const std::vector<Level>& levels, std::size_t i, const Watching
   return made ? fmt::format("{:.3g}", 1e-3 * made->ns_per_s) : "in every tick";
 }
 
-// What the broad phase has for a hull of objects of several parts.
+// The model that the broad phase uses as the hull of an object of several parts.
 std::optional<std::size_t> bounding_hull_of(const Reduction& body) {
   for (std::size_t i = 0; i < body.models.size(); ++i) {
     const ReducedModel& model = body.models[i];
@@ -46,7 +46,7 @@ std::optional<std::size_t> bounding_hull_of(const Reduction& body) {
   return std::nullopt;
 }
 
-// The finest is the last one, the hull or the most parts.
+// The finest model comes last: the hull, or the most parts.
 std::string cheapest_rows(const Reduction& body, const ReductionOptions& options) {
   const std::vector<Level> levels = levels_of(body);
   const auto hull = bounding_hull_of(body);

@@ -1,4 +1,4 @@
-// A reduction as a picture: error against time.
+// Draws a reduction: error against time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace clearance {
 namespace {
 
 constexpr int kColumns = 2, kPanelWidth = 560, kPanelHeight = 350, kKeyHeight = 70;
-constexpr double kLeastError = 1e-5;  // m: smaller ones have no place on a logarithmic axis
+constexpr double kLeastError = 1e-5;  // m: the lower end of the logarithmic axis
 
-constexpr double kLabelled = 0.85;  // of the error that was labelled last: no room for more
+constexpr double kLabelled = 0.85;  // share of the error labelled last; closer labels would overlap
 
 constexpr const char* kKinds[] = {"sphere",   "capsule",   "box",    "rounded box",
                                   "cylinder", "ellipsoid", "facets", "parts"};
@@ -25,7 +25,7 @@ std::size_t kind_of(const ReducedModel& model) {
                                 : static_cast<std::size_t>(model.parts.front().kind);
 }
 
-// Of facets or of parts.
+// The number of facets or of parts.
 std::string number_of(const ReducedModel& model) {
   if (model.parts.size() > 1) return fmt::format("{}", model.parts.size());
   return model.parts.front().kind == ModelKind::kPolyhedron ? fmt::format("{}", model.facets())
@@ -47,8 +47,7 @@ Ranges ranges_of(const std::vector<Reduction>& bodies) {
   return all;
 }
 
-// What costs as much as the cheapest model at that distance, as a table of ns and m; and that
-// model.
+// The cheapest model at a distance, and the line of models of equal cost as a table of ns and m.
 struct Tangent {
   std::string line;
   Level touches;

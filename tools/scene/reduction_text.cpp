@@ -1,4 +1,4 @@
-// What a reduction looks like: a table, JSON, and parts of a cell.
+// Writes a reduction as a table, as JSON, and as parts of a cell.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// What writing a plane in decimals and making it a facet again may cut off, of its distance from
+// Writing a plane in decimals and reading it again may move it by this share of its distance from
 // the origin.
 constexpr double kPlaneSlack = 1e-14;
 

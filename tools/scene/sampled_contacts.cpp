@@ -11,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// One robot whose joints are set at will.
+// One robot with joint positions that the caller sets.
 class Posable {
  public:
   explicit Posable(const Scene& scene)
@@ -61,11 +61,11 @@ class Posable {
   const Robot& robot_;
   ForwardKinematics kinematics_;
   std::vector<TrackedVariable> variables_;
-  std::vector<Single> single_;       // each variable once, whoever mimics it
+  std::vector<Single> single_;       // each variable once, also one that other joints mimic
   std::vector<LinkState> bases_{1};  // the world
 };
 
-// The next link above with shapes; kNoObject: none.
+// The nearest link above that has shapes; kNoObject: there is none.
 std::uint32_t above(const Robot& robot, std::uint32_t link) {
   while (link > 0) {
     link = robot.joints[link - 1].parent;
@@ -74,7 +74,7 @@ std::uint32_t above(const Robot& robot, std::uint32_t link) {
   return RobotLink::kNoObject;
 }
 
-// A pair with the links that its objects are, and what its queries remember.
+// A pair with the links of its objects and the tracking states of its queries.
 struct Watched {
   SampledPair pair;
   std::uint32_t first_link, second_link;
@@ -102,7 +102,7 @@ std::vector<Watched> pairs_of(const Scene& scene) {
   return pairs;
 }
 
-// m; 0 where they are not certified apart.
+// The distance, m; 0 where no gap is certified.
 double distance_of(const Scene& scene, const Posable& robot, Watched& watched) {
   const Object& a = scene.objects[watched.pair.first];
   const Object& b = scene.objects[watched.pair.second];

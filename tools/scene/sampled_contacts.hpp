@@ -1,4 +1,4 @@
-// Which links of a robot touch each other, in random positions of its joints?
+// Samples which links of a robot touch each other, in random positions of its joints.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct SamplingOptions {
 // Two links with shapes, not both fixed. Ids are indices into Scene::objects.
 struct SampledPair {
   std::uint32_t first = 0, second = 0;
-  bool adjacent = false;       // one is the next above the other that has shapes
+  bool adjacent = false;       // no link with shapes lies between them
   bool touch_at_zero = false;  // with every joint at 0, or at the limit next to it
-  std::uint64_t touching = 0;  // samples in which they are not certified apart
+  std::uint64_t touching = 0;  // samples in which no gap is certified
   double least = kInfinity;    // m: the least distance of all samples; 0 where they touch
 };
 
-// Of the scene's only robot. Joints are uniform within their limits, or over a whole turn;
-// where the base of the robot is does not matter. Same seed, same counts.
+// Samples the scene's only robot. Joints are uniform within their limits, or over a whole turn. The
+// place of the robot's base does not matter. The same seed gives the same counts.
 [[nodiscard]] std::vector<SampledPair> sample_contacts(const Scene& scene,
                                                        const SamplingOptions& options);
 

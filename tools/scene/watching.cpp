@@ -9,18 +9,19 @@
 namespace clearance {
 namespace {
 
-// How far the objects come in a tick, m.
+// The distance that the objects move in a tick, m.
 double a_tick(double speed) { return speed / Scene().rate_hz; }
 
-// What the broad phase takes off a pair's distance before it divides the rest, m: the urgent ticks
-// ahead and the one behind (BroadPhase::level_of).
+// The margin that the broad phase takes off a pair's distance, m: the urgent ticks ahead and the
+// one behind (BroadPhase::level_of).
 double urgent(double speed) { return (UrgencyBins::kTicks + 1.0) * a_tick(speed); }
 
 double least_allowance(double speed) {
   return BroadPhase::kLeastAllowance + BroadPhase::kLeastTicks * a_tick(speed);
 }
 
-// At which two levels cost the same, beyond what is urgent, m: c_i / (x - e_i) = c_j / (x - e_j).
+// The distance at which two models cost the same, without the margin, m:
+// c_i / (x - e_i) = c_j / (x - e_j).
 double equal_at(const Level& i, const Level& j) {
   return (j.query_ns * i.error - i.query_ns * j.error) / (j.query_ns - i.query_ns);
 }
@@ -51,7 +52,7 @@ std::optional<std::size_t> cheapest(std::span<const Level> levels, const Watchin
 }
 
 std::vector<CheapestFrom> cheapest_by_distance(std::span<const Level> levels, double speed) {
-  std::vector<double> ends;  // nothing changes between them
+  std::vector<double> ends;  // the cheapest model changes only at these distances
   for (const Level& i : levels) {
     ends.push_back(i.error + least_allowance(speed) + urgent(speed));
     for (const Level& j : levels) {

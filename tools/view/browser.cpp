@@ -5,10 +5,16 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/pipe.hpp>
+#include <boost/process/posix.hpp>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
@@ -16,9 +22,11 @@
 namespace clearance::view {
 namespace {
 
+namespace bp = boost::process;
+
 // A first page on a busy machine without a graphics card takes half a minute.
 constexpr auto kPatience = std::chrono::seconds(180);
-// Where the browser reads and writes (--remote-debugging-pipe).
+// The descriptors of --remote-debugging-pipe.
 constexpr int kBrowserReads = 3, kBrowserWrites = 4;
 
 std::string from_base64(const std::string& text) {
@@ -49,44 +57,60 @@ std::vector<std::string> command(const std::filesystem::path& profile, int width
                                     "--force-color-profile=srgb",
                                     fmt::format("--user-data-dir={}", profile.string()),
                                     fmt::format("--window-size={},{}", width, height)};
-  if (geteuid() == 0) words.emplace_back("--no-sandbox");  // which Chromium insists on for root
+  if (geteuid() == 0) words.emplace_back("--no-sandbox");  // Chromium insists on it for root
   words.emplace_back("about:blank");
   return words;
 }
 
-// In the child: never returns.
-[[noreturn]] void become_browser(std::vector<std::string> words, int reads, int writes) {
+// A pipe above the browser's descriptors, closed when a program is executed.
+bp::pipe make_pipe() {
+  const bp::pipe low;
+  return bp::pipe{fcntl(low.native_source(), F_DUPFD_CLOEXEC, kBrowserWrites + 1),
+                  fcntl(low.native_sink(), F_DUPFD_CLOEXEC, kBrowserWrites + 1)};
+}
+
+// This program blocks the signals that it waits for; the browser must not.
+void unblock_signals() {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  // Above 4 first, so that neither is closed by the other's place.
-  const int from = fcntl(reads, F_DUPFD, 10), to = fcntl(writes, F_DUPFD, 10);
-  dup2(from, kBrowserReads);
-  dup2(to, kBrowserWrites);
-  const int nowhere = open("/dev/null", O_RDWR);
-  for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  execvp(arguments[0], arguments.data());
-  _exit(127);
 }
 
 }  // namespace
 
+struct Browser::Process {
+  bp::pipe to = make_pipe(), from = make_pipe();
+  bp::child child;
+
+  // env finds the browser in PATH.
+  explicit Process(const std::vector<std::string>& command)
+      : child(
+            bp::exe = "/usr/bin/env", bp::args = command,
+            bp::posix::fd.bind(kBrowserReads, to.native_source()),
+            bp::posix::fd.bind(kBrowserWrites, from.native_sink()),
+            bp::std_in<bp::null, bp::std_out> bp::null, bp::std_err > bp::null,
+            bp::extend::on_exec_setup = [](auto&) { unblock_signals(); }) {
+    close(to.native_source());
+    to.assign_source(-1);
+    close(from.native_sink());
+    from.assign_sink(-1);
+  }
+  // SIGTERM, since the browser has processes of its own to end.
+  ~Process() {
+    to.close();
+    from.close();
+    kill(child.id(), SIGTERM);
+    std::error_code ignored;
+    child.wait(ignored);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+};
+
 Browser::Browser(int width, int height, std::function<void()> meanwhile)
     : meanwhile_(std::move(meanwhile)) {
   if (!profile_.error().empty()) throw std::runtime_error(profile_.error());
-  std::array<int, 2> to{}, from{};
-  if (pipe2(to.data(), O_CLOEXEC) != 0 || pipe2(from.data(), O_CLOEXEC) != 0) {
-    fail("making pipes for the browser");
-  }
-  pid_ = fork();
-  if (pid_ == 0) become_browser(command(profile_.path(), width, height), to[0], from[1]);
-  close(to[0]);
-  close(from[1]);
-  to_browser_ = to[1];
-  from_browser_ = from[0];
+  process_ = std::make_unique<Process>(command(profile_.path(), width, height));
   deadline_ = std::chrono::steady_clock::now() + kPatience;
   const nlohmann::json page = call("Target.createTarget", {{"url", "about:blank"}});
   session_ = call("Target.attachToTarget", {{"targetId", page.at("targetId")}, {"flatten", true}})
@@ -96,14 +120,7 @@ Browser::Browser(int width, int height, std::function<void()> meanwhile)
        {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
 
-Browser::~Browser() {
-  close(to_browser_);
-  close(from_browser_);
-  if (pid_ > 0) {
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-}
+Browser::~Browser() = default;
 
 void Browser::fail(const std::string& what) const {
   throw std::runtime_error(fmt::format(
@@ -141,7 +158,8 @@ nlohmann::json Browser::call(const std::string& method, const nlohmann::json& pa
   if (!session_.empty()) message["sessionId"] = session_;
   std::string text = message.dump();
   text += '\0';
-  if (write(to_browser_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+  if (write(process_->to.native_sink(), text.data(), text.size()) !=
+      static_cast<ssize_t>(text.size())) {
     fail(method);
   }
   for (;;) {
@@ -159,13 +177,13 @@ nlohmann::json Browser::read_message() {
   std::size_t end = 0;
   while ((end = received_.find('\0')) == std::string::npos) {
     if (std::chrono::steady_clock::now() > deadline_) fail("waiting");
-    pollfd readable{.fd = from_browser_, .events = POLLIN, .revents = 0};
+    pollfd readable{.fd = process_->from.native_source(), .events = POLLIN, .revents = 0};
     if (poll(&readable, 1, 0) <= 0) {
       meanwhile_();
       continue;
     }
     std::array<char, 65536> piece;
-    const ssize_t count = read(from_browser_, piece.data(), piece.size());
+    const ssize_t count = read(process_->from.native_source(), piece.data(), piece.size());
     if (count <= 0) fail("reading");
     received_.append(piece.data(), static_cast<std::size_t>(count));
   }

@@ -1,11 +1,11 @@
-// Pictures of a page, by a Chromium without a window: the DevTools protocol over two pipes.
+// Takes pictures of a page with a Chromium without a window, by the DevTools protocol over two
+// pipes.
 #pragma once
-
-#include <sys/types.h>
 
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,14 +17,14 @@ namespace clearance::view {
 // browser does not answer in time.
 class Browser {
  public:
-  // `meanwhile` is called while the browser is waited for: the server that it asks runs in it.
+  // Calls `meanwhile` while it waits: the server that the browser asks runs there.
   Browser(int width, int height, std::function<void()> meanwhile);
   ~Browser();
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
   void open(const std::string& url);
-  // Until this expression is true in the page.
+  // Waits until this expression is true in the page.
   void wait_for(const std::string& expression);
   void screenshot(const std::filesystem::path& png);
 
@@ -36,8 +36,8 @@ class Browser {
 
   std::function<void()> meanwhile_;
   TemporaryFolder profile_;  // outlives the browser, which writes there
-  pid_t pid_ = -1;
-  int to_browser_ = -1, from_browser_ = -1;
+  struct Process;
+  std::unique_ptr<Process> process_;
   std::string received_, session_;
   int calls_ = 0;
   std::chrono::steady_clock::time_point deadline_;

@@ -1,5 +1,5 @@
-// The channels of clearance-view: what DDS carries, byte for byte, and the scene for viewers of ROS
-// 2 messages. An id is the same as long as the program runs.
+// The channels of clearance-view: the messages of DDS, byte for byte, and the scene for viewers of
+// ROS 2 messages. An id stays the same while the program runs.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace clearance::view {
 
 using ChannelId = std::uint32_t;
 
-// Those of our topics have the ids of their TopicKind; these follow.
+// Our topics have the ids of their TopicKind; these ids follow.
 inline constexpr ChannelId kTransforms = kTopics.size(), kBodies = kTransforms + 1,
                            kClosest = kTransforms + 2, kChannels = kTransforms + 3;
 [[nodiscard]] constexpr ChannelId channel(TopicKind kind) noexcept {
@@ -25,7 +25,7 @@ struct Channel {
   McapSchema schema;  // messages are CDR
 };
 
-// By id, under the names that the cell gives its topics.
+// By id, under the cell's names of the topics.
 [[nodiscard]] std::vector<Channel> channels_of(const Topics& topics);
 
 }  // namespace clearance::view

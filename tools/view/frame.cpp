@@ -8,8 +8,8 @@
 namespace clearance::view {
 namespace {
 
-Bytes shared(std::vector<std::byte> bytes) {
-  return std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+Bytes shared(std::span<const std::byte> bytes) {
+  return std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
 }
 
 }  // namespace
@@ -21,8 +21,8 @@ void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte
   }
 }
 
-// What must not replace each other: zones by id, batches by source. Poses and joints are taken
-// along the way.
+// A key keeps messages from replacing each other: zones by id, batches by source. Poses and joints
+// are taken here as well.
 std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
   const auto of_source = [this,
                           next = static_cast<std::uint32_t>(sources_.size())](const char* source) {
@@ -42,11 +42,10 @@ std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
 
 void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
                  std::span<const std::byte> cdr) {
-  new_.insert_or_assign(std::pair{channel, key},
-                        Message{channel, key, time_ns, shared({cdr.begin(), cdr.end()})});
+  new_.insert_or_assign(std::pair{channel, key}, Message{channel, key, time_ns, shared(cdr)});
 }
 
-// Transforms before the report, so that a viewer has moved the bodies when its lines come.
+// Transforms go before the report, so that a viewer has moved the bodies when its lines come.
 void Frame::publish(Server& server) {
   use_report();
   publish_if_wanted(server, kBodies, 0, [this] { return bodies_message(scene_); });
@@ -75,7 +74,7 @@ void Frame::publish_if_wanted(Server& server, ChannelId channel, std::int64_t ti
                               const Make& make) {
   if (sent_.test(channel) || !server.is_wanted(channel)) return;
   sent_.set(channel);
-  server.publish({channel, 0, time_ns, shared(make())});
+  server.publish({channel, 0, time_ns, shared(encoder_.encode(*make()))});
 }
 
 }  // namespace clearance::view

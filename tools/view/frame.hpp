@@ -1,6 +1,5 @@
-// The newest of every topic, on its way to the viewers: what is passed on as it came, and the
-// transforms and markers that follow from poses, joints and report, which are made only while
-// somebody subscribes to them.
+// The newest message of every topic for the viewers: some pass unchanged; transforms and markers
+// are made from poses, joints and report while a viewer subscribes to them.
 #pragma once
 
 #include <bitset>
@@ -21,19 +20,19 @@ class Frame {
  public:
   explicit Frame(const Scene& scene) : scene_(scene), poses_(scene) {}
 
-  // Takes one message of our topics. Of a report nothing more is done than to keep its bytes, of
-  // poses and joints their numbers are kept: what is cheap for every message of a fast stream.
+  // Takes one message of our topics. It only keeps the bytes of a report and the numbers of poses
+  // and joints, which is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
-  // Joints from elsewhere than our own topic.
+  // Takes joints that did not come from our own topic.
   void take_joints(PoseBatch batch) { poses_.take_joints(std::move(batch)); }
 
-  // Sends what has come since the last call.
+  // Sends the messages that came since the last call.
   void publish(Server& server);
 
-  // Of the latest report, by the catalogue or the report itself: 0 until one has come.
+  // The revision of the latest report or catalogue; 0 until one has come.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] std::int64_t report_time_ns() const noexcept { return report_time_ns_; }
-  // Another place of a recording: no pose of before holds.
+  // The recording moves to another time: earlier poses no longer hold.
   void jump() { poses_.forget(); }
 
  private:
@@ -41,23 +40,24 @@ class Frame {
             std::span<const std::byte> cdr);
   std::uint32_t key_of(TopicKind kind, std::span<const std::byte> cdr);
   void use_report();
-  // Once a report; bodies once at all.
+  // Publishes once per report; bodies only once.
   template <class Make>
   void publish_if_wanted(Server& server, ChannelId channel, std::int64_t time_ns, const Make& make);
 
   const Scene& scene_;
   ObjectPoses poses_;
   CdrDecoder decoder_;
+  CdrEncoder encoder_;
   Sample<clearance_msg_PoseBatch> batch_;
   Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;
-  std::map<std::string, std::uint32_t> sources_;  // numbered as they come
+  std::map<std::string, std::uint32_t> sources_;  // numbered in the order in which they came
   std::map<std::pair<ChannelId, std::uint32_t>, Message> new_;
   std::uint64_t revision_ = 0;
   std::int64_t report_time_ns_ = 0;
-  std::bitset<kChannels> sent_;  // of the scene's channels: what need not be made again
+  std::bitset<kChannels> sent_;  // channels of the scene that need not be made again
 };
 
 }  // namespace clearance::view

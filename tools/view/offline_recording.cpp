@@ -10,7 +10,7 @@
 namespace clearance::view {
 namespace {
 
-// The source under which the poses in use are written: all that has moved in a tick.
+// The source under which the poses in use are written: all poses that changed in a tick.
 constexpr std::string_view kSource = "replay";
 
 class Copy {
@@ -49,7 +49,7 @@ class Copy {
   const Cell& cell_;
   std::filesystem::path out_;
   std::optional<Recorder> recorder_;
-  std::vector<std::int64_t> stamps_;  // of the poses written last
+  std::vector<std::int64_t> stamps_;  // the poses written last
   PoseBatch batch_{};
 };
 

@@ -1,4 +1,4 @@
-// A recording whose reports are computed here, from the poses that another recording holds.
+// A recording whose reports are computed here from the poses in another recording.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 namespace clearance::view {
 
 // Runs `recording` through the monitor and writes `out`: the poses in use and the report of every
-// tick. What went wrong, or nothing. `stop` is asked before every tick: true ends it there.
+// tick. Returns the fault, or an empty text. `stop` is called before every tick; true ends it
+// there.
 [[nodiscard]] std::string replay_into(const Cell& cell, const std::filesystem::path& recording,
                                       const std::filesystem::path& out,
                                       const std::function<void(double)>& progress,

@@ -1,4 +1,4 @@
-// What one viewer is still to be sent. Of every channel and key only the newest message waits: a
+// The messages that wait for one viewer. Only the newest message of every channel and key waits: a
 // viewer that is slower than the reports gets fewer of them, never old ones.
 #pragma once
 
@@ -18,17 +18,17 @@ namespace clearance::view {
 
 using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 
-// A message of a channel; `key` tells apart what must not replace each other: zones, sources.
+// A message of a channel. Messages with different keys (zones, sources) do not replace each other.
 struct Message {
   ChannelId channel = 0;
   std::uint32_t key = 0;
-  std::int64_t time_ns = 0;  // when it was published; of a recording: its log time
+  std::int64_t time_ns = 0;  // time of publication; the log time in a recording
   Bytes payload = {};        // CDR
 };
 
 class Outbox {
  public:
-  // False: so much is waiting that the viewer does not read at all.
+  // False when so much waits that the viewer evidently does not read.
   [[nodiscard]] bool add_text(std::string text) {
     constexpr std::size_t kMostTexts = 64;
     texts_.push_back(std::move(text));

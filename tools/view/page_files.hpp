@@ -1,4 +1,4 @@
-// The page's files, as they were when this was built: the program needs no folder beside it.
+// The page's files at build time: the program needs no folder beside it.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ struct PageFile {
 };
 [[nodiscard]] std::span<const PageFile> page_files() noexcept;
 
-// By the name's ending.
+// The type follows from the name's ending.
 [[nodiscard]] std::string_view content_type(std::string_view path) noexcept;
 
 }  // namespace clearance::view

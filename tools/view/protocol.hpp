@@ -1,4 +1,4 @@
-// Foxglove's WebSocket protocol, version 1, as far as this server speaks it:
+// The part of Foxglove's WebSocket protocol, version 1, that this server supports:
 // https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md
 //
 // JSON texts: serverInfo, advertise, status, parameterValues; subscribe, unsubscribe,
@@ -18,13 +18,13 @@
 
 namespace clearance::view {
 
-// In the order of preference; both are the same for what is spoken here.
+// In the order of preference; this server treats both alike.
 inline constexpr std::array<std::string_view, 2> kSubprotocols = {"foxglove.websocket.v1",
                                                                   "foxglove.sdk.v1"};
 
 [[nodiscard]] std::string server_info(std::string_view name, std::string_view session);
 [[nodiscard]] std::string advertise(std::span<const Channel> channels);
-// `level` 0 to 2: information, warning, error. An empty text takes back what `id` said.
+// `level` 0 to 2: information, warning, error. An empty text withdraws the status `id`.
 [[nodiscard]] std::string status(std::string_view id, int level, std::string_view text);
 [[nodiscard]] std::string parameter_values(const nlohmann::json& values, const std::string& id);
 
@@ -33,7 +33,7 @@ inline constexpr std::size_t kMessageHeader = 13, kTimeMessage = 9;
                                                                    std::int64_t time_ns);
 [[nodiscard]] std::array<std::byte, kTimeMessage> time_message(std::int64_t time_ns);
 
-// What a client asked for; what is not understood is kIgnored.
+// A client's request; an unknown one is kIgnored.
 struct Request {
   enum class Kind {
     kIgnored,
@@ -51,7 +51,7 @@ struct Request {
   std::vector<Subscription> subscriptions = {};  // kSubscribe
   std::vector<std::uint32_t> ids = {};           // kUnsubscribe
   nlohmann::json parameters = {};                // kSetParameters: an array of {name, value}
-  std::string id = {};                           // to be given back with parameters
+  std::string id = {};                           // returned with the parameters
 };
 [[nodiscard]] Request parse_request(std::string_view text);
 

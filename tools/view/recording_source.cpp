@@ -8,8 +8,8 @@
 namespace clearance::view {
 namespace {
 
-// Read before a place that is jumped to, so that objects that move seldom are there as well, and
-// the health, which is told once a second.
+// The source reads this long before its new place, to include poses of objects that move seldom,
+// and health, which comes once a second.
 constexpr std::int64_t kLookBackNs = 1'200'000'000;
 constexpr double kSlowest = 0.01, kFastest = 100.0;
 
@@ -22,7 +22,7 @@ RecordingSource::RecordingSource(const Scene& scene, std::filesystem::path file,
       frame_(scene),
       time_ns_(timeline_.begin_ns) {}
 
-// A time that was rounded on its way, through a link for instance, still means its report.
+// A rounded time, from a link for instance, still finds its report.
 std::int64_t RecordingSource::at(double seconds) const {
   constexpr std::int64_t kRoundedNs = 1'000;
   const double ns =
@@ -43,7 +43,7 @@ nlohmann::json RecordingSource::parameters() const {
 void RecordingSource::set(const std::string& name, const nlohmann::json& value) {
   if (name == "playback.playing" && value.is_boolean()) {
     playing_ = value;
-    // Played from its end, it begins again.
+    // Playing from the end begins at the start.
     if (playing_ && time_ns_ >= timeline_.end_ns) time_ns_ = timeline_.begin_ns;
   } else if (name == "playback.time" && value.is_number()) {
     time_ns_ = at(value);
@@ -82,7 +82,7 @@ void RecordingSource::go_on(std::int64_t steady_ns) {
   changed_ = true;
 }
 
-// Reads on, or, to go back or far ahead, begins anew a little before.
+// Reads on. To go back or far ahead, it begins anew a little before.
 void RecordingSource::read_up_to(std::int64_t time_ns) {
   if (!reader_ || time_ns < read_ns_ || time_ns > read_ns_ + 2 * kLookBackNs) {
     begin_reading_at(std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
@@ -94,7 +94,7 @@ void RecordingSource::read_up_to(std::int64_t time_ns) {
   read_ns_ = time_ns;
 }
 
-// Zones are told when they change: what was said of each last holds there.
+// Zones are written when they change: the last state of each holds there.
 void RecordingSource::begin_reading_at(std::int64_t time_ns) {
   reader_ = std::make_unique<RecordingReader>(
       file_, McapWindow{.start_ns = static_cast<std::uint64_t>(time_ns)});

@@ -45,10 +45,10 @@ class RecordingSource final : public Source {
   Timeline timeline_;
   Frame frame_;
   std::unique_ptr<RecordingReader> reader_;
-  RecordedMessage next_;  // read, and still to come
+  RecordedMessage next_;  // read, but still to come
   bool has_next_ = false;
-  std::int64_t read_ns_ = 0;  // everything up to then has been taken
-  std::int64_t time_ns_;      // what is shown
+  std::int64_t read_ns_ = 0;  // everything before this time has been taken
+  std::int64_t time_ns_;      // time of the view
   std::int64_t steady_ns_ = 0;
   bool playing_ = false, changed_ = true;
   double rate_ = 1.0;

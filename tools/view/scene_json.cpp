@@ -13,14 +13,14 @@ namespace {
 
 using nlohmann::json;
 
-// More parts than these around a group are no picture of a zone any more.
+// With more parts than these, a group makes no clear picture of a zone.
 constexpr std::size_t kMostShells = 120;
 
-// Round parts that are drawn as finely as one alone; more of them are drawn more coarsely, so that
-// the cell has about as many triangles, down to steps of kCoarsest (rad).
+// So many round parts are drawn as finely as one alone. More are drawn more coarsely, down to steps
+// of kCoarsest (rad), so that the number of triangles stays about the same.
 constexpr double kMostFine = 30.0, kCoarsest = 0.6;
 
-// Six digits: micrometres in a cell of a metre; text of a third of the length.
+// Six digits: micrometres in a cell of a metre. The text is a third as long.
 double rounded(double value) { return std::round(value * 1e6) * 1e-6; }
 
 void add(const Vec3& v, json& numbers) {
@@ -61,12 +61,12 @@ double arc_step_of(const Scene& scene) {
   return std::clamp(kArcStep * std::sqrt(round / kMostFine), kArcStep, kCoarsest);
 }
 
-// Numbers meshes as they come; equal ones have one number.
+// Numbers meshes in their order; equal ones share a number.
 class Meshes {
  public:
   explicit Meshes(const Scene& scene) : arc_step_(arc_step_of(scene)) {}
 
-  // Of this body, its radius enlarged by `offset`, m.
+  // The mesh of this body, its radius enlarged by `offset`, m.
   std::size_t number_of(const ConvexBody& shape, double offset = 0.0) {
     json found = mesh_json(body_mesh(shape, offset, kReach, arc_step_));
     const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
@@ -76,7 +76,7 @@ class Meshes {
   [[nodiscard]] json take() { return std::move(list_); }
 
  private:
-  static constexpr double kReach = 20.0;  // of what is drawn of an unbounded body, m
+  static constexpr double kReach = 20.0;  // half width of the drawn part of an unbounded body, m
   double arc_step_;
   std::map<std::string, std::size_t> numbers_;
   json list_ = json::array();
@@ -123,8 +123,8 @@ json pairs_json(const Scene& scene) {
   return list;
 }
 
-// The objects that the zone's pairs have on one side: the side with fewer of them, and of these
-// the bounded ones. A margin is part of what must be kept clear.
+// The bounded objects on the side of the zone that has fewer objects. A margin is part of the
+// clearance to be kept.
 json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
   std::set<std::uint32_t> first, second;
   for (const std::uint32_t pair : zone.pairs) {

@@ -7,8 +7,8 @@
 
 namespace clearance::view {
 
-// Equal meshes occur once. A pose is [x, y, z, qx, qy, qz, qw], lengths are in m. Zones have
-// shells: the parts of one of their groups, enlarged by what the zone is entered below.
+// Equal meshes occur once. A pose is [x, y, z, qx, qy, qz, qw]; lengths are in m. Zones have
+// shells: the parts of one of their groups, enlarged by the zone's entry distance.
 [[nodiscard]] std::string scene_json(const Cell& cell);
 
 }  // namespace clearance::view

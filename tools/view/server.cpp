@@ -28,8 +28,8 @@ using HttpRequest = http::request<http::empty_body>;
 
 constexpr auto kPatience = std::chrono::seconds(30);
 constexpr std::size_t kMostRequestBytes = 1 << 16;
-// What the kernel may hold back of a viewer: about two frames of a large cell, so that what a slow
-// viewer sees is not old.
+// The kernel may hold about two frames of a large cell for a viewer, so that a slow viewer does not
+// see old ones.
 constexpr int kSendBuffer = 1 << 18;
 
 }  // namespace
@@ -43,15 +43,15 @@ struct ServerState {
   std::string address, session;
   std::set<Viewer*> viewers;
   std::map<std::pair<ChannelId, std::uint32_t>, Message> latest;
-  std::map<std::string, std::string> statuses;  // by id, as they are sent
-  // Below all that its operations use, which end with it.
+  std::map<std::string, std::string> statuses;  // by id: the JSON that is sent
+  // Last, since its operations use all of the above and end with it.
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
 
   void accept();
 };
 
-// One WebSocket. It lives as long as an operation of it is under way.
+// One WebSocket. It lives while an operation of it is under way.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(tcp::socket socket, ServerState& server) : socket_(std::move(socket)), server_(server) {}
@@ -95,7 +95,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   Outbox outbox_;
   std::map<std::uint32_t, ChannelId> subscriptions_;  // by the client's id
   bool open_ = false, writing_ = false, wants_parameters_ = false;
-  // What is being written: it stays until it has been.
+  // The message being written; it must stay until the end of the write.
   std::string text_;
   std::array<std::byte, kMessageHeader> header_{};
   std::array<std::byte, kTimeMessage> time_{};
@@ -164,7 +164,7 @@ void Viewer::answer(const Request& request) {
   }
 }
 
-// With the latest message of each key at once: what comes once has come already.
+// The latest message of each key follows at once, since some topics are written only once.
 void Viewer::subscribe(const Request& request) {
   constexpr std::size_t kMostSubscriptions = 256;
   for (const auto& [id, channel] : request.subscriptions) {
@@ -189,8 +189,7 @@ void Viewer::set_parameters(const Request& request) {
   }
 }
 
-// One message is under way at a time; what comes meanwhile waits in the outbox, or is replaced
-// there.
+// One message is under way at a time; later ones wait in the outbox or replace others there.
 void Viewer::write_next() {
   if (writing_ || !open_) return;
   if (auto text = outbox_.take_text()) {
@@ -211,7 +210,7 @@ void Viewer::write_next() {
   }
 }
 
-// `begin` 0: the text, or the time; 1: a message.
+// `begin` 0: a text or the time; 1: a message.
 void Viewer::write(bool is_text, std::size_t begin) {
   writing_ = true;
   socket_.text(is_text);

@@ -1,4 +1,4 @@
-// Where the messages come from: a daemon, or a recording.
+// The source of the messages: a daemon, or a recording.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ class Source {
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  // Publishes what is new; called 60 times a second.
+  // Publishes new messages; called 60 times a second.
   virtual void advance(Server& server) = 0;
 
-  // What viewers may know and set: an array of {name, value}; set() passes over what it does not
-  // know.
+  // Parameters that viewers may read and set: an array of {name, value}. set() ignores unknown
+  // names.
   [[nodiscard]] virtual nlohmann::json parameters() const { return nlohmann::json::array(); }
   virtual void set(const std::string& /*name*/, const nlohmann::json& /*value*/) {}
 
-  // Of a recording, what was before this moment (RunHistory::window); "null" where there is none.
+  // The curves before this moment of a recording (RunHistory::window); else "null".
   [[nodiscard]] virtual std::string history(double /*end_s*/,
                                             std::span<const std::uint32_t> /*pairs*/) const {
     return "null";

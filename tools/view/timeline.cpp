@@ -50,7 +50,7 @@ class Scan {
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Health> health_;
   Timeline found_;
-  std::map<std::uint32_t, std::int64_t> active_;  // zones, since when
+  std::map<std::uint32_t, std::int64_t> active_;  // by zone: active since then
   std::optional<std::uint64_t> overruns_;
 };
 
@@ -68,7 +68,7 @@ void Scan::take_zone(std::int64_t log_ns) {
   }
 }
 
-// Told once a second: the moment is when it was told.
+// Health comes once a second: the moment is that of the message.
 void Scan::take_health(std::int64_t log_ns) {
   if (overruns_ && health_->overruns > *overruns_) {
     add(log_ns, "overrun",
@@ -117,7 +117,8 @@ Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
   return found;
 }
 
-// Times as seconds after the begin, which is a text: a double does not hold its nanoseconds.
+// Times are seconds after the begin. The begin is a text, since a double does not hold its
+// nanoseconds.
 std::string Timeline::json() const {
   const auto after = [this](std::int64_t ns) { return 1e-9 * static_cast<double>(ns - begin_ns); };
   const auto number = [](double value) {

@@ -1,5 +1,5 @@
-// What a person wants to see of a recording at a glance: the least distance over time, when zones
-// were active, and the moments that are worth a look; and what is needed to jump to any of them.
+// A recording at a glance: the least distance over time, the active zones, the moments worth a
+// look, and the data needed to jump to any of them.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ZoneSpan {
   std::int64_t begin_ns = 0, end_ns = 0;
 };
 
-// What was said of a zone: it holds until the next is said.
+// A state of a zone, which holds until the next one.
 struct ZoneMessage {
   std::uint32_t zone = 0;
   std::int64_t log_ns = 0;
@@ -34,7 +34,7 @@ struct ZoneMessage {
 struct Timeline {
   explicit Timeline(const Scene& scene) : history(scene) {}
 
-  std::string error;  // not empty: the file cannot be read, or holds no report
+  std::string error;  // empty, or why the file cannot be shown
   std::int64_t begin_ns = 0, end_ns = 0;
   std::vector<std::int64_t> reports;  // log times
   RunHistory history;
@@ -47,7 +47,7 @@ struct Timeline {
 
 inline constexpr std::size_t kMostStretches = 2000, kMostMoments = 200;
 
-// Reads the whole file once; `progress` is told the share that was read, 0 to 1.
+// Reads the whole file once; `progress` receives the share that was read, 0 to 1.
 [[nodiscard]] Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
                                      const std::function<void(double)>& progress = {});
 

@@ -53,9 +53,9 @@ void Feed::note_report(std::int64_t now_ns) {
   smallest_ = {.known = true, .pair = minimum, .cycle = reports_->cycle};
 }
 
-// Called when the daemon was started again, perhaps with another cell, whose ids mean other
-// objects; or when two of them take turns, which is no restart. Zones of the new one may be here
-// before its first report.
+// Called when the daemon was restarted, perhaps with another cell whose ids mean other objects, or
+// when two daemons alternate, which is no restart. The new one's zones may be here before its first
+// report.
 void Feed::begin_again() {
   const std::uint64_t daemon = reports_->daemon;
   if (daemon == 0 || !daemons_.contains(daemon)) ++restarts_;

@@ -1,5 +1,4 @@
-// The state of a client of the daemon: the latest sample of every topic, and counts of what it
-// missed.
+// The state of a client of the daemon: the latest sample of every topic, and counts of its losses.
 #pragma once
 
 #include <chrono>
@@ -15,7 +14,7 @@ namespace clearance::watch {
 // Reports that are older than this when they are taken are called old: five frames of the screen.
 inline constexpr std::chrono::milliseconds kOldReport(500);
 
-// The smallest distance that any report has shown; stale ones do not count.
+// The smallest distance of all reports, without stale ones.
 struct Smallest {
   bool known = false;
   clearance_msg_PairDistance pair{};
@@ -29,7 +28,7 @@ struct OldReports {
   std::int64_t last_ns = 0;    // when the last of them was taken, CLOCK_REALTIME
 };
 
-// What is shown stays as it was last while no daemon publishes.
+// The last state stays while no daemon publishes.
 class Feed {
  public:
   explicit Feed(client::Connection& connection);
@@ -37,7 +36,7 @@ class Feed {
   // Takes all samples that have arrived; `now_ns` is CLOCK_REALTIME.
   void take(std::int64_t now_ns);
 
-  // Whether a report ever came, and when the last one did.
+  // True when a report has come, and the time of the last one.
   [[nodiscard]] bool any() const noexcept { return count_ > 0; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const clearance_msg_Distances& distances() const noexcept { return *reports_; }
@@ -47,14 +46,14 @@ class Feed {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
     return zones_.states();
   }
-  // Null: no zone has one, or it has not come.
+  // Null when no zone has one, or when it has not come.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
     return separation_->cycle != 0 && separation_->daemon == reports_->daemon ? &*separation_
                                                                               : nullptr;
   }
   [[nodiscard]] const Smallest& smallest() const noexcept { return smallest_; }
 
-  // What is to be known of the latest report itself.
+  // The check of the latest report.
   [[nodiscard]] const ReportCheck& check() const noexcept { return reports_.check(); }
   [[nodiscard]] const OldReports& old_reports() const noexcept { return old_; }
   [[nodiscard]] std::uint64_t reports() const noexcept { return count_; }
@@ -62,15 +61,15 @@ class Feed {
   [[nodiscard]] std::uint64_t restarts() const noexcept {
     return restarts_;
   }  // cycles that began again
-  // Writers of distances that are alive: they have written within their leases. More than one is a
-  // mistake.
+  // The number of writers of distances that are alive: they wrote within their leases. More than
+  // one is a mistake.
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
-  // Why the reports of a daemon that is there do not come; empty: nothing is known against it.
+  // Why the reports of a present daemon do not come; empty when no reason is known.
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
-  // None is there any longer, not even one that stands still.
+  // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }
 
-  // Names from the catalogue, or ids as long as there is none.
+  // Names from the catalogue; ids while there is none.
   [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
   [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
   [[nodiscard]] std::string zone_name(std::uint32_t zone) const;
@@ -88,7 +87,7 @@ class Feed {
   Smallest smallest_;
   std::uint64_t count_ = 0, missed_ = 0, restarts_ = 0;
   OldReports old_;
-  std::set<std::uint64_t> daemons_;  // whose reports have come
+  std::set<std::uint64_t> daemons_;  // daemons whose reports have come
   std::int64_t last_ns_ = 0;
 };
 

@@ -7,7 +7,7 @@
 namespace clearance::watch {
 namespace {
 
-// Right-aligned, whatever it is: fmt puts what is not finite to the left.
+// Right-aligned in all cases: fmt puts NaN and infinity to the left.
 std::string aligned(double value, int precision, int width) {
   const std::string text = std::isnan(value) ? "unknown" : fmt::format("{:.{}f}", value, precision);
   return fmt::format("{:>{}}", text, width);

@@ -1,5 +1,4 @@
-// Numbers of a report as clearance-watch writes them: in columns of the same width, whatever they
-// are; "unknown" for what is not a number.
+// Numbers of a report for clearance-watch, in columns of constant width; "unknown" for NaN.
 #pragma once
 
 #include <string>

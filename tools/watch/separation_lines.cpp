@@ -21,6 +21,7 @@ std::string text_of(const Feed& feed, const clearance_msg_ZoneSeparation& zone) 
   const auto validity = static_cast<SeparationValidity>(zone.validity);
   if (validity == SeparationValidity::kUnknown)
     return fmt::format("{}: not known, scaling 0, {}", name, pair);
+  if (validity == SeparationValidity::kAbsent) return fmt::format("{}: absent, scaling 1", name);
   return fmt::format("{}: scaling {:.2f}, robot up to {:.2f} m/s, {:.3f} m {} S_p, {}{}", name,
                      zone.scaling, zone.speed_limit, std::abs(zone.remaining),
                      zone.remaining < 0.0 ? "below" : "above", pair,

@@ -1,4 +1,4 @@
-// What clearance-watch says of the zones that keep a robot from people (`separation:` of a cell).
+// Lines of clearance-watch about the zones that keep a robot from people (`separation:` of a cell).
 #pragma once
 
 #include <cstddef>

@@ -1,62 +1,57 @@
 #include "tools/watch/terminal.hpp"
 
-#include <fmt/format.h>
-
-#include <poll.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cstdlib>
-#include <string_view>
+#include <clocale>
+#include <cstdio>
+#include <stdexcept>
+
+#include "config/text/printable.hpp"
+
+// Last, without their macros of common names.
+#define NCURSES_NOMACROS
+#include <curses.h>
+#include <term.h>
+#undef columns
+#undef lines
 
 namespace clearance::watch {
 namespace {
 
-const char* sequence(Style style) {
+enum Colour : short { kGreen = 1, kYellow, kRed };
+
+attr_t attributes(Style style) {
   switch (style) {
     case Style::kPlain:
-      return "";
+      return A_NORMAL;
     case Style::kBold:
-      return "\x1b[1m";
+      return A_BOLD;
     case Style::kDim:
-      return "\x1b[2m";
+      return A_DIM;
     case Style::kGood:
-      return "\x1b[32m";
+      return COLOR_PAIR(kGreen);
     case Style::kWarning:
-      return "\x1b[33m";
+      return COLOR_PAIR(kYellow);
     case Style::kAlarm:
-      return "\x1b[1;31m";
+      return A_BOLD | COLOR_PAIR(kRed);
   }
-  return "";
+  return A_NORMAL;
 }
 
 bool starts_code_point(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
 
-// Written in one piece if the terminal accepts it, so that half a frame is never shown.
-void put(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = write(STDOUT_FILENO, bytes.data(), bytes.size());
-    if (written <= 0) return;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
 }  // namespace
 
+// Names come from a file or from DDS: they are made printable.
 Line& Line::add(const std::string& text, Style style) {
+  const std::string shown = printable(text);
   std::size_t end = 0;
-  for (; end < text.size(); ++end) {
-    if (!starts_code_point(text[end])) continue;
+  for (; end < shown.size(); ++end) {
+    if (!starts_code_point(shown[end])) continue;
     if (used_ == width_) break;
     ++used_;
   }
-  if (end == 0) return *this;
-  text_ += sequence(style);
-  for (const char byte : std::string_view(text).substr(0, end)) {
-    // Names come from a file: they must not contain control sequences.
-    text_ += static_cast<unsigned char>(byte) < 0x20 || byte == 0x7f ? '?' : byte;
-  }
-  if (style != Style::kPlain) text_ += "\x1b[0m";
+  if (end > 0) spans_.push_back({shown.substr(0, end), style});
   return *this;
 }
 
@@ -65,48 +60,63 @@ Line& Line::to(std::size_t column) {
   return *this;
 }
 
+// Of the locale, only the encoding: numbers keep their points.
 Screen::Screen() {
-  termios settings{};
-  if (tcgetattr(STDIN_FILENO, &settings) == 0) {
-    before_ = settings;
-    settings.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    tcsetattr(STDIN_FILENO, TCSANOW, &settings);
-  }
-  put("\x1b[?1049h\x1b[?25l");
+  std::setlocale(LC_CTYPE, "C.UTF-8");
+  screen_ = newterm(nullptr, stdout, stdin);
+  if (screen_ == nullptr) throw std::runtime_error("the terminal cannot be used; try --plain");
+  cbreak();
+  noecho();
+  nodelay(stdscr, true);
+  curs_set(0);
+  start_color();
+  use_default_colors();
+  init_pair(kGreen, COLOR_GREEN, -1);
+  init_pair(kYellow, COLOR_YELLOW, -1);
+  init_pair(kRed, COLOR_RED, -1);
 }
 
 Screen::~Screen() {
-  put("\x1b[?25h\x1b[?1049l");
-  if (before_) tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
+  endwin();
+  delscreen(screen_);
 }
 
 bool Screen::available() {
-  const char* term = std::getenv("TERM");
-  return isatty(STDOUT_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
+  if (isatty(STDOUT_FILENO) == 0) return false;
+  int result = 0;
+  if (setupterm(nullptr, STDOUT_FILENO, &result) != OK) return false;
+  const bool moves = cursor_address != nullptr;
+  del_curterm(cur_term);
+  return moves;
 }
 
 Size Screen::size() const {
-  winsize window{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0 || window.ws_row == 0)
-    return {};
-  return {.columns = window.ws_col, .rows = window.ws_row};
+  return {.columns = static_cast<std::size_t>(getmaxx(stdscr)),
+          .rows = static_cast<std::size_t>(getmaxy(stdscr))};
 }
 
-void Screen::draw(const std::vector<Line>& lines) const {
-  std::string frame = "\x1b[H";
+// A line that has changed is sent as a whole, so that what another program wrote over it goes.
+void Screen::draw(const std::vector<Line>& lines) {
+  werase(stdscr);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    frame += fmt::format("{}\x1b[K", lines[i].text());
-    if (i + 1 < lines.size()) frame += "\r\n";
+    const int row = static_cast<int>(i);
+    wmove(stdscr, row, 0);
+    for (const Line::Span& span : lines[i].spans()) {
+      wattrset(stdscr, static_cast<int>(attributes(span.style)));
+      waddstr(stdscr, span.text.c_str());
+    }
+    const bool same = i < drawn_.size() && drawn_[i].spans() == lines[i].spans();
+    if (!same) wredrawln(stdscr, row, 1);
   }
-  put(fmt::format("{}\x1b[J", frame));
+  wattrset(stdscr, A_NORMAL);
+  wrefresh(stdscr);
+  drawn_ = lines;
 }
 
-bool Screen::quit_key() const {
-  pollfd keys{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-  char key = 0;
-  while (before_ && poll(&keys, 1, 0) > 0 && (keys.revents & POLLIN) != 0) {
-    if (read(STDIN_FILENO, &key, 1) != 1) return false;
-    if (key == 'q') return true;
+bool Screen::quit_key() {
+  const bool from_keyboard = isatty(STDIN_FILENO) != 0;
+  for (int key = wgetch(stdscr); key != ERR; key = wgetch(stdscr)) {
+    if (key == 'q' && from_keyboard) return true;
   }
   return false;
 }

@@ -1,32 +1,37 @@
-// Uses the terminal as a full screen that is redrawn without flicker, and restores it at the end.
+// The terminal as a full screen, by ncurses.
 #pragma once
 
-#include <termios.h>
-
-#include <optional>
 #include <string>
 #include <vector>
+
+struct screen;  // of ncurses
 
 namespace clearance::watch {
 
 enum class Style { kPlain, kBold, kDim, kGood, kWarning, kAlarm };
 
-// One line of the screen, cut at its width; text is UTF-8, every code point one column wide.
+// One line of the screen, cut at its width. Text is UTF-8; every code point is one column wide.
 class Line {
  public:
+  struct Span {
+    std::string text;  // printable
+    Style style;
+    bool operator==(const Span&) const = default;
+  };
+
   explicit Line(std::size_t width) : width_(width) {}
   Line& add(const std::string& text, Style style = Style::kPlain);
   // Adds spaces up to a column, if the line is shorter.
   Line& to(std::size_t column);
-  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+  [[nodiscard]] const std::vector<Span>& spans() const noexcept { return spans_; }
 
  private:
   std::size_t width_, used_ = 0;
-  std::string text_;
+  std::vector<Span> spans_;
 };
 
 struct Size {
-  std::size_t columns = 80, rows = 24;
+  std::size_t columns, rows;
 };
 
 // Switches to the alternate screen without cursor and echo; the destructor restores everything.
@@ -37,13 +42,17 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  [[nodiscard]] static bool available();  // stdout is a terminal that can do it
-  [[nodiscard]] Size size() const;        // now: it may have been resized
-  void draw(const std::vector<Line>& lines) const;
-  [[nodiscard]] bool quit_key() const;  // q was pressed
+  // Whether stdout is a terminal on which the cursor can be moved.
+  [[nodiscard]] static bool available();
+  // The size as of the last call of quit_key(), which follows a terminal that is resized.
+  [[nodiscard]] Size size() const;
+  void draw(const std::vector<Line>& lines);
+  // Whether q has been pressed.
+  [[nodiscard]] bool quit_key();
 
  private:
-  std::optional<termios> before_;
+  screen* screen_;
+  std::vector<Line> drawn_;
 };
 
 }  // namespace clearance::watch

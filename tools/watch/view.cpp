@@ -21,9 +21,7 @@ constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 const char* status_name(std::uint8_t status) {
-  return status <= static_cast<std::uint8_t>(PairStatus::kUnknown)
-             ? name(static_cast<PairStatus>(status))
-             : "?";
+  return status < kPairStatuses ? name(static_cast<PairStatus>(status)) : "?";
 }
 
 Style status_style(std::uint8_t status) {
@@ -160,6 +158,7 @@ void add_counts(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
       .add(", ")
       .add(fmt::format("{} unknown", report.unknown),
            report.unknown != 0 ? Style::kWarning : Style::kPlain)
+      .add(absent_pairs(report) != 0 ? fmt::format(", {} absent", absent_pairs(report)) : "")
       .add(fmt::format("; all at least {:.4f} m, since the last tick {:.4f} m; refreshed no more "
                        "than {} ticks ago",
                        report.lower_all, report.swept_lower_all, report.oldest_evaluation_cycles));

@@ -1,4 +1,4 @@
-// One mistake a case: where it is reported, and in which words.
+// Each case has one mistake, its place, and the words that report it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 struct Mistake {
   const char* name;
   std::string sections;  // after the three lines of cell_text(); '@' stands before the mistake
-  std::string error;     // how the error there begins
+  std::string error;     // the beginning of the error there
 };
 
 // One object with this shape, and something to pair it with.

@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Every type of joint, written leaf first: the order of a file means nothing.
+// Every type of joint, written leaf first: the order of a file has no meaning.
 const std::string kWalkerUrdf = R"(<robot name="walker">
   <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
   <link name="mast"><collision><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></collision></link>

@@ -1,4 +1,4 @@
-// What a cell says of ROS 2: topics that are written, frames that are followed.
+// The settings of a cell for ROS 2: topics that are written, frames that are followed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
               HasSubstr("found 'frame' of a fixed object"));
 }
 
-// Its root hangs on a floating joint that the URDF does not have; all else is as it was.
+// The root hangs on a floating joint that the URDF does not have; all else stays the same.
 TEST(RosSettingsOfACell, FloatTheBaseOfARobotThatFollowsAFrame) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);

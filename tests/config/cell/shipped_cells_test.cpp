@@ -166,7 +166,6 @@ TEST(McIntyreCell, HasTheThesisCounts) {
 
 TEST(McIntyreCell, MovesWithoutTouchingAndEntersItsZones) {
   const Cell cell = shipped("mcintyre.yaml");
-  const Scene& scene = cell.scene;
   expect_whole_motion(cell);
   expect_stated_speeds(cell);
   EXPECT_GT(least_clearance(cell), 0.02);
@@ -201,7 +200,6 @@ TEST(TwoArmsCell, UsesEveryKindOfShape) {
 
 TEST(TwoArmsCell, MovesWithoutTouchingAndEntersItsZones) {
   const Cell cell = shipped("two_arms.yaml");
-  const Scene& scene = cell.scene;
   expect_whole_motion(cell);
   expect_stated_speeds(cell);
   EXPECT_GT(least_clearance(cell), 0.02);
@@ -224,7 +222,6 @@ TEST(RoundArmCell, IsOfCurvedAndRoundedBodiesOnly) {
 
 TEST(RoundArmCell, MovesWithoutTouchingAndEntersItsZones) {
   const Cell cell = shipped("round_arm.yaml");
-  const Scene& scene = cell.scene;
   expect_whole_motion(cell);
   expect_stated_speeds(cell);
   EXPECT_GT(least_clearance(cell), 0.02);

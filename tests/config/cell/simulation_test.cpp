@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Two revolute joints and a slide, all askew, on a turned base; beside them a spinning mover.
+// Two revolute joints and a slide, all askew, on a rotated base; beside them a spinning mover.
 Simulation moving_cell() {
   Simulation simulation;
   const Eigen::Quaterniond turned = Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();

@@ -33,7 +33,7 @@ ConvexParts parts_of_mesh(const TriangleMesh& mesh, const PartLimits& limits = {
   return std::get<ConvexParts>(convex_parts(mesh, limits));
 }
 
-// Made once, for all tests.
+// The parts are made once, for all tests.
 const ConvexParts& parts_of(const Drawn& drawn, std::size_t most = 24) {
   static std::map<std::pair<std::string, std::size_t>, ConvexParts> made;
   const auto [entry, is_new] = made.try_emplace({drawn.name, most});
@@ -48,7 +48,7 @@ std::vector<ConvexBody> bodies_of_parts(const ConvexParts& parts) {
   return bodies;
 }
 
-// By how much a point lies outside; negative: inside.
+// Returns how far a point lies outside; negative: inside.
 double outside(const ConvexBody& body, const Vec3& point) {
   double most = -kInfinity;
   for (const Facet& facet : body.facets) {
@@ -83,7 +83,7 @@ double distance_by_regions(const Triangle& t, const Vec3& p) {
   return (p - t[0] - vb / (va + vb + vc) * ab - vc / (va + vb + vc) * ac).norm();
 }
 
-// The largest distance from the mesh of points on the surface of the union.
+// Returns the largest distance from the mesh of points on the surface of the union.
 double sampled_error(const std::vector<ConvexBody>& bodies, const TriangleMesh& mesh, int samples) {
   Random random(7);
   double worst = 0.0;

@@ -33,7 +33,8 @@ inline void add_box(const Vec3& low, const Vec3& high, TriangleMesh& mesh, bool 
   }
 }
 
-// Two bars of 50 mm that meet at a right angle, 200 mm long. Its inner corner sees every other.
+// Two bars of 50 mm that meet at a right angle, 200 mm long. Its inner corner sees every other
+// corner.
 inline TriangleMesh l_shape() {
   const std::array<Vec2, 6> outline = {Vec2(0.05, 0.05), Vec2(0.05, 0.2), Vec2(0.0, 0.2),
                                        Vec2(0.0, 0.0),   Vec2(0.2, 0.0),  Vec2(0.2, 0.05)};
@@ -99,7 +100,7 @@ inline TriangleMesh slivers() {
   return mesh;
 }
 
-// As a file.
+// Returns the text of an OBJ file.
 inline std::string obj_of(const TriangleMesh& mesh) {
   std::string text;
   for (const Vec3& v : mesh.vertices) {

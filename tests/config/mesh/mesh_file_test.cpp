@@ -158,7 +158,8 @@ TEST_F(MeshFile, BytesOfTheFileDoNotReachTheTerminal) {
   std::string ply = box_mesh("AsciiPly").bytes;
   ply.replace(ply.find("1.0 1.0 1.0"), 3, "\x1b[2J\xff");
   write("mesh.ply", ply);
-  EXPECT_THAT(errors("file: mesh.ply"), HasSubstr("mesh.ply': '?[2J?' is no number; expected"));
+  EXPECT_THAT(errors("file: mesh.ply"),
+              HasSubstr("mesh.ply': '\\x1B[2J\\xFF' is no number; expected"));
 }
 
 TEST_F(MeshFile, AnAsciiStlThatIsCutOffIsRefused) {

@@ -21,8 +21,8 @@ namespace {
 
 class MeshMutation : public testing::TestWithParam<BoxMesh> {};
 
-// A child process for each, which takes 2 to 5 ms, 15 ms where assimp reads OBJ: some seconds for
-// all formats, as there is no other way to see a crash.
+// Each mutation takes a child process: 2 to 5 ms, 15 ms where assimp reads OBJ. All formats take
+// some seconds, as a crash can be seen in no other way.
 std::uint32_t mutations_of(const BoxMesh& mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return mesh.extension == "obj" ? 10 : 50;

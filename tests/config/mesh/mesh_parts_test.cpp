@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <thread>
 
@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// A cell with an L of sheet bars, and what reading it told.
+// A cell with an L of sheet bars, and the lines that reading it told.
 class PartsOfMeshes : public testing::Test {
  protected:
   PartsOfMeshes() {
@@ -222,44 +222,47 @@ TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
   EXPECT_THAT(told_, HasSubstr("raise max_parts (now 1) or tolerance in the cell\n"));
 }
 
-TEST_F(PartsOfMeshes, OfAUrdfAloneAreCoarseWithTheAdviceToWriteACell) {
-  std::string dust;  // more grains in a row than a mesh may have parts
-  for (int i = 0; i < 40; ++i) {
-    for (const char* corner : {"0 0 0", "0.1 0 0", "0 0.1 0", "0 0 0.1"}) {
-      std::istringstream numbers(corner);
-      double x = 0.0, y = 0.0, z = 0.0;
-      numbers >> x >> y >> z;
-      dust += "v " + std::to_string(x + i % 7) + " " + std::to_string(y + i / 7) + " " +
-              std::to_string(z + i % 3) + "\n";
+// More grains, far from each other, than a mesh may have parts.
+TriangleMesh dust() {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const Vec3 at(i % 7, i / 7, i % 3);
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0), Vec3(0, 0, 0.1)}) {
+      mesh.vertices.push_back(at + corner);
     }
-    const int at = 4 * i;
-    for (const std::array<int, 3> face : {std::array{1, 3, 2}, {1, 2, 4}, {1, 4, 3}, {2, 3, 4}}) {
-      dust += "f " + std::to_string(at + face[0]) + " " + std::to_string(at + face[1]) + " " +
-              std::to_string(at + face[2]) + "\n";
+    for (const std::array<std::uint32_t, 3>& face :
+         {std::array<std::uint32_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+      mesh.triangles.push_back({4 * i + face[0], 4 * i + face[1], 4 * i + face[2]});
     }
   }
-  test::write_text(folder_ / "dust.obj", dust);
+  return mesh;
+}
+
+TEST_F(PartsOfMeshes, OfAUrdfAloneComeWithTheAdviceToWriteACell) {
+  test::write_text(folder_ / "dust.obj", test::obj_of(dust()));
   test::write_text(folder_ / "r.urdf",
                    "<robot name='r'><link name='base'><collision><geometry><mesh "
                    "filename='dust.obj'/></geometry></collision></link><link name='tip'><collision>"
                    "<geometry><sphere radius='0.1'/></geometry></collision></link><joint name='j' "
-                   "type='prismatic'><origin xyz='1 0 0'/><axis xyz='1 0 0'/><limit lower='0' "
-                   "upper='1' velocity='1'/><parent link='base'/><child link='tip'/></joint>"
-                   "</robot>");
+                   "type='prismatic'><axis xyz='1 0 0'/><limit lower='0' upper='1' velocity='1'/>"
+                   "<parent link='base'/><child link='tip'/></joint></robot>");
+  test::write_text(folder_ / "r.srdf", "<robot name='r'></robot>");
   std::string told;
   const CellResult result =
-      read_single_robot({.urdf = folder_ / "r.urdf"},
+      read_single_robot({.urdf = folder_ / "r.urdf", .srdf = folder_ / "r.srdf"},
                         {.tell = [&told](const std::string& line) { told += line + "\n"; }});
-  EXPECT_TRUE(std::holds_alternative<Cell>(result));
-  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene --from-urdf writes\n"));
+  const auto* errors = std::get_if<std::vector<CellError>>(&result);
+  EXPECT_EQ(nullptr, errors) << errors->front().text;
+  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene import writes\n"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
   read(", tolerance: 0");
-  read(", max_parts: 0");
-  read(", max_parts: 65");
   EXPECT_THAT(errors_, HasSubstr("how far the parts of a mesh may reach beyond it"));
-  EXPECT_THAT(errors_, HasSubstr("parts of a mesh at most"));
+  for (const char* parts : {"0", "65"}) {
+    read(std::string(", max_parts: ") + parts);
+    EXPECT_THAT(errors_, HasSubstr("parts of a mesh at most"));
+  }
 }
 
 }  // namespace

@@ -248,7 +248,7 @@ TEST_F(RobotCellFile, WithoutAnSrdfNeighboursAreLeftOutAndNamed) {
   EXPECT_THAT(cell().yaml, HasSubstr("reason: \"Adjacent in the URDF\""));
 }
 
-// The mast turns in a bearing that has no shape of its own.
+// The mast rotates in a bearing that has no shape of its own.
 TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   options_.srdf.clear();
   std::string text = kUrdf;
@@ -260,7 +260,7 @@ TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   EXPECT_THAT(cell().notes.back(), HasSubstr("watched: foot - mast, mast - head"));
 }
 
-// As MoveIt: disabled by default, less what is enabled, and what is disabled one by one.
+// As in MoveIt: pairs disabled by default, less the enabled ones, and pairs disabled one by one.
 TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   write("little_description/urdf/little.srdf",
         "<robot name=\"little\">\n"
@@ -273,7 +273,7 @@ TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   EXPECT_EQ(scene.pairs[1].first, 1u);
   EXPECT_THAT(cell().yaml, HasSubstr("reason: \"disabled by default in the SRDF\""));
   EXPECT_THAT(cell().notes, testing::Contains(HasSubstr("1 pairs are disabled by default")));
-  // What is disabled one by one stays so.
+  // A pair that is disabled one by one stays so.
   write("little_description/urdf/little.srdf",
         "<robot name=\"little\">\n"
         "  <disable_default_collisions link=\"head\"/>\n"

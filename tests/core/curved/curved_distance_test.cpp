@@ -138,7 +138,7 @@ TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
     const ConvexBody q = made(box({1, random.log_uniform(0.1, 1), 0.25}));
     const RelativePose pose = relative_pose(random.pose(1.5), random.pose(1.5));
     TrackingState state;
-    CurvedTrackingState curved;
+    TrackingState curved;
     const DistanceResult r = distance(p, q, pose, state);
     const DistanceResult s = curved_distance(p, q, pose, curved);
     EXPECT_LE(r.lower, s.upper) << k;
@@ -150,12 +150,11 @@ TEST(CurvedDistance, OfPolyhedraEnclosesWhatThePolyhedralQueryEncloses) {
 TEST(CurvedDistance, TakesAnyStateAndNoHeap) {
   const ConvexBody a = made(cylinder(1, 1)), b = made(ellipsoid({1, 2, 3}));
   const RelativePose pose = relative_pose(at(0, 0, 0), at(4, 1, 0));
-  CurvedTrackingState empty;
+  TrackingState empty;
   const DistanceResult r = curved_distance(a, b, pose, empty);
-  CurvedTrackingState nonsense;
-  nonsense.normal = Vec3(0, 0, -1);
-  nonsense.active.count = 2;
-  nonsense.active.pieces = {PiecePair{7, -3}, PiecePair{0, 0}, PiecePair{}};
+  TrackingState nonsense;
+  nonsense.a = {FeatureKind::kDirection, false, 0x7a5a5a5a, Vec3(0, 0, -1)};
+  nonsense.b = {FeatureKind::kDirection, false, -0x5a5a5a5a, Vec3::Zero()};
   const std::uint64_t before = allocations();
   const DistanceResult s = curved_distance(a, b, pose, nonsense);
   EXPECT_EQ(allocations(), before);
@@ -334,8 +333,6 @@ TEST(CurvedBodies, AreInsideTheModelsAroundThem) {
     }
     const auto model = enclosing_polyhedron(placed);
     ASSERT_TRUE(model);
-    const double error = excess(*model, placed);
-    EXPECT_LT(error, 0.6);
     for (const PlacedShape& body : placed) {
       for (int i = 0; i < 200; ++i) {
         const Vec3 n = random.direction();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/gjk/closest_on_simplex.hpp"
+#include "core/gjk/simplex.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/every_start.hpp"
 #include "tests/shared/hard_bodies.hpp"
@@ -52,12 +52,14 @@ TEST(NearlyParallel, WeightsOfASimplexAddUpToOne) {
   for (int k = 0; k < 100000; ++k) {
     const double thick = random.log_uniform(1e-26, 1.0), wide_by = random.log_uniform(1e-26, 1.0);
     const Mat3 turn = random.rotation().toRotationMatrix();
-    std::array<WideVec, 4> corners;
-    for (WideVec& corner : corners) {
-      const WideVec own = wide(Vec3(random.uniform(-1.0, 1.0), wide_by * random.uniform(-1.0, 1.0),
-                                    thick * random.uniform(-1.0, 1.0)));
-      corner = {dot(wide(turn.row(0)), own), dot(wide(turn.row(1)), own),
-                dot(wide(turn.row(2)), own)};
+    std::array<Vector<DoubleDouble>, 4> corners;
+    for (Vector<DoubleDouble>& corner : corners) {
+      const Vector<DoubleDouble> own = vector_of<DoubleDouble>(
+          Vec3(random.uniform(-1.0, 1.0), wide_by * random.uniform(-1.0, 1.0),
+               thick * random.uniform(-1.0, 1.0)));
+      corner = {dot(vector_of<DoubleDouble>(turn.row(0)), own),
+                dot(vector_of<DoubleDouble>(turn.row(1)), own),
+                dot(vector_of<DoubleDouble>(turn.row(2)), own)};
     }
     const ClosestPoint closest = closest_to_origin(corners, 4);
     double sum = -1.0;

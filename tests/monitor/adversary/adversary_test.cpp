@@ -22,7 +22,7 @@ int ticks_of_a_run(int usual) {
   return asked != nullptr ? std::atoi(asked) : usual;
 }
 
-struct Cell {
+struct DrivenCell {
   const char* name;
   Scene (*make)(Random&);
   const test::Oracle* oracle;
@@ -30,13 +30,14 @@ struct Cell {
   std::uint32_t ample;  // queries: a budget that covers whatever may be asked in a tick
   int ticks;            // of a usual run
 };
-std::ostream& operator<<(std::ostream& out, const Cell& cell) { return out << cell.name; }
+std::ostream& operator<<(std::ostream& out, const DrivenCell& cell) { return out << cell.name; }
 
-constexpr Cell kThinBodies{"ThinBodies", test::thin_bodies, &test::kClosedForm, 3.0, 1000, 300};
-constexpr Cell kCapsules{"Capsules", test::capsules, &test::kClosedForm, 2.5, 200, 400};
-constexpr Cell kPolyhedra{"Polyhedra", test::polyhedra, &test::kBruteForce, 1.0, 400, 60};
+constexpr DrivenCell kThinBodies{"ThinBodies", test::thin_bodies, &test::kClosedForm, 3.0, 1000,
+                                 300};
+constexpr DrivenCell kCapsules{"Capsules", test::capsules, &test::kClosedForm, 2.5, 200, 400};
+constexpr DrivenCell kPolyhedra{"Polyhedra", test::polyhedra, &test::kBruteForce, 1.0, 400, 60};
 
-class Adversaries : public testing::TestWithParam<std::tuple<Cell, Style, std::uint32_t>> {};
+class Adversaries : public testing::TestWithParam<std::tuple<DrivenCell, Style, std::uint32_t>> {};
 
 std::string name_of(const testing::TestParamInfo<Adversaries::ParamType>& info) {
   return (std::ostringstream() << std::get<1>(info.param) << "WithBudget"

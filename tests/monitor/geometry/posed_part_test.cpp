@@ -30,7 +30,7 @@ TEST(PosedPart, NoPointIsFartherFromItsExactPlaceThanTheErrorSays) {
       const test::LongVec exact = test::exactly(pose, test::exactly(part.object_from_part, point));
       const long double off = (test::exactly(part.world_from_part, point) - exact).norm();
       ASSERT_LE(off, part.shift_error + part.turn_error * part.extent);
-      ASSERT_LE((exact - pose.position.cast<long double>()).norm() + 0.1L, part.reach);
+      ASSERT_LE((exact - pose.position.cast<long double>()).norm() + 0.1L, part.bounding_radius);
       const long double from_centre =
           (exact - part.sphere_in_world.centre.cast<long double>()).norm();
       ASSERT_LE(from_centre + 0.1L, part.sphere_in_world.radius);

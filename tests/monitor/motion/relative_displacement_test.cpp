@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/monitor.hpp"
+#include "monitor/objects/tracked_object.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/poses.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -170,7 +170,7 @@ class OtherBuild : public OfflineReplayTest {
 };
 
 TEST_F(OtherBuild, RecordingOfANewerOneIsComparedInWhatThisOneKnows) {
-  record_run(scene, run, {.nearest = 0.05});
+  record_run(cell, run, {.nearest = 0.05});
   rewrite_zones<other_msg_NewerZoneState>(
       idl_of("Newer"), other_msg_NewerZoneState_desc, [](const clearance_msg_ZoneState& zone) {
         other_msg_NewerZoneState newer{};
@@ -187,7 +187,7 @@ TEST_F(OtherBuild, RecordingOfANewerOneIsComparedInWhatThisOneKnows) {
 }
 
 TEST_F(OtherBuild, RecordingOfAnOlderOneIsReplayedAndSaysWhatItLacks) {
-  record_run(scene, run, {.nearest = 0.05});
+  record_run(cell, run, {.nearest = 0.05});
   rewrite_zones<other_msg_OlderZoneState>(idl_of("Older"), other_msg_OlderZoneState_desc,
                                           [](const clearance_msg_ZoneState& zone) {
                                             other_msg_OlderZoneState older{};
@@ -214,7 +214,7 @@ TEST_F(OtherBuild, RecordingOfAnOlderOneIsReplayedAndSaysWhatItLacks) {
 }
 
 TEST_F(OtherBuild, RecordingOfATypeThatCannotBeReadIsRefusedWithItsBuild) {
-  record_run(scene, run);
+  record_run(cell, run);
   rewrite_zones<other_msg_OlderZoneState>(
       "@final struct ZoneState { float clearance; };", other_msg_OlderZoneState_desc,
       [](const clearance_msg_ZoneState&) { return other_msg_OlderZoneState{}; });

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <set>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

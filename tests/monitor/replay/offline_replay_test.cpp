@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "monitor/build_info/build_info.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/recording/csv_recording.hpp"
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"
@@ -112,9 +112,10 @@ TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffe
     content.pairs._buffer[0].scaling += 1e-9;
   });
   write_messages(run, messages);
-  EXPECT_THAT(replay({.compare = Comparison::kBits}).text(),
-              AllOf(HasSubstr("tick 5 "),
-                    HasSubstr("differs in separation of zone 'stop', hand - tool, scaling: ")));
+  EXPECT_THAT(
+      replay({.compare = Comparison::kBits}).text(),
+      AllOf(HasSubstr("tick 5 "),
+            HasSubstr("differs in separation.pairs[0] (zone 'stop', hand - tool).scaling: ")));
 }
 
 // Recorded over DDS, a topic may come after another.
@@ -132,7 +133,8 @@ TEST_F(OfflineReplayTest, FindsASeparationBehindItsReport) {
   });
   write_messages(run, messages);
   EXPECT_THAT(replay({.compare = Comparison::kBits}).text(),
-              AllOf(HasSubstr("tick 7 "), HasSubstr("separation of zone 'stop', remaining: ")));
+              AllOf(HasSubstr("tick 7 "),
+                    HasSubstr("separation.zones[0] (zone 'stop', hand - tool).remaining: ")));
 }
 
 TEST_F(OfflineReplayTest, EndsWhereItIsToldToStopAndSaysSo) {

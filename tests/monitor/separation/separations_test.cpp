@@ -65,6 +65,27 @@ struct Meeting {
   std::int64_t now = test::kStart;
 };
 
+TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
+  Meeting cell;
+  ASSERT_LT(cell.tick(0.4, 0.0, 1.0).scaling, 1.0);
+  ASSERT_TRUE(cell.monitor->set_absent(0, true));
+  const PairSeparation& pair = cell.tick(0.4, 0.0, 1.0);
+  EXPECT_EQ(pair.validity, SeparationValidity::kAbsent);
+  EXPECT_EQ(pair.scaling, 1.0);
+  EXPECT_EQ(pair.speed_limit, kInfinity);
+  EXPECT_EQ(pair.remaining, -kInfinity);
+  EXPECT_TRUE(std::isnan(pair.protective_distance));
+  const ZoneSeparation& zone = cell.report->separated_zones[0];
+  EXPECT_EQ(zone.validity, SeparationValidity::kAbsent);
+  EXPECT_EQ(zone.scaling, 1.0);
+  EXPECT_EQ(zone.remaining, kInfinity);
+
+  cell.monitor->set_absent(0, false);
+  EXPECT_EQ(cell.wait(test::kTick).validity, SeparationValidity::kUnknown) << "until the next pose";
+  EXPECT_EQ(cell.report->separated_zones[0].scaling, 0.0);
+  EXPECT_EQ(cell.tick(0.4, 0.0, 1.0).validity, SeparationValidity::kMeasured);
+}
+
 TEST(Separation, OfARobotThatApproachesHasTheTermsOfTheStandard) {
   Meeting meeting;
   const PairSeparation& pair = meeting.tick(2.0, 0.0, 0.8);

@@ -35,7 +35,7 @@ class TwoOnTheirWay {
         const std::int64_t now = kStart + (&pose == &motion.from[i] ? 0 : kTick);
         EXPECT_FALSE(take(scene_.objects[i], test::sample(i, pose, now), now, {now, 0}, state));
         advance(scene_.objects[i], now, state);
-        displace(parts_[i].reach, state);
+        displace(parts_[i].bounding_radius, state);
       }
       place(state, parts_[i]);
     }

@@ -1,5 +1,4 @@
 #include <dds/dds.h>
-#include <dds/ddsi/ddsi_serdata.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/convert.hpp"
+#include "monitor/wire/cyclone_private.hpp"
 #include "tests/monitor/wire/wire_samples.hpp"
 
 namespace clearance::test {

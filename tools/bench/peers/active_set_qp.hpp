@@ -37,7 +37,7 @@ class ActiveSetQp {
   ActiveSetQp(const QpRows& a, const QpRows& b)
       : a_(a), b_(b), slack_(a.offsets.size() + b.offsets.size()), speed_(slack_.size()) {}
 
-  // From points of the bodies, each in its own frame, with nothing active.
+  // Starts from points of the bodies, each in its local frame, with no active constraint.
   void start(const Vec3& on_a, const Vec3& on_b) {
     active_.clear();
     free_.resize(0);
@@ -75,7 +75,8 @@ class ActiveSetQp {
 
  private:
   static constexpr int kIterations = 5000;
-  // So many steps of no length may be cycling: from then on Bland's rule, the smallest index.
+  // This many steps of length zero may be cycling. Later steps follow Bland's rule, the smallest
+  // index.
   static constexpr int kIdle = 20;
   static constexpr double kContact = 1e-13;  // m
   static constexpr double kRounding = 1e-14;

@@ -8,10 +8,9 @@
 #include <array>
 #include <cmath>
 
-#include "tools/bench/intervals.hpp"
-#include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -127,11 +126,6 @@ class Bullet {
 
 }  // namespace
 
-void register_bullet() {
-  register_rows<Bullet>("peer/bullet/");
-  register_intervals<Bullet>("peer/bullet/");
-  register_kind_rows<Bullet>("peer/bullet/");
-  register_crossed_rows<Bullet>("bullet");
-}
+void register_bullet(RowSet set) { register_peer<Bullet>(set, "bullet"); }
 
 }  // namespace clearance::bench

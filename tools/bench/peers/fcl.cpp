@@ -3,10 +3,9 @@
 
 #include <variant>
 
-#include "tools/bench/intervals.hpp"
-#include "tools/bench/measure.hpp"
 #include "tools/bench/peers/fcl_bodies.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -75,18 +74,11 @@ class WithOwnGjk : public Pair {
 
 }  // namespace
 
-void register_fcl() {
-  register_rows<WithLibccd<6>>("peer/fcl/");
-  register_rows<WithLibccd<12>>("peer/fcl-tight/");
-  register_rows<WithOwnGjk>("peer/fcl-gjk/");
-  register_intervals<WithOwnGjk>("peer/fcl-gjk/");
+void register_fcl(RowSet set) {
   const std::initializer_list<std::string_view> lacking = {"truncated_cone", "rounded_box"};
-  register_kind_rows<WithLibccd<6>>("peer/fcl/", lacking);
-  register_kind_rows<WithLibccd<12>>("peer/fcl-tight/", lacking);
-  register_kind_rows<WithOwnGjk>("peer/fcl-gjk/", lacking);
-  register_crossed_rows<WithLibccd<6>>("fcl");
-  register_crossed_rows<WithLibccd<12>>("fcl-tight");
-  register_crossed_rows<WithOwnGjk>("fcl-gjk");
+  register_peer<WithLibccd<6>>(set, "fcl", lacking);
+  register_peer<WithLibccd<12>>(set, "fcl-tight", lacking);
+  register_peer<WithOwnGjk>(set, "fcl-gjk", lacking);
 }
 
 }  // namespace clearance::bench

@@ -6,7 +6,7 @@
 
 namespace clearance::bench {
 
-// Faces as FCL wants them: the number of corners, then the corners counter-clockwise.
+// Faces in FCL's format: the number of vertices, then the vertices counter-clockwise.
 std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body) {
   const Welded mesh = welded(body);
   const auto points =

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "tools/bench/measure.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -65,8 +65,8 @@ std::size_t climb(const Mesh& mesh, std::size_t from, const Vec3& towards) {
   return from;
 }
 
-// As libccd's own examples write them: of an ellipsoid its scaled direction, of a cylinder or a
-// cone the higher one of its discs.
+// Support functions as libccd's own examples write them: an ellipsoid scales the direction, a
+// cylinder or a cone chooses the higher one of its discs.
 Vec3 curved_support(const CurvedShape& shape, const Vec3& d) {
   if (shape.kind == CurvedShape::Kind::kEllipsoid) {
     const Vec3 scaled = shape.semi_axes.cwiseProduct(d);
@@ -127,9 +127,9 @@ class Libccd {
 
 }  // namespace
 
-void register_libccd() {
-  register_rows<Libccd>("peer/libccd/");
-  register_kind_rows<Libccd>("peer/libccd/");
+// It has no distance that the thesis's tables could compare.
+void register_libccd(RowSet set) {
+  if (set == RowSet::kBench) register_peer<Libccd>(set, "libccd");
 }
 
 }  // namespace clearance::bench

@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "monitor/app/print.hpp"
-#include "tools/bench/adjacency.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -14,28 +13,23 @@ void left_out [[maybe_unused]] (const char* who, const char* package) {
 
 }  // namespace
 
-void register_peers() {
+void register_peers(RowSet set) {
 #ifdef CLEARANCE_BENCH_FCL
-  register_fcl();
+  register_fcl(set);
 #else
   left_out("fcl", "libfcl-dev");
 #endif
 #ifdef CLEARANCE_BENCH_BULLET
-  register_bullet();
+  register_bullet(set);
 #else
   left_out("bullet", "libbullet-dev");
 #endif
 #ifdef CLEARANCE_BENCH_LIBCCD
-  register_libccd();
+  register_libccd(set);
 #else
   left_out("libccd", "libccd-dev");
 #endif
-#ifdef CLEARANCE_BENCH_QHULL
-  register_qhull();
-#else
-  left_out("qhull", "libqhull-dev");
-#endif
-  register_qp();
+  register_qp(set);
 }
 
 }  // namespace clearance::bench

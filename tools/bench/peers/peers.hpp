@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/bench/crowd.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 
@@ -14,20 +15,20 @@ namespace clearance::bench {
 // 33 vertices; no warm start, so tracked is as cold) at its default tolerance, 1e-6. 'fcl-tight':
 // the same at 1e-12, which costs hardly any time here. 'fcl-gjk': its own GJK (cached guess while
 // tracked; supports by search of all vertices) at 1e-12, which costs none.
-void register_fcl();
+void register_fcl(RowSet set);
 // Bullet 3 with doubles: btGjkEpaSolver2 on hulls, starting from the last separation while tracked.
-void register_bullet();
+void register_bullet(RowSet set);
 // libccd 2: only answers whether the bodies touch, so only its failures can be judged, as wrong
 // answers. Its supports are ours: they climb along edges from the last vertex.
-void register_libccd();
+void register_libccd(RowSet set);
 // A general primal active-set QP; see qp.cpp.
-void register_qp();
+void register_qp(RowSet set);
 
 // The minimum over all pairs of a crowd by FCL's DynamicAABBTreeCollisionManager; see
 // fcl_manager.cpp.
 void register_fcl_manager(const std::string& name, int ticks, const std::function<Crowd()>& make);
 
 // All of them; says on stderr which are left out because they are not installed.
-void register_peers();
+void register_peers(RowSet set);
 
 }  // namespace clearance::bench

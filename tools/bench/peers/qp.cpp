@@ -1,8 +1,7 @@
 // The rows of active_set_qp.hpp, warm-started while tracked and from the bodies' middles else.
-#include "tools/bench/intervals.hpp"
-#include "tools/bench/measure.hpp"
 #include "tools/bench/peers/active_set_qp.hpp"
 #include "tools/bench/peers/peers.hpp"
+#include "tools/bench/solver_rows.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -42,9 +41,14 @@ class Qp {
 
 }  // namespace
 
-void register_qp() {
-  register_rows<Qp>("peer/qp/");
-  register_intervals<Qp>("peer/qp/");
+// A quadratic programme has no curved constraints.
+void register_qp(RowSet set) {
+  if (set == RowSet::kBench) {
+    register_rows<Qp>("peer/qp/");
+  } else {
+    register_facet_balls<Qp>("peer/qp/");
+    register_intervals<Qp>("peer/qp/");
+  }
 }
 
 }  // namespace clearance::bench

@@ -1,4 +1,4 @@
-// What a link says: time of a recording, chosen pairs, filter, sorting, place of the camera, theme.
+// The content of a link: time of a recording, chosen pairs, filter, sorting, place of the camera, theme.
 
 const text = new URLSearchParams(location.search);
 
@@ -12,7 +12,7 @@ export const asked = {
   shells: text.get("zones") !== "off",
 };
 
-// The address that shows the same again; objects of a pair are joined by "~".
+// The address that shows the same view again; the objects of a pair are joined by "~".
 export function addressOf({ time, pairs, filter, sort, camera, theme, shells }) {
   const all = new URLSearchParams();
   if (time !== undefined) all.set("t", time.toFixed(6));

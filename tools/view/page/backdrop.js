@@ -1,10 +1,10 @@
-// What stands still, drawn once for a place of the camera and then only copied: of a thousand objects most do, and a frame
-// costs what moves.
+// Draws everything that stands still once for a place of the camera, and then only copies it. Most of a thousand
+// objects stand still, so a frame costs only its moving parts.
 import * as THREE from "three";
 
-const SAMPLES = 4; // a pixel
+const SAMPLES = 4; // per pixel
 
-// A picture of what is added to `content`, with its depths, and the sheet that lays it over the whole view.
+// A picture of `content`, with depths, and the sheet that lays it over the whole view.
 class Layer {
   constructor(content, isVeil) {
     this.world = new THREE.Scene().add(content);
@@ -22,10 +22,10 @@ class Layer {
     });
     this.sheet = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), material);
     this.sheet.frustumCulled = false;
-    this.sheet.renderOrder = isVeil ? 4 : -100; // a veil lies over what moves
+    this.sheet.renderOrder = isVeil ? 4 : -100; // a veil lies over moving parts
   }
 
-  // Colours are as they are to be seen: nothing converts them on their way through the target.
+  // Colours are final: the target converts nothing.
   draw(renderer, camera, colour, opacity) {
     const { x, y } = renderer.getDrawingBufferSize(new THREE.Vector2());
     this.target.setSize(x, y);
@@ -37,7 +37,7 @@ class Layer {
 }
 
 export class Backdrop extends THREE.Group {
-  // `still`: what moves stands before or behind it; `veil`: what it is seen through.
+  // `still` stands before or behind moving parts; `veil` is transparent in front of them.
   constructor(still, veil) {
     super();
     this.still = new Layer(still, false);
@@ -46,7 +46,7 @@ export class Backdrop extends THREE.Group {
     this.veiling = veil;
   }
 
-  // Draws again where `key`, all that it depends on, is another than before. `background()`: CSS.
+  // Draws again when `key`, which holds all that the picture depends on, has changed. `background()`: CSS.
   update(renderer, camera, key, background) {
     if (key === this.key) return;
     this.key = key;

@@ -1,20 +1,20 @@
-// The bodies of the cell, a few draw calls however many they are: those that move, and apart from them, in groups of their
-// own, those that stand still (`still`) and what of these is seen through (`veil`).
+// The bodies of the cell in a few draw calls: moving parts, and in groups of their own the parts that stand still
+// (`still`) and their transparent fragments (`veil`).
 import * as THREE from "three";
 import { css } from "./format.js";
 import { gridOn } from "./grid.js";
 import { edgesOf, everywhere, Placements, trianglesOf } from "./placements.js";
 import { CUT, edgeMaterial, solidMaterial } from "./solid_material.js";
 
-const MOST_FOCUS = 0.8; // of the cell's radius
-// Hues of groups that move, kept apart from those that say how near, and what is not known: red, amber, green, violet.
+const MOST_FOCUS = 0.8; // share of the cell's radius
+// Hues of moving groups, distinct from the hues of levels and of unknown poses: red, amber, green, violet.
 const MOVING = ["#4f8fe8", "#a88b6a", "#3fa7c4", "#c77fc9", "#7f8f4f", "#6c86a3"];
 
 export const matrixOf = ([x, y, z, qx, qy, qz, qw]) =>
   new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(qx, qy, qz, qw), new THREE.Vector3(1, 1, 1));
 
-const ABOVE = new THREE.Vector3(-0.25, 0.12, 0.8); // where the light comes from, beside where the viewer is
-const world = new THREE.Matrix4(), box = new THREE.Box3(); // used again and again
+const ABOVE = new THREE.Vector3(-0.25, 0.12, 0.8); // direction of the light, relative to the viewer
+const world = new THREE.Matrix4(), box = new THREE.Box3(); // reused in every frame
 
 export class Bodies extends THREE.Group {
   constructor(scene) {
@@ -22,9 +22,9 @@ export class Bodies extends THREE.Group {
     this.cell = scene;
     this.still = new THREE.Group();
     this.veil = new THREE.Group();
-    this.stillChanges = 0; // how often what stands still has been made to look different
+    this.stillChanges = 0; // counts changes in the look of what stands still
     this.poses = scene.objects.map(({ pose }) => (pose ? matrixOf(pose) : undefined));
-    // What moves first: a part below `moving` has that number in the first of the placements, the others in the second.
+    // Moving parts come first: a part below `moving` has that number in the first placements, the others in the second.
     const drawn = scene.parts.filter(({ mesh }) => mesh !== undefined);
     const fixed = ({ object }) => scene.objects[object].fixed;
     const kinds = [drawn.filter((part) => !fixed(part)), drawn.filter(fixed)];
@@ -62,10 +62,10 @@ export class Bodies extends THREE.Group {
       shape.computeBoundingSphere();
       return shape;
     });
-    // The middle one of a box's lengths: thin bars are thin, plates are not.
+    // The median of a box's lengths: thin bars are thin, plates are not.
     this.thickness = this.parts.map(({ mesh }) => this.shapes[mesh].boundingBox.getSize(new THREE.Vector3()).toArray().sort((a, b) => a - b)[1]);
   }
-  // Of a part: who has its place, and its number there.
+  // The placements of a part, and its number there.
   placedBy(part) {
     return part < this.moving ? [this.placements[0], part] : [this.placements[1], part - this.moving];
   }
@@ -74,7 +74,7 @@ export class Bodies extends THREE.Group {
     return placements.matrices[i];
   }
 
-  // [object's name, pose] of each that is known; true when one was seen for the first time.
+  // Takes [object's name, pose] of each known pose; returns true when an object became known.
   move(transforms) {
     let isNew = false;
     for (const [name, pose] of transforms) {
@@ -96,7 +96,7 @@ export class Bodies extends THREE.Group {
     for (const grid of this.grids) if (grid.userData.object === object && pose) grid.follow(pose);
   }
 
-  // `css(name)`: a colour of the theme.
+  // `css(name)` is a colour of the theme.
   colourOf(object, css) {
     if (this.late.has(object)) return css("--lost");
     if (this.chosen.has(object)) return css("--accent");
@@ -106,7 +106,7 @@ export class Bodies extends THREE.Group {
     return MOVING[this.groups.indexOf(groups[0]) % MOVING.length];
   }
 
-  // After the theme, the selection or who is late has changed.
+  // Called after a change of the theme, the selection or the late objects.
   recolour() {
     ++this.stillChanges;
     const colour = new THREE.Color(), byName = new Map();
@@ -131,7 +131,7 @@ export class Bodies extends THREE.Group {
     if (!same) this.recolour();
   }
 
-  // Around everything whose pose is known, or around some of it.
+  // A sphere around everything whose pose is known, or around some of it.
   bounds(of = () => true) {
     const all = new THREE.Box3();
     this.parts.forEach(({ object, unbounded }, part) => {
@@ -140,7 +140,7 @@ export class Bodies extends THREE.Group {
     });
     return all;
   }
-  // What moves is where the view is cut away to; where that is most of the cell, nothing is.
+  // The view is cut open towards moving parts, unless they fill most of the cell.
   refocus() {
     const moving = this.bounds(({ fixed }) => !fixed);
     if (moving.isEmpty()) return;
@@ -153,12 +153,12 @@ export class Bodies extends THREE.Group {
     ++this.stillChanges;
   }
 
-  // Light from behind the viewer.
+  // The light comes from behind the viewer.
   lit(camera, target) {
     this.lights.sun.value.copy(camera.position).sub(target).normalize().add(ABOVE).normalize();
   }
 
-  // Roughly: what is so near is seen through.
+  // An estimate: nearer fragments are transparent.
   isCutAway(distance, eye) {
     const { x, y, z, w } = this.lights.focus.value;
     return w > 0 && distance < eye.distanceTo(new THREE.Vector3(x, y, z)) - 0.55 * w;

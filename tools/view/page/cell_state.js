@@ -1,11 +1,11 @@
-// What is known of the cell: the latest report, zones, health; and what must not be overlooked.
+// The known state of the cell: the latest report, zones, health, and the alarms.
+import { isKnown } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
-import { isKnown } from "./pair_status.js";
 
 const CAUSE = ["", "near", "late poses of", "no pose of", "a discontinuity of", "contradicting poses of"];
 const SILENT_S = 1.0;
-const TOLD_FOR_S = 5.0; // an overrun
-const HEALTH_AGAIN_S = 2.5; // later ones do not follow each other: a recording was moved
+const TOLD_FOR_S = 5.0; // display time of an overrun
+const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
 
 export class CellState {
   constructor(scene, timeline) {
@@ -31,7 +31,7 @@ export class CellState {
     this.history.take(report, this.minimum(), timeNs);
   }
 
-  // Which of a pair's objects is the cause: the one whose pose is older, or was never seen.
+  // Notes which object of a pair is the cause: the one whose pose is older, or is unknown.
   noteLate({ pair, age_a_ns, age_b_ns, status }) {
     const { a, b } = this.pairs[pair];
     const older = (x, y) => x < 0 || (y >= 0 && x > y);
@@ -50,13 +50,13 @@ export class CellState {
     this.healthNs = timeNs;
   }
 
-  // The least pair; undefined while it is not known: a stale minimum is none.
+  // The least pair; undefined while it is unknown or stale.
   minimum() {
     const { report } = this;
     return report && report.minimum_known && isKnown(report.minimum) ? report.minimum : undefined;
   }
 
-  // "inside", "leaving", "outside" of its zones, "free" of any, or "lost".
+  // "inside", "leaving" or "outside" its zones, "free" of any, or "lost".
   levelOf(pair) {
     if (!isKnown(pair)) return "lost";
     const { zones, margins } = this.pairs[pair.pair];
@@ -78,8 +78,8 @@ export class CellState {
     });
   }
 
-  // What must not be overlooked: [{level: "lost" | "alarm" | "near", text}], the worst first; frozen: what is shown is
-  // not what is.
+  // The alarms: [{level: "lost" | "alarm" | "near", text}], the worst first. `frozen`: the view is not the present
+  // state.
   alarms() {
     const found = [];
     if (!this.connected) found.push({ level: "alarm", frozen: true, text: "Connection to clearance-view lost" });

@@ -1,11 +1,11 @@
-// A client of Foxglove's WebSocket protocol, version 1, that connects again when it is cut off.
-import { decoder, transforms } from "./cdr.js";
+// A client of Foxglove's WebSocket protocol, version 1, which reconnects when the connection is lost.
+import { decoder, transforms } from "./messages.js";
 
 const AGAIN_MS = 1000;
 
 export class Connection {
-  // `topics`: those wanted. Called back: message(topic, value, timeNs), time(ns), status(id, level,
-  // text), parameters({name: value}), open(), closed().
+  // `topics` are subscribed to. Callbacks: message(topic, value, timeNs), time(ns), status(id, level, text),
+  // parameters({name: value}), open(), closed().
   constructor(url, topics, on) {
     this.url = url;
     this.topics = topics;
@@ -73,7 +73,7 @@ export class Connection {
     this.on.message(subscription.topic, subscription.decode(bytes), ns);
   }
 
-  // Poses of a large cell are many: they are decoded when a frame needs them, the newest only.
+  // A large cell has many poses: only the newest are decoded, when a frame needs them.
   handWaiting() {
     if (this.waiting) this.hand(this.waiting);
     this.waiting = undefined;

@@ -1,4 +1,9 @@
-// Figures as people read them.
+// Figures for people, and the knowledge of a pair's distance.
+
+// PairStatus of monitor/report.hpp.
+export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown", "absent"];
+const STALE = STATUS.indexOf("stale");
+export const isKnown = (pair) => pair.status < STALE;
 
 export const mm = (metres, digits = 1) => {
   if (Number.isFinite(metres)) return (1e3 * metres).toFixed(digits).replace("-", "−");
@@ -16,9 +21,15 @@ export const micro = (us) => (us < 1000 ? `${us.toFixed(us < 100 ? 1 : 0)} µs` 
 
 export const seconds = (s, digits = 3) => `${s.toFixed(digits)} s`;
 
-// Changes text only where it is another: the browser lays out less.
+// Sets the text only when it has changed, which saves the browser work.
 export function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
+}
+
+// 1, 2 or 5 times a power of ten, not below the value.
+export function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(value, 1e-12)));
+  return [1, 2, 5, 10].map((each) => each * power).find((each) => each >= value * 0.999);
 }
 
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -1,4 +1,4 @@
-// A half-space as a grid on its plane that fades with distance; the side of the body is below it.
+// A half-space as a grid on its plane, which fades with distance; the body is below it.
 import * as THREE from "three";
 
 const SIZE = 60; // m

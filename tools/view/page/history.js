@@ -1,18 +1,18 @@
-// What the plots show: curves over the last 30 s. Live they are gathered from the reports; of a recording the server
-// knows them for any moment. A curve is [[s before now, value], ...] of "distance", "lower" (m), "tick" (us), or of a
+// The curves of the plots over the last 30 s. Live ones are gathered from the reports; the server knows those of a
+// recording for any moment. A curve is [[s before now, value], ...] of "distance", "lower" (m), "tick" (us), or of a
 // pair by its id (m).
-import { isKnown } from "./pair_status.js";
+import { isKnown } from "./format.js";
 
 export const HISTORY_S = 30;
-const TRIMMED_AT = 200; // points that are too old
-const FETCHED_AGAIN_S = 0.1; // of the recording's time
+const TRIMMED_AT = 200; // points that are too old when they are removed
+const FETCHED_AGAIN_S = 0.1; // time of the recording
 
 export class LiveHistory {
   constructor() {
     this.points = [];
   }
 
-  // `minimum`: undefined where it is not known.
+  // `minimum` is undefined while it is unknown.
   take(report, minimum, ns) {
     this.points.push({ s: ns * 1e-9, distance: minimum?.distance, lower: minimum?.lower, tick: tickOf(report), pairs: report.pairs });
     const first = this.points.findIndex(({ s }) => s > ns * 1e-9 - HISTORY_S);
@@ -27,7 +27,7 @@ export class LiveHistory {
     return this.points.map((point) => [point.s - now, value(point)]);
   }
 
-  // The published pairs have the same places in every report.
+  // The published pairs have the same order in every report.
   pairAt(id) {
     const place = this.points.at(-1)?.pairs.findIndex(({ pair }) => pair === id);
     return ({ pairs }) => (pairs[place] && isKnown(pairs[place]) ? pairs[place].distance : undefined);
@@ -45,7 +45,7 @@ export class RecordedHistory {
     this.now = (ns - this.begin) * 1e-9;
   }
 
-  // Asks for what is missing, one request at a time.
+  // Requests missing curves, one request at a time.
   async wish(chosen) {
     const pairs = [...chosen].join();
     const isThere = Math.abs(this.now - this.fetched.end) < FETCHED_AGAIN_S && pairs === this.fetched.chosen;
@@ -68,7 +68,7 @@ export class RecordedHistory {
   }
 }
 
-// From the time that a tick was told to its report, us; undefined where nobody has measured it.
+// The time from the begin of a tick to its report, us; undefined when it was not measured.
 export function tickOf({ publish_ns, clock_offset_ns, now_ns }) {
   return publish_ns ? (publish_ns - clock_offset_ns - now_ns) * 1e-3 : undefined;
 }

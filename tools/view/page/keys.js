@@ -1,15 +1,15 @@
-// What keys do; the list that "?" shows is this one.
+// The keys and their actions; "?" shows this list.
 
 const KEYS = [
   ["Space", "play or pause", (_, track) => track?.play()],
   ["ArrowLeft", "one report back; with Shift 1 s", (_, track, { shiftKey }) => (shiftKey ? track?.go(track.time - 1) : track?.step(-1))],
-  ["ArrowRight", "one report on; with Shift 1 s", (_, track, { shiftKey }) => (shiftKey ? track?.go(track.time + 1) : track?.step(1))],
+  ["ArrowRight", "one report forward; with Shift 1 s", (_, track, { shiftKey }) => (shiftKey ? track?.go(track.time + 1) : track?.step(1))],
   ["[", "slower", (_, track) => track?.faster(-1)],
   ["]", "faster", (_, track) => track?.faster(1)],
   ["w", "to the least distance", (_, track) => track?.worst()],
   ["m", "to the next marked moment", (_, track) => track?.nextMoment()],
   ["ArrowDown", "next pair of the table", (actions) => actions.row(1)],
-  ["ArrowUp", "pair before", (actions) => actions.row(-1)],
+  ["ArrowUp", "previous pair of the table", (actions) => actions.row(-1)],
   ["/", "filter the pairs", (actions) => actions.filter()],
   ["Escape", "choose nothing", (actions) => actions.clear()],
   ["f", "show the whole cell", (actions) => actions.fit()],

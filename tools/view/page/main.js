@@ -58,7 +58,7 @@ drawLegend();
 
 // ---- Selection
 
-// A pair, alone or, `more`, with those already chosen; chosen once more, it is not any longer.
+// Chooses a pair, alone or, with `more`, in addition; a chosen pair is released.
 function choose(pair, more) {
   const was = chosen.has(pair);
   if (!more) chosen.clear();
@@ -180,10 +180,10 @@ function frame(nowMs) {
 }
 requestAnimationFrame(frame);
 
-// Since when the recording has stood where somebody asks whether it stands.
+// Since when the recording has stood still for a caller of isAt().
 let stood;
-// Tables and plots are drawn a few times a second; what draws the scene works beside the page, and has ended when a
-// pixel can be read.
+// Tables and plots are drawn a few times a second. The scene is drawn beside the page, and is finished when a pixel can
+// be read.
 function isDrawn() {
   stood ??= { frame: frames, ms: performance.now() };
   if (stood.finished) return frames > stood.finished + 1;
@@ -194,12 +194,12 @@ function isDrawn() {
   return false;
 }
 
-// For tests and pictures: what the page shows.
+// For tests and pictures: the state of the page.
 window.clearance = {
   state, view, connection,
   stands: () => ({ at: secondsIn(), report: drawnReport, time: state.timeNs, ready: view.isReady, frames, connected: state.connected }),
   shownFor: () => (firstMs === undefined ? -1 : (performance.now() - firstMs) / 1000),
-  // Whether the recording stands at this time, s, and has been drawn there, tables and plots as well.
+  // True when the recording stands at this time, s, and has been drawn there with tables and plots.
   isAt: (time) => {
     const there = drawnReport !== undefined && Math.abs(secondsIn() - Math.min(time, timeline.duration)) < 1e-3 &&
       Math.abs(drawnReport - state.timeNs) < 1e9 && view.isReady && !state.history.isAsking;

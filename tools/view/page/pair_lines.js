@@ -1,18 +1,18 @@
-// Closest pairs as lines between their witness points, of the same width on the screen wherever they are, with
-// distance and bounds beside those that matter.
+// Closest pairs as lines between their witness points, with constant width on the screen, and with distance and bounds
+// beside the important ones.
 import * as THREE from "three";
 import { css, mm, put } from "./format.js";
-import { isKnown } from "./pair_status.js";
+import { isKnown } from "./format.js";
 
 const MOST_LINES = 64, MOST_LABELS = 4;
-const AGAIN_MS = 100; // texts; their places follow every frame
-const WIDTH = 0.0016, POINT = 0.0042; // of the distance to the camera
+const AGAIN_MS = 100; // between texts; their places follow every frame
+const WIDTH = 0.0016, POINT = 0.0042; // share of the distance to the camera
 export const COLOUR = { inside: "--alarm", leaving: "--near", outside: "--good", free: "--accent", lost: "--lost" };
 
 const vector = ({ x, y, z }) => new THREE.Vector3(x, y, z);
 
 export class PairLines extends THREE.Group {
-  // `labels`: the element that holds them; `choose(pair)` is called for a label that is clicked.
+  // `labels` is the element that holds them; `choose(pair)` is called for a clicked label.
   constructor(labels, choose) {
     super();
     this.labels = labels;
@@ -29,7 +29,7 @@ export class PairLines extends THREE.Group {
     this.shown = [];
   }
 
-  // The least pair first, then the chosen ones, then those in zones, nearest first.
+  // First the least pair, then the chosen ones, then those in zones by distance.
   static which(state, chosen) {
     const minimum = state.minimum();
     const found = new Map(minimum ? [[minimum.pair, minimum]] : []);
@@ -69,7 +69,7 @@ export class PairLines extends THREE.Group {
     });
   }
 
-  // Labels lie beside the middles of their lines, from the top down, and below each other where they would overlap.
+  // Labels lie beside the middles of their lines, from the top down, and below each other instead of overlapping.
   label(state, chosen, camera, { width, height }) {
     const isDue = performance.now() - (this.filledMs ?? 0) > AGAIN_MS;
     if (isDue) this.filledMs = performance.now();

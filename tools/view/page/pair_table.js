@@ -1,6 +1,6 @@
-// The published pairs as a table: sorted, filtered, a row chosen by a click. Drawn a few times a second, and no more
+// The published pairs as a table: sorted, filtered, chosen by a click. It is drawn a few times a second, with no more
 // rows than a person reads.
-import { isKnown, STATUS } from "./pair_status.js";
+import { isKnown, STATUS } from "./format.js";
 import { COLOUR } from "./pair_lines.js";
 import { contact, milliseconds, mm, put, signed } from "./format.js";
 
@@ -18,7 +18,7 @@ const KEYS = {
 const ageOf = ({ age_a_ns, age_b_ns }) => (Math.min(age_a_ns, age_b_ns) < 0 ? Infinity : Math.max(age_a_ns, age_b_ns));
 
 export class PairTable {
-  // `choose(pair, more)` is called for a row that is clicked; more: with Ctrl or Shift.
+  // `choose(pair, more)` is called for a clicked row; `more`: with Ctrl or Shift.
   constructor(choose, changed) {
     this.body = document.querySelector("#pair-table tbody");
     this.heads = [...document.querySelectorAll("#pair-table th")];
@@ -55,7 +55,7 @@ export class PairTable {
     }
   }
 
-  // For addresses: "lower", or "-lower" for the other way round.
+  // For addresses: "lower", or "-lower" for descending order.
   get sorting() {
     return `${this.down ? "-" : ""}${this.key}`;
   }
@@ -110,7 +110,7 @@ export class PairTable {
       age === Infinity ? "never" : milliseconds(age)].forEach((text, i) => put(row.cells[i], text));
   }
 
-  // The pair of the next row (by) after the one given.
+  // The pair in the row `by` rows after the given one.
   neighbour(pair, by) {
     const order = this.order ?? [];
     const at = order.indexOf(pair);

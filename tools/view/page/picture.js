@@ -1,9 +1,9 @@
-// The scene as it is on the screen, with its labels, as a file; below it stands what it shows.
+// Saves the scene as on the screen, with its labels and a caption below.
 import { css } from "./format.js";
 
-const CAPTION = 34, PADDING = 12; // pixels of the page
+const CAPTION = 34, PADDING = 12; // in pixels of the page
 
-// A label as the page shows it, at its place in the scene.
+// Draws a label as the page shows it, at its place in the scene.
 function drawLabel(context, label, origin) {
   const box = label.getBoundingClientRect(), style = getComputedStyle(label);
   const x = box.left - origin.left, y = box.top - origin.top;
@@ -29,7 +29,7 @@ function drawCaption(context, caption, width, top) {
   context.fillText(caption, PADDING, top + CAPTION / 2, width - 2 * PADDING);
 }
 
-// Of the scene's canvas and the element with its labels.
+// Takes the scene's canvas and the element with its labels.
 export function savePicture(view, labels, caption, name) {
   const box = view.getBoundingClientRect(), sharp = window.devicePixelRatio;
   const canvas = document.createElement("canvas");

@@ -1,9 +1,9 @@
-// Where each of many parts is, and its colour, in one texture that shaders read: a thousand parts are then drawn in one
-// call, and move at the cost of a texture.
+// The places and colours of many parts in one texture that shaders read: a thousand parts then need one draw call and
+// one texture update.
 import * as THREE from "three";
 
 const TEXELS = 5; // four columns of the matrix, the colour with the part's thickness
-const A_ROW = 128; // parts
+const A_ROW = 128; // parts per row
 
 // For vertex shaders: `owner` is the part's number.
 export const PLACED = `uniform highp sampler2D placements; attribute float owner;
@@ -19,7 +19,7 @@ export class Placements {
     this.matrices = Array.from({ length: count }, () => new THREE.Matrix4().makeScale(0, 0, 0));
   }
 
-  // `matrix`: world from part; undefined: it is not drawn.
+  // `matrix`: world from part; undefined: the part is not drawn.
   place(part, matrix) {
     if (matrix) this.matrices[part].copy(matrix);
     else this.matrices[part].makeScale(0, 0, 0);
@@ -50,7 +50,7 @@ function withOwners(parts, count) {
 }
 const attribute = (arrays) => new THREE.BufferAttribute(concatenated(arrays, Float32Array), 3);
 
-// The triangles of all parts, which have {mesh}, each in its part's frame.
+// The triangles of all parts ({mesh}), each in its part's frame.
 export function trianglesOf(parts, meshes) {
   const of = (name) => parts.map(({ mesh }) => meshes[mesh][name]);
   let first = 0;
@@ -71,7 +71,7 @@ export function edgesOf(parts, meshes) {
     .setAttribute("position", attribute(parts.map(({ mesh }) => meshes[mesh].edges)));
 }
 
-// A mesh, or lines, that are always drawn: where they are, only the shader knows.
+// Turns off culling, since only the shader knows the places.
 export function everywhere(object) {
   object.frustumCulled = false;
   return object;

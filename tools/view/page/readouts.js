@@ -1,4 +1,4 @@
-// The header, the alarm below it and the health: what a person reads from across the cell.
+// The header, the alarm below it and the health: readable from across the cell.
 import { css, micro, mm, milliseconds, put, seconds } from "./format.js";
 import { COLOUR } from "./pair_lines.js";
 
@@ -97,8 +97,8 @@ export function drawLegend() {
   }));
 }
 
-// Whether what is shown is not what is. Text is set as often as it can be read: laying it out costs a slow browser more
-// than the scene does.
+// Returns whether the view is frozen. Texts change only as often as a person can read: in a slow browser, layout costs
+// more than the scene.
 const AGAIN_MS = 66;
 let drawnMs = 0, healthDrawnMs = 0, frozen = false;
 export function drawReadouts(state, playing, nowMs) {

@@ -1,4 +1,4 @@
-// The three-dimensional view: camera, lights, bodies, zones, lines; what is clicked.
+// The three-dimensional view: camera, lights, bodies, zones, lines, clicks.
 import * as THREE from "three";
 import { OrbitControls } from "orbit";
 import { Backdrop } from "./backdrop.js";
@@ -9,13 +9,13 @@ import { css } from "./format.js";
 
 const DIRECTIONS = { cell: [1.0, -1.25, 0.75], top: [0, -0.001, 1], front: [0, -1, 0.02], side: [1, 0, 0.02] };
 const CLICK_PIXELS = 5;
-const LARGE = 500; // parts: from there on only what stands still has smooth outlines, which costs nothing a frame
+const LARGE = 500; // parts: in larger cells only the still picture has smooth outlines, which costs no frame time
 const ROUNDING = 1e-7; // m
-// Where frames take longer than this, ms, they are drawn with fewer pixels, down to so many a pixel of the page.
+// When frames take longer than this, ms, they are drawn with fewer pixels, down to this share.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 
 export class SceneView {
-  // Called back: pairChosen(pair), objectChosen(object or undefined).
+  // Callbacks: pairChosen(pair), objectChosen(object or undefined).
   constructor(scene, on) {
     this.on = on;
     this.element = document.getElementById("scene");
@@ -54,7 +54,7 @@ export class SceneView {
     this.shells.recolour();
   }
 
-  // Looks from this side at all of the cell, or first of all at what moves in it.
+  // Looks from this side at the whole cell, or first at its moving parts.
   fit(side = "cell", moving = false) {
     const sphere = this.sphere(moving) ?? this.sphere(false);
     if (!sphere) return;
@@ -64,7 +64,7 @@ export class SceneView {
     this.camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(...DIRECTIONS[side]).normalize(), away);
     this.surround();
   }
-  // Grids reach as far as the cell does.
+  // Grids are as large as the cell.
   surround() {
     const sphere = this.sphere(false);
     if (!sphere) return;
@@ -76,7 +76,7 @@ export class SceneView {
     ++this.bodies.stillChanges;
     this.fitted = true;
   }
-  // The camera has its place, or there is nothing to be seen yet.
+  // True when the camera has its place, or when there is nothing to show yet.
   get isReady() {
     return this.fitted || !this.sphere(false);
   }
@@ -104,7 +104,7 @@ export class SceneView {
     else this.fit("cell", true);
   }
 
-  // Draws where something has changed; a recording that stands still costs nothing.
+  // Draws only after a change: a recording that stands still costs nothing.
   draw(state, chosen, frozen, nowMs) {
     this.controls.update();
     this.camera.updateMatrixWorld();
@@ -124,7 +124,7 @@ export class SceneView {
     this.adapt(nowMs);
   }
 
-  // Controls at rest move the camera by roundings.
+  // Controls at rest still move the camera within rounding.
   noteCamera() {
     const { elements } = this.camera.matrixWorld;
     if (this.seenFrom?.every((value, i) => Math.abs(value - elements[i]) < ROUNDING)) return;
@@ -132,20 +132,20 @@ export class SceneView {
     this.cameraChanges = (this.cameraChanges ?? 0) + 1;
   }
 
-  // What can be read off the canvas until the script gives way.
+  // The canvas can be read until the script returns.
   redraw() {
     this.renderer.render(this.world, this.camera);
   }
 
-  // Draws once more, and waits until that is done.
+  // Draws once more and waits for the end.
   finish() {
     this.drawnKey = undefined;
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  // Fewer pixels on a machine that is too slow for all of them: by the time between frames, since what draws is not
-  // waited for.
+  // Reduces the pixels on a slow machine, judged by the time between frames, since nothing waits for the drawing
+  // itself.
   adapt(nowMs) {
     if (this.drawnMs !== undefined) {
       const took = nowMs - this.drawnMs;

@@ -1,22 +1,23 @@
-// Speed and separation monitoring, a row a zone that asks for it: what is left of the distance between a person and the
-// robot when the protective separation distance S_p is taken off, and how fast the robot may be.
+// Speed and separation monitoring, a row per zone that asks for it: the distance between a person and the robot beyond
+// the protective separation distance S_p, and the robot's allowed speed.
 import { mm, put } from "./format.js";
 
-const VALIDITY = ["not known", "by stated speeds", "measured"];
+const VALIDITY = ["not known", "by stated speeds", "measured", "absent"];
 const AGAIN_MS = 125;
-const FIGURES = 5; // cells of a row behind the zone and the pair
+const FIGURES = 5; // cells of a row after the zone and the pair
 
 const metresPerSecond = (value) => (value === Infinity ? "any" : Number.isFinite(value) ? value.toFixed(2) : "?");
 
-// Of a zone: [texts of the figures, class]; `pairs`: of the message.
+// Returns [texts of the figures, class] of a zone; `pairs` are those of the message.
 function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pairs) {
   const { clearance, protective_distance } = pairs.find((each) => each.zone === zone && each.pair === pair) ?? {};
+  if (validity === 3) return [["-", "-", "-", "1.00", "any"], ""];
   if (validity === 0) return [["?", "?", "?", "0.00", "0.00"], "lost"];
   return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit)], scaling < 1 ? "alarm" : ""];
 }
 
 export class SeparationRows {
-  // `choose(pair)` is called for a row that is clicked. Hidden where no zone of the cell has a separation.
+  // `choose(pair)` is called for a clicked row. Hidden when no zone of the cell has a separation.
   constructor(choose) {
     this.choose = choose;
     this.section = document.getElementById("separation");

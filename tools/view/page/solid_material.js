@@ -1,10 +1,10 @@
-// How bodies look: lit by a sky and by a sun behind the viewer, of one colour a part. What stands between the viewer and
-// what moves is seen through: one material leaves those fragments out, another draws only them, faintly.
+// The look of bodies: lit by a sky and by a sun behind the viewer, one colour per part. Fragments between the viewer
+// and moving parts are transparent: one material omits them, another draws only them, faintly.
 import * as THREE from "three";
 import { PLACED } from "./placements.js";
 
 const EDGE_PER_SIZE = 8; // opacity of an edge, times the part's thickness as a share of half the view's height
-const GHOST = 0.15; // opacity of what is seen through
+const GHOST = 0.15; // opacity of transparent fragments
 const SKY = 1.8, SUN = 2.0; // irradiances
 const GROUND = "#98a1ae";
 
@@ -19,7 +19,7 @@ const vertexShader = `${PLACED}
     gl_Position = projectionMatrix * at;
   }`;
 
-// `focus`: centre and radius of what moves; a radius of 0: nothing is in front.
+// `focus`: centre and radius of the moving parts; with a radius of 0 nothing is in front.
 const CUT_OFF = `uniform vec4 focus; varying vec3 seen;
   bool isCutOff() {
     #if CUT
@@ -48,7 +48,7 @@ export const CUT = { nothing: 0, away: 1, ghost: 2 };
 // `lights`: {focus, sun} as uniforms that all materials share.
 export function solidMaterial(placements, lights, cut) {
   const ghost = cut === CUT.ghost ? { transparent: true, depthWrite: false } : {};
-  // What is cut open shows its inside.
+  // Cut bodies show their inside.
   const side = cut === CUT.away ? THREE.DoubleSide : THREE.FrontSide;
   return new THREE.ShaderMaterial({
     ...ghost, side, vertexShader, fragmentShader, defines: { CUT: cut },
@@ -56,8 +56,8 @@ export function solidMaterial(placements, lights, cut) {
   });
 }
 
-// Lines hide nothing: of what is thinner than a pixel no depth holds. Those of parts that are small on the screen are
-// faint, or a large cell would be nothing but lines.
+// Lines hide nothing: they have no depth where they are thinner than a pixel. The lines of small parts are faint, else
+// a large cell would consist of lines.
 export function edgeMaterial(placements, lights, cut, colour) {
   return new THREE.ShaderMaterial({
     transparent: true, depthWrite: false, defines: { CUT: cut },

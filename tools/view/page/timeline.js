@@ -1,13 +1,25 @@
-// The time line of a recording: least distance over time, zones, marked moments; where it stands is dragged.
-import { css, mm, put, seconds } from "./format.js";
-import { fresh, roundUp } from "./plots.js";
+// The time line of a recording: least distance over time, zones, marked moments; dragging moves the recording.
+import { css, put, roundUp, seconds } from "./format.js";
 
 const element = (id) => document.getElementById(id);
 const MARK = { closest: "--alarm", zone: "--near", overrun: "--lost" };
 const LEFT = 54, TOP = 6;
 
+// A canvas with its pixels on the screen, and its cleared drawing context.
+function fresh(canvas) {
+  const sharp = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
+  if (canvas.width !== Math.round(width * sharp) || canvas.height !== Math.round(height * sharp)) {
+    canvas.width = Math.round(width * sharp);
+    canvas.height = Math.round(height * sharp);
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(sharp, 0, 0, sharp, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
+}
+
 export class Timeline {
-  // `timeline` as /timeline.json; set(name, value) sets a parameter of the server.
+  // `timeline` is /timeline.json; set(name, value) sets a parameter of the server.
   constructor(timeline, zones, set) {
     Object.assign(this, { timeline, zones, set, time: 0, playing: false, rate: 1 });
     element("timeline").hidden = false;
@@ -58,7 +70,7 @@ export class Timeline {
       const box = this.canvas.getBoundingClientRect();
       return ((clientX - box.left - LEFT) / (box.width - LEFT - 8)) * this.timeline.duration;
     };
-    // Near a mark, the mark.
+    // Near a mark, the time of the mark.
     const snapped = (time) => {
       const near = 6 / (this.canvas.clientWidth - LEFT) * this.timeline.duration;
       return this.timeline.moments.find((moment) => Math.abs(moment.time - time) < near)?.time ?? time;

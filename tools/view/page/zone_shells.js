@@ -1,4 +1,4 @@
-// Zones as shells: the bodies of one group of a zone, enlarged by what the zone is entered below. Like glass: seen at
+// Zones as shells: the bodies of one group, enlarged by the zone's entry distance. They look like glass: visible at
 // their rims, faint until the zone is active.
 import * as THREE from "three";
 import { matrixOf } from "./bodies.js";
@@ -25,7 +25,7 @@ const material = (placements) => new THREE.ShaderMaterial({
     }`,
 });
 
-const world = new THREE.Matrix4(); // used again and again
+const world = new THREE.Matrix4(); // reused in every frame
 
 export class ZoneShells extends THREE.Group {
   constructor(scene) {
@@ -44,7 +44,7 @@ export class ZoneShells extends THREE.Group {
     return { solid, placements, parts, local: parts.map(({ pose }) => matrixOf(pose)) };
   }
 
-  // To where the objects are; `states` as CellState.zoneStates().
+  // Moves the shells to their objects; `states` is CellState.zoneStates().
   update(poses, states) {
     if (!this.visible) return;
     this.shells.forEach((shells, zone) => {

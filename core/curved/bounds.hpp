@@ -1,0 +1,89 @@
+// What rounding does to the bounds of a curved pair, and the way from bounds of the bodies without
+// their radii to the answer.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/curved/body_view.hpp"
+#include "core/distance_result.hpp"
+#include "core/numerics/error_constants.hpp"
+
+namespace clearance {
+
+// Counted in ulps of A's bounding radius, of B's and of the translation's length, for the support
+// values, the support points, and what is made of them. tests/core/curved/rounding_count_test.cpp
+// counts them one by one. A support point: 2 for the products with the semi-axes, 2.5 for a norm, 1
+// for a quotient, and as much again when it is pulled inside. On B also 4 to rotate the direction
+// into B's frame and 4 to rotate the point back. Then 2 to place the point and subtract, 3 for the
+// product with n, 2.5 for n's length.
+inline constexpr double kUlpsOfA = 18, kUlpsOfB = 26, kUlpsOfOffset = 12;
+
+// How well B's place is known: errors as in RelativePose, and the translation's length, m.
+struct CurvedPlace {
+  double rotation_error, translation_error, offset;
+};
+// Neither bound is off by more than this, m. `upper`: the upper bound, where it is one. `size`: of
+// the pair.
+[[nodiscard]] inline double rounding_error(const BodyView& a, const BodyView& b,
+                                           const CurvedPlace& at, double upper,
+                                           double size) noexcept {
+  const double farthest = std::max(0.0, std::min(upper, size));
+  const double rotated =
+      std::min(b.bounding_radius, a.bounding_radius + at.offset + kStretched * farthest) *
+      kRoundedUp;
+  const double ulps =
+      kUlpsOfA * a.bounding_radius + kUlpsOfB * b.bounding_radius + kUlpsOfOffset * at.offset;
+  return kUlp * ulps + a.body->position_error + b.body->position_error + at.translation_error +
+         at.rotation_error * rotated + kUnderflow;
+}
+
+struct CurvedConclusion {
+  double lower = -kInfinity, upper = kInfinity;  // signed, as computed
+  double error = 0.0;                            // m: neither bound is off by more
+  double size = 0.0;                             // m: bounding radii and translation length
+  double radius_a = 0.0, radius_b = 0.0;         // m
+  Vec3 normal = Vec3::Zero();                    // unit, from A to B; this and the points: frame A
+  Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
+};
+
+// Radii are added in this direction, from A to B. Bodies without their radii that are apart: along
+// the line of the witness points, whose remaining length is then the distance.
+[[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found) noexcept {
+  const Vec3 gap = found.point_on_b - found.point_on_a;
+  return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;
+}
+
+// Bounds that have converged are within this of each other, by the pair's size.
+inline constexpr double kConvergedCurvedGap = 1e-13;
+
+[[nodiscard]] inline DistanceStatus status_of(double lower, double upper, double size) noexcept {
+  if (!(upper - lower <= kConvergedCurvedGap * size)) return DistanceStatus::kIterationLimit;
+  if (lower > 0.0) return DistanceStatus::kConverged;
+  return upper < 0.0 ? DistanceStatus::kOverlapping : DistanceStatus::kTouching;
+}
+
+[[nodiscard]] inline DistanceResult conclude(const CurvedConclusion& found) noexcept {
+  const double radii = found.radius_a + found.radius_b;
+  // The sum of the radii, the error and their difference from the bound: 2 ulps of each.
+  const auto rounding = [&](double bound) { return 0x1p-51 * (radii + std::abs(bound)); };
+  // Points say best how large a distance is, and directions how large a depth.
+  const double best = found.lower < 0.0 ? found.lower : found.upper;
+  DistanceResult r;
+  r.lower = found.lower - found.error - radii - rounding(found.lower);
+  r.upper = found.upper + found.error - radii + rounding(found.upper);
+  r.distance = std::clamp(best - radii, r.lower, r.upper);
+  r.normal = found.normal;
+  r.point_on_a = found.point_on_a;
+  r.point_on_b = found.point_on_b;
+  if (radii > 0.0) {
+    const Vec3 radial = radial_direction(found);
+    r.point_on_a += found.radius_a * radial;
+    r.point_on_b -= found.radius_b * radial;
+  }
+  r.path = DistancePath::kDirection;
+  r.status = status_of(r.lower, r.upper, found.size + radii);
+  return r;
+}
+
+}  // namespace clearance

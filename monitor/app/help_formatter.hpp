@@ -1,0 +1,25 @@
+// The text of --help: what a command needs stands before what it can take.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace clearance {
+
+// Differs from CLI11's formatter in three ways. The usage line names required arguments before
+// "[OPTIONS]". Alternatives of which one is required (an option group) stand first, not last. In
+// each list, required options come first.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  [[nodiscard]] std::string make_usage(const CLI::App* app, std::string name) const override;
+  [[nodiscard]] std::string make_group(std::string group, bool is_positional,
+                                       std::vector<const CLI::Option*> options) const override;
+  // The alternatives, then positional arguments.
+  [[nodiscard]] std::string make_positionals(const CLI::App* app) const override;
+  // Subcommands that have a name; the others are the alternatives above.
+  [[nodiscard]] std::string make_subcommands(const CLI::App* app,
+                                             CLI::AppFormatMode mode) const override;
+};
+
+}  // namespace clearance

@@ -1,0 +1,201 @@
+// The daemon's log lines: the only place where their wording stands. tests/monitor/messages.golden
+// shows each of them with sample arguments.
+//
+// A new line is one entry here and its name in kAll at the end. Codes do not change: they are what
+// tests, FAULTS.md and other programs look for. An argument "2 joints" comes from counted().
+#pragma once
+
+#include <tuple>
+
+#include "monitor/app/log_line.hpp"
+
+namespace clearance::lines {
+
+using Text = std::string_view;
+using Count = std::uint64_t;
+inline constexpr auto kInfo = spdlog::level::info, kWarn = spdlog::level::warn,
+                      kError = spdlog::level::err;
+
+// ---- Start and end of the daemon
+
+inline constexpr LogLine<Text, Count, double, Text> kStarted{
+    "started", kInfo, "cell '{}' (revision {:016x}) at {} Hz on {}"};
+inline constexpr LogLine<Text> kHowToReach{"how-to-reach", kInfo, "{}"};
+inline constexpr LogLine<Text> kSystemRefuses{"system-refuses", kWarn, "{}"};
+inline constexpr LogLine<Text> kPartitionWithoutRos{
+    "partition-without-ros", kWarn,
+    "ROS 2 uses the default partition only: in partition {}, tf does not arrive and no node of ROS "
+    "2 receives what this daemon writes for it"};
+inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
+inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
+    "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
+inline constexpr LogLine<Text, Text> kDescriptionKept{
+    "description-kept", kInfo, "the robot's description from {} is kept as {}"};
+
+// ---- The daemon's own recording
+
+inline constexpr LogLine<Text, Text> kRecordingRenamed{"recording-renamed", kWarn,
+                                                       "{} exists: recording to {}"};
+inline constexpr LogLine<Text> kRecordingWithoutFiles{
+    "recording-without-files", kWarn,
+    "the recording lacks files that the cell names: {}. A replay needs --cell"};
+inline constexpr LogLine<Text> kRecordingContinues{"recording-continues", kInfo,
+                                                   "the recording continues in {}"};
+inline constexpr LogLine<Text> kRecordingStopped{"recording-stopped", kError,
+                                                 "the recording stopped: {}"};
+inline constexpr LogLine<Text, Text> kDiskTooSlow{
+    "disk-too-slow", kError, "recording: the disk is too slow, {} and {} are missing so far"};
+inline constexpr LogLine<Text> kDiskHangs{
+    "disk-hangs", kError, "recording: the disk takes nothing, {} is left unfinished"};
+
+// ---- Objects
+
+inline constexpr LogLine<Text, std::int64_t> kPosesLate{
+    "poses-late", kWarn, "the last usable pose of {} is {} ms old: its pairs are stale"};
+inline constexpr LogLine<Text> kPosesContradict{
+    "poses-contradict", kWarn,
+    "poses of {} contradict each other or the cell: its pairs are unknown"};
+inline constexpr LogLine<Text> kPosesBack{"poses-back", kInfo, "poses of {} are back"};
+inline constexpr LogLine<Text, Text, Text> kTwoSources{
+    "two-sources", kWarn, "{} is sent by '{}' and by '{}': poses of the latter are not used"};
+inline constexpr LogLine<Count, Text, Text, Count> kRefused{
+    "refused", kWarn, "{} {} refused in the last second: {} ({} since the start)"};
+inline constexpr LogLine<Text> kMoreLeftOut{"more-left-out", kWarn,
+                                            "{} about refusals and late inputs left out"};
+
+// ---- Joints
+
+inline constexpr LogLine<Text, Text, Text> kJointsHeard{"joints-heard", kInfo,
+                                                        "positions of {} of {} are heard: {}"};
+inline constexpr LogLine<Text, Text, Text> kJointsBack{"joints-back", kInfo,
+                                                       "positions of {} of {} are back: {}"};
+inline constexpr LogLine<Text, Text, std::int64_t, Text> kJointsLate{
+    "joints-late", kWarn,
+    "the last usable positions of {} of {} are {} ms old: what hangs on them is stale ({})"};
+inline constexpr LogLine<Text, Text, Text> kJointsContradict{
+    "joints-contradict", kWarn,
+    "positions of {} of {} contradict each other or the limits of the joints: what hangs on them "
+    "is unknown ({})"};
+inline constexpr LogLine<Text, Text, Text, Text> kTwoJointSources{
+    "two-joint-sources", kWarn,
+    "joints of {} are sent by '{}' and by '{}': positions of the latter are not used ({})"};
+inline constexpr LogLine<Text, Text, Text, Text> kJointsSilent{
+    "joints-silent", kWarn, "no usable position of {} of {} has come ({}): {}"};
+
+// ---- What grew in the last second
+
+inline constexpr LogLine<Text, Count> kBatchesLost{
+    "batches-lost", kWarn, "{} lost in the last second, {} since the start"};
+inline constexpr LogLine<Text, Count> kUndecodable{
+    "undecodable", kWarn, "{} in the last second could not be decoded, {} since the start"};
+inline constexpr LogLine<Text, Count> kOtherReports{
+    "other-reports", kWarn, "{} of other daemons in the last second, {} since the start"};
+inline constexpr LogLine<Text, Count> kOverruns{"overruns", kWarn,
+                                                "{} in the last second, {} since the start"};
+inline constexpr LogLine<Text, Count> kReportsDropped{
+    "reports-dropped", kWarn, "{} dropped in the last second, {} since the start"};
+inline constexpr LogLine<double> kClockStepped{
+    "clock-stepped", kWarn,
+    "this machine's clock was stepped by {:+.3f} s. Ages follow a clock that was not stepped. "
+    "Sources on this machine are late for half a second; sources on other machines are not"};
+
+// ---- Zones
+
+inline constexpr LogLine<Text, Count> kZoneLeft{"zone-left", kInfo, "zone '{}' left at cycle {}"};
+inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneNear{
+    "zone-near", kInfo,
+    "zone '{}' entered at cycle {} {}: {}, at least {:.3f} m clear, {:.3f} m since the tick "
+    "before"};
+inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneLate{
+    "zone-late", kInfo,
+    "zone '{}' entered at cycle {} because {}: {}, at least {:.3f} m clear, {:.3f} m since the "
+    "tick before"};
+inline constexpr LogLine<Text, Count, Text, Text> kZoneUnknown{
+    "zone-unknown", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
+inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{
+    "zone-contradicted", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
+inline constexpr LogLine<Text, Count, Text, Text> kZoneDiscontinuous{
+    "zone-discontinuous", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
+
+// ---- DDS and ROS 2
+
+inline constexpr LogLine<Text> kDdsWarning{"dds-warning", kWarn, "dds: {}"};
+inline constexpr LogLine<Text> kDdsError{"dds-error", kError, "dds: {}"};
+inline constexpr LogLine<Text> kDdsLeftOut{"dds-left-out", kWarn, "dds: {} left out"};
+inline constexpr LogLine<Text, Text> kOlderReader{
+    "older-reader", kWarn,
+    "a reader of {} was built with another version of its type: it gets nothing. Build it with the "
+    "IDL of this daemon ({})"};
+inline constexpr LogLine<Text, Count> kIncompatibleReader{
+    "incompatible-reader", kWarn,
+    "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: only "
+    "catalogue, zones and health are latched; idl/README.md has the whole contract"};
+inline constexpr LogLine<Text, Text, Count> kWriteFailed{
+    "write-failed", kError, "writing {} failed: {} ({} failed so far)"};
+inline constexpr LogLine<Text, Count> kRosWriteFailed{
+    "ros-write-failed", kWarn, "writing for ROS 2 failed: {} ({} failed so far)"};
+
+// ---- Other daemons
+
+inline constexpr LogLine<Text, Text> kOtherDaemonFirst{
+    "other-daemon-first", kError,
+    "another daemon, {}, publishes on {} and was here first: this one ends"};
+inline constexpr LogLine<Text, Text> kOtherDaemonLater{
+    "other-daemon-later", kWarn,
+    "another daemon, {}, publishes on {} as well; it started later and has to give way"};
+inline constexpr LogLine<Text, Text> kOtherProgram{
+    "other-program", kWarn,
+    "a program that is no daemon (writer {}) publishes on {} as well: clients see both"};
+inline constexpr LogLine<Text, Count> kOtherWriterLeft{"other-writer-left", kInfo,
+                                                       "another writer of {} has left, {} remain"};
+
+inline constexpr std::tuple kAll{kStarted,
+                                 kHowToReach,
+                                 kSystemRefuses,
+                                 kPartitionWithoutRos,
+                                 kStopped,
+                                 kWaitingForDescription,
+                                 kDescriptionKept,
+                                 kRecordingRenamed,
+                                 kRecordingWithoutFiles,
+                                 kRecordingContinues,
+                                 kRecordingStopped,
+                                 kDiskTooSlow,
+                                 kDiskHangs,
+                                 kPosesLate,
+                                 kPosesContradict,
+                                 kPosesBack,
+                                 kTwoSources,
+                                 kRefused,
+                                 kMoreLeftOut,
+                                 kJointsHeard,
+                                 kJointsBack,
+                                 kJointsLate,
+                                 kJointsContradict,
+                                 kTwoJointSources,
+                                 kJointsSilent,
+                                 kBatchesLost,
+                                 kUndecodable,
+                                 kOtherReports,
+                                 kOverruns,
+                                 kReportsDropped,
+                                 kClockStepped,
+                                 kZoneLeft,
+                                 kZoneNear,
+                                 kZoneLate,
+                                 kZoneUnknown,
+                                 kZoneContradicted,
+                                 kZoneDiscontinuous,
+                                 kDdsWarning,
+                                 kDdsError,
+                                 kDdsLeftOut,
+                                 kOlderReader,
+                                 kIncompatibleReader,
+                                 kWriteFailed,
+                                 kRosWriteFailed,
+                                 kOtherDaemonFirst,
+                                 kOtherDaemonLater,
+                                 kOtherProgram,
+                                 kOtherWriterLeft};
+
+}  // namespace clearance::lines

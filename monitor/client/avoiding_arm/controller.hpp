@@ -1,0 +1,52 @@
+// A controller with a barrier. Its joint velocities move the end point along its path, and
+// distances shrink no faster than their value above a minimum allows.
+//
+//   minimise   |J dq - v|^2 + damping |dq - home|^2
+//   subject to gradient . dq + drift >= -rate (lower - keep)    for each pair that is near
+//              limits of joint velocities and positions
+//
+// The null space of the task gives way first, and the task only where that is not enough.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/client/avoiding_arm/arm_model.hpp"
+#include "monitor/client/client.hpp"
+
+namespace clearance::avoid {
+
+struct ControllerOptions {
+  bool avoids = true;  // false: the task alone
+  double keep_m =
+      0.08;  // the lower bound that pairs keep; the arm's own links from each other 0.01
+  double rate_hz = 4.0;  // how fast the distance above that may shrink
+};
+
+// The wanted position and velocity of the end point.
+struct Target {
+  Vec3 position, velocity;  // m, m/s
+};
+
+class Controller {
+ public:
+  // `home`: positions that the arm prefers, in the order of Scene::variables. Scene
+  // and model must outlive this.
+  Controller(const Scene& scene, const ArmModel& arm, std::vector<double> home,
+             const ControllerOptions& options);
+
+  // Velocities as Scene::variables, rad/s or m/s, for the positions that the arm was placed at.
+  // `gradients`: those of the same positions, all known.
+  [[nodiscard]] std::vector<double> velocities(const std::vector<double>& positions,
+                                               const Target& target,
+                                               const clearance_msg_Gradients& gradients) const;
+
+ private:
+  const Scene& scene_;
+  const ArmModel& arm_;
+  std::vector<double> home_;
+  ControllerOptions options_;
+};
+
+}  // namespace clearance::avoid

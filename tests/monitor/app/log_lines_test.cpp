@@ -1,0 +1,74 @@
+// The wording of every log line of the daemon stands in tests/monitor/messages.golden.
+#include "monitor/app/log_lines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace clearance {
+namespace {
+
+const std::string kGolden = std::string(CLEARANCE_SOURCE) + "/tests/monitor/messages.golden";
+
+std::string content(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+// "A" for the first argument if it is a text, 2 if it is a count, 2.5 if it is a length or a rate.
+template <class Argument>
+Argument sample(std::size_t place) {
+  static constexpr std::string_view kNames = "ABCDEFGH";
+  if constexpr (std::is_same_v<Argument, std::string_view>)
+    return kNames.substr(place, 1);
+  else
+    return static_cast<Argument>(2.5 + static_cast<double>(place));
+}
+
+template <class... Arguments, std::size_t... kPlaces>
+std::string with_samples(const LogLine<Arguments...>& line, std::index_sequence<kPlaces...>) {
+  return fmt::format("{}: {}\n", spdlog::level::to_string_view(line.level),
+                     rendered(line, sample<Arguments>(kPlaces)...));
+}
+template <class... Arguments>
+std::string with_samples(const LogLine<Arguments...>& line) {
+  return with_samples(line, std::index_sequence_for<Arguments...>());
+}
+
+TEST(LogLines, AreWordedAsInTheGoldenFile) {
+  std::string text;
+  std::apply([&](const auto&... line) { ((text += with_samples(line)), ...); }, lines::kAll);
+  if (std::getenv("CLEARANCE_WRITE_GOLDEN") != nullptr) std::ofstream(kGolden) << text;
+  EXPECT_EQ(content(kGolden), text) << "CLEARANCE_WRITE_GOLDEN=1 writes the file anew";
+}
+
+TEST(LogLines, AreAllInTheList) {
+  const std::string header = content(std::string(CLEARANCE_SOURCE) + "/monitor/app/log_lines.hpp");
+  std::size_t entries = 0;
+  for (std::size_t at = 0; (at = header.find("constexpr LogLine<", at)) != std::string::npos;
+       ++at) {
+    ++entries;
+  }
+  EXPECT_EQ(entries, std::tuple_size_v<decltype(lines::kAll)>);
+}
+
+TEST(LogLines, HaveCodesOfTheirOwnInSmallLetters) {
+  std::set<std::string_view> codes;
+  const auto add = [&](std::string_view code) {
+    EXPECT_TRUE(codes.insert(code).second) << code;
+    EXPECT_EQ(code.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), code.npos) << code;
+  };
+  std::apply([&](const auto&... line) { (add(line.code), ...); }, lines::kAll);
+}
+
+TEST(Counted, HasTheRightPlural) {
+  EXPECT_EQ("1 batch", counted(1, "batch", "batches"));
+  EXPECT_EQ("2 batches", counted(2, "batch", "batches"));
+}
+
+}  // namespace
+}  // namespace clearance

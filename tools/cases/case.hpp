@@ -1,0 +1,36 @@
+// Reads a line of a file of cases: two bodies and their poses.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/convex_body.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// A line that cannot be used; the message lets its author correct it.
+struct BadLine : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct DistanceCase {
+  nlohmann::json id;
+  ConvexBody a, b;
+  std::vector<std::pair<Pose, Pose>> poses;  // of a and b; one, or those of a motion
+  bool motion = false;
+};
+
+// Read parts of a line. `where` names the place ("pose_a") for the message. All throw BadLine.
+[[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,
+                                           const std::string& where);
+[[nodiscard]] Pose read_pose(const nlohmann::json& list, const std::string& where);
+[[nodiscard]] ConvexBody read_body(const nlohmann::json& body, const std::string& where);
+[[nodiscard]] std::vector<std::pair<Pose, Pose>> read_poses(const nlohmann::json& line);
+
+[[nodiscard]] DistanceCase read_case(const nlohmann::json& line);
+
+}  // namespace clearance

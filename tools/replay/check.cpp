@@ -1,0 +1,247 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/bags/given_joints.hpp"
+#include "monitor/bags/input_log.hpp"
+#include "monitor/bags/robot_description.hpp"
+#include "monitor/dds/robot_description.hpp"
+#include "monitor/pair_name.hpp"
+#include "monitor/recording/reader.hpp"
+#include "monitor/recording/recorded_cell.hpp"
+#include "monitor/replay/offline_replay.hpp"
+#include "monitor/replay/reference_check.hpp"
+#include "monitor/replay/report_csv.hpp"
+#include "monitor/replay/report_recorder.hpp"
+#include "tools/replay/arguments.hpp"
+#include "tools/replay/run_curves.hpp"
+#include "tools/shared/progress_bar.hpp"
+
+namespace clearance {
+namespace {
+
+void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
+
+// The robot of the command line, or the robot that the bag describes, as a cell.
+std::optional<CellResult> read_robot(const CheckArguments& arguments) {
+  SingleRobotOptions robot = arguments.robot;
+  if (!robot.urdf.empty()) return read_single_robot(robot);
+  const std::optional<std::string> described = robot_description(arguments.recording());
+  if (!described) {
+    say(
+        fmt::format("{} holds no cell and no robot_description; expected --urdf and --srdf of its "
+                    "robot, or --cell with a cell file that names the robot under 'robots:'",
+                    arguments.recording()));
+    return std::nullopt;
+  }
+  robot.urdf = keep_robot_description(*described);
+  return read_single_robot(robot);
+}
+
+// The cell of the command line, or the cell in the recording.
+std::optional<CellResult> find_cell(const CheckArguments& arguments) {
+  if (!arguments.cell.empty()) return read_cell(arguments.cell, told_on_stderr());
+  if (!arguments.robot.urdf.empty() || is_input_log(arguments.recording())) {
+    return read_robot(arguments);
+  }
+  const RecordingOutline found = outline(arguments.recording());
+  if (!found.error.empty()) {
+    say(found.error);
+    return std::nullopt;
+  }
+  std::optional<CellResult> cell = recorded_cell(arguments.recording(), found, told_on_stderr());
+  if (!cell) say("the recording holds no cell: give one with --cell");
+  return cell;
+}
+
+OfflineReplayOptions options_of(const CheckArguments& arguments) {
+  OfflineReplayOptions options;
+  options.continued_in.assign(arguments.span.recordings.begin() + 1,
+                              arguments.span.recordings.end());
+  options.tick_hz = arguments.tick_hz;
+  options.joint_topics = arguments.joint_topics;
+  options.start_s = arguments.span.start_s;
+  options.end_s = arguments.span.end_s;
+  if (arguments.compare) options.compare = Comparison::kBits;
+  if (arguments.compare_bounds) options.compare = Comparison::kBounds;
+  options.reference = arguments.reference;
+  options.tolerance = arguments.tolerance;
+  options.expect_min_distance = arguments.expect_min_distance;
+  options.expect_no_zone = arguments.expect_no_zone;
+  return options;
+}
+
+void print_summary(const Scene& scene, const OfflineReplay& replay, std::optional<double> tolerance,
+                   double elapsed_s) {
+  const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
+  print(stdout, "{} ticks, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
+        replay.ticks, recorded_s, elapsed_s, elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
+  if (replay.closest) {
+    const PairReport& pair = *replay.closest;
+    print(stdout, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", pair_name(scene, pair),
+          pair.distance, pair.lower, pair.upper, replay.closest_tick.text());
+  }
+  if (replay.compared > 0) {
+    print(stdout, "{} reports compared\n", replay.compared);
+  }
+  if (replay.reference) {
+    const ReferenceTotals& totals = *replay.reference;
+    print(stdout,
+          "{} reference distances compared, largest difference {:.2g} m; {} off by more than {:g} "
+          "m, {} outside of the bounds{}\n",
+          totals.compared, totals.largest, totals.off, tolerance.value_or(kReferenceTolerance),
+          totals.outside, tolerance ? " by more than that" : "");
+  }
+}
+
+// The files that -o, --csv, --plot and --report ask for.
+class Outputs {
+ public:
+  Outputs(const CheckArguments& arguments, const Cell& cell) : arguments_(arguments) {
+    if (!arguments.out.empty()) recording_.emplace(arguments.out, cell);
+    if (!arguments.csv.empty()) csv_.emplace(arguments.csv, cell.scene, !arguments.published);
+    if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, cell);
+  }
+  // False, after saying why, when a file cannot be made.
+  [[nodiscard]] bool ok() const { return !csv_ || said(csv_->error()); }
+
+  void add(const ReplayedTick& tick) {
+    begun_ = true;
+    if (recording_) recording_->add(tick);
+    if (csv_) csv_->add(tick);
+    if (curves_) curves_->add(tick);
+  }
+  // False, after saying why, when not all is written.
+  bool close(const OfflineReplay& replay) {
+    const bool drawn = !curves_ || said(curves_->write(replay));
+    const bool recorded = !recording_ || recording_->close() || said(recording_->error());
+    if (recording_ && recorded && !recording_->without_files().empty()) {
+      say(fmt::format("the files that the cell names are not in {}: {}", arguments_.out,
+                      recording_->without_files()));
+    }
+    const bool tabled = !csv_ || csv_->close() || said(csv_->error());
+    return recorded && tabled && drawn;
+  }
+  // A recording is created with its first tick; before that, a file of this name is not ours.
+  void abandon() {
+    const bool recorded = recording_ && begun_, tabled = csv_.has_value();
+    recording_.reset();
+    csv_.reset();
+    if (recorded) remove_unfinished("clearance-replay", arguments_.out);
+    if (tabled) remove_unfinished("clearance-replay", arguments_.csv);
+  }
+
+ private:
+  // Prints the error; true: there is none.
+  static bool said(const std::string& error) {
+    if (!error.empty()) say(error);
+    return error.empty();
+  }
+
+  const CheckArguments& arguments_;
+  std::optional<ReportRecorder> recording_;
+  std::optional<ReportCsv> csv_;
+  std::optional<RunCurves> curves_;
+  bool begun_ = false;
+};
+
+// Closes or removes the outputs of a finished replay, and returns the exit code.
+int finish(const OfflineReplay& replay, Outputs& outputs) {
+  bool written = true;
+  if (replay.stopped) {
+    outputs.abandon();
+  } else {
+    written = outputs.close(replay);
+  }
+  if (!replay.ok() || !written) return kFailed;
+  return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
+}
+
+int replay_in(Cell& cell, const CheckArguments& arguments, StopSignal& stop) {
+  std::map<std::string, double> joints;
+  if (const auto wrong = read_joint_positions(arguments.joints, joints); !wrong.empty()) {
+    say(wrong);
+    return kUsage;
+  }
+  if (!joints.empty() && !is_input_log(arguments.recording())) {
+    say(
+        fmt::format("--joint is for bags and joint logs, and {} is a recording of Clearance; "
+                    "clearance-record --joint puts such a joint into it",
+                    arguments.recording()));
+    return kUsage;
+  }
+  if (arguments.evaluate_all || !arguments.reference.empty()) {
+    cell.scene.evaluate_all = true;
+    cell.scene.budget = std::numeric_limits<std::uint32_t>::max();
+  }
+  Outputs outputs(arguments, cell);
+  if (!outputs.ok()) return kFailed;
+
+  ProgressBar bar(arguments.span.progress);
+  OfflineReplayOptions options = options_of(arguments);
+  options.joints = joints;
+  options.progress = [&bar](double share) { bar.show(share, "replayed"); };
+  options.stop = [&stop] { return stop.wait(0); };
+  const auto started = std::chrono::steady_clock::now();
+  const OfflineReplay replay =
+      replay_offline(cell, arguments.recording(), options,
+                     [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
+  bar.finish();
+  print(stderr, "{}", replay.text());
+  if (!replay.error.empty()) return kFailed;
+  print_summary(cell.scene, replay, arguments.tolerance, elapsed.count());
+  return finish(replay, outputs);
+}
+
+bool are_one_file(const std::filesystem::path& first, const std::filesystem::path& second) {
+  if (first.empty() || second.empty()) return false;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(first)) ==
+         std::filesystem::weakly_canonical(std::filesystem::absolute(second));
+}
+
+}  // namespace
+
+int check_recording(const CheckArguments& arguments, StopSignal& stop) {
+  const std::vector<std::string> written = {arguments.out, arguments.csv, arguments.plot,
+                                            arguments.report};
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!are_one_file(written[k], written[i])) continue;
+      say(fmt::format("two outputs name the same file, {}; expected one for each", written[i]));
+      return kUsage;
+    }
+  }
+  for (const std::string& output : written) {
+    for (const std::string& recording : arguments.span.recordings) {
+      if (!output_is_not_an_input("clearance-replay", output,
+                                  {recording, arguments.cell, arguments.reference})) {
+        return kUsage;
+      }
+    }
+    if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
+  }
+  std::optional<CellResult> read = find_cell(arguments);
+  if (!read) return kFailed;
+  std::optional<Cell> cell = cell_or_errors(std::move(*read));
+  if (!cell) {
+    const bool is_recorded = arguments.cell.empty() && arguments.robot.urdf.empty() &&
+                             !is_input_log(arguments.recording());
+    if (is_recorded)
+      say("this is the cell as the recording keeps it, without its mesh files; give the cell file "
+          "with --cell");
+    return kBadCell;
+  }
+  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
+  return replay_in(*cell, arguments, stop);
+}
+
+}  // namespace clearance

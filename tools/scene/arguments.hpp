@@ -1,0 +1,53 @@
+// The arguments of clearance-scene's subcommands.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "config/write/robot_cell.hpp"
+#include "config/write/warehouse_cell.hpp"
+#include "tools/scene/reduction.hpp"
+#include "tools/scene/sampled_contacts.hpp"
+
+namespace clearance {
+
+struct ImportArguments {
+  RobotCellOptions robot;
+  std::string output;
+  bool force = false;
+};
+
+struct AllowArguments {
+  RobotCellOptions robot;  // the URDF, its packages and perhaps an SRDF
+  SamplingOptions sampling;
+  std::string form = "srdf";
+  std::string output;  // empty: stdout
+  bool force = false;
+};
+
+struct WarehouseArguments {
+  WarehouseOptions warehouse;
+  std::string output;
+  bool force = false;
+};
+
+struct ReportArguments {
+  std::string cell;
+  bool json = false;
+};
+
+struct ReduceArguments {
+  ReductionOptions reduction;
+  std::filesystem::path plot;  // empty: none
+  bool json = false;
+  bool force = false;
+};
+
+// Each carries out one subcommand and returns the exit code.
+[[nodiscard]] int import_robot(ImportArguments arguments);
+[[nodiscard]] int allow_collisions(const AllowArguments& arguments);
+[[nodiscard]] int make_warehouse(const WarehouseArguments& arguments);
+[[nodiscard]] int report_models(const ReportArguments& arguments);
+[[nodiscard]] int reduce_bodies(const ReduceArguments& arguments);
+
+}  // namespace clearance

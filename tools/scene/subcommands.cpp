@@ -1,0 +1,146 @@
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/write/single_robot_cell.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "tools/scene/allowed_collisions.hpp"
+#include "tools/scene/arguments.hpp"
+#include "tools/scene/model_report.hpp"
+#include "tools/shared/progress_bar.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr const char* kProgram = "clearance-scene";
+
+int print_faults(const UrdfFaults& faults) {
+  for (const UrdfFault& fault : faults) print(stderr, "{}\n", fault.text);
+  return kFailed;
+}
+
+int write_text(const std::string& text, const std::filesystem::path& output) {
+  std::ofstream stream(output, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (stream) return kOk;
+  print(stderr, "{}: cannot be written: {}\n", output.string(), std::strerror(errno));
+  return kFailed;
+}
+
+// A cell that was written is read back, so that its mistakes show at once.
+int write_cell(const std::string& yaml, const std::string& output) {
+  if (const int failed = write_text(yaml, output); failed != kOk) return failed;
+  const auto cell = cell_or_errors(read_cell(output, told_on_stderr()));
+  if (!cell) return kBadCell;
+  print(stdout, "{}: {}\n", output, summary(cell->scene));
+  return kOk;
+}
+
+// kOk, or the exit code after the reason has gone to stderr.
+int check_output(const RobotCellOptions& robot, const std::string& output, bool force) {
+  if (!output_is_not_an_input(kProgram, output, {robot.urdf, robot.srdf})) return kUsage;
+  return can_create(kProgram, output, force) ? kOk : kFailed;
+}
+
+std::vector<SampledPair> sample_with_progress(const Scene& scene, SamplingOptions options) {
+  ProgressBar bar(false);
+  options.progress = [&bar](double share) { bar.show(share, "joint positions"); };
+  return sample_contacts(scene, options);
+}
+
+std::filesystem::path page_beside(std::filesystem::path svg) {
+  return svg.replace_extension(".md");
+}
+
+int write_picture(const std::vector<Reduction>& bodies, const ReduceArguments& arguments) {
+  const std::string fault = plot_reductions(bodies, arguments.reduction, arguments.plot);
+  if (!fault.empty()) {
+    print(stderr, "{}: {}\n", arguments.plot.string(), fault);
+    return kFailed;
+  }
+  return write_text(reduction_page(bodies, arguments.reduction, arguments.plot.filename()),
+                    page_beside(arguments.plot));
+}
+
+}  // namespace
+
+int import_robot(ImportArguments arguments) {
+  const int refused = check_output(arguments.robot, arguments.output, arguments.force);
+  if (refused != kOk) return refused;
+  arguments.robot.directory = std::filesystem::absolute(arguments.output).parent_path();
+  const auto result = robot_cell(arguments.robot);
+  if (const auto* faults = std::get_if<UrdfFaults>(&result)) return print_faults(*faults);
+  const RobotCell& cell = std::get<RobotCell>(result);
+  for (const std::string& note : cell.notes) print(stderr, "note: {}\n", note);
+  return write_cell(cell.yaml, arguments.output);
+}
+
+// Given an SRDF, it also prints where the samples and the SRDF agree.
+int allow_collisions(const AllowArguments& arguments) {
+  const RobotCellOptions& robot = arguments.robot;
+  if (!arguments.output.empty()) {
+    const int refused = check_output(robot, arguments.output, arguments.force);
+    if (refused != kOk) return refused;
+  }
+  const auto cell =
+      cell_or_errors(read_single_robot({.urdf = robot.urdf, .packages = robot.packages}));
+  if (!cell) return kBadCell;
+  const Scene& scene = cell->scene;
+  const std::vector<SampledPair> pairs = sample_with_progress(scene, arguments.sampling);
+  const std::uint64_t samples = arguments.sampling.samples;
+  if (!robot.srdf.empty()) {
+    const auto srdf = read_srdf(robot.srdf);
+    if (const auto* faults = std::get_if<UrdfFaults>(&srdf)) return print_faults(*faults);
+    print(stderr, "{}", agreement(scene, pairs, samples, std::get<Srdf>(srdf)));
+  }
+  const std::string text =
+      arguments.form == "srdf" ? as_srdf(scene, pairs, samples) : as_cell(scene, pairs, samples);
+  if (!arguments.output.empty()) return write_text(text, arguments.output);
+  print(stdout, "{}", text);
+  return kOk;
+}
+
+int make_warehouse(const WarehouseArguments& arguments) {
+  if (!can_create(kProgram, arguments.output, arguments.force)) return kFailed;
+  return write_cell(warehouse_cell(arguments.warehouse), arguments.output);
+}
+
+int report_models(const ReportArguments& arguments) {
+  MeshErrors mesh_errors;
+  CellOptions options = told_on_stderr();
+  options.mesh_errors = &mesh_errors;
+  const auto cell = cell_or_errors(read_cell(arguments.cell, options));
+  if (!cell) return kBadCell;
+  print(stdout, "{}",
+        arguments.json ? model_json(cell->scene, mesh_errors)
+                       : model_table(cell->scene, mesh_errors));
+  return kOk;
+}
+
+int reduce_bodies(const ReduceArguments& arguments) {
+  const std::filesystem::path& plot = arguments.plot;
+  if (!plot.empty() && (!can_create(kProgram, plot, arguments.force) ||
+                        !can_create(kProgram, page_beside(plot), arguments.force))) {
+    return kFailed;
+  }
+  const auto made = reduce(arguments.reduction);
+  if (const auto* faults = std::get_if<std::vector<std::string>>(&made)) {
+    for (const std::string& fault : *faults) print(stderr, "{}\n", fault);
+    return kFailed;
+  }
+  const Reductions& all = std::get<Reductions>(made);
+  for (const std::string& note : all.notes) print(stderr, "note: {}\n", note);
+  print(stdout, "{}",
+        arguments.json ? reduction_json(all.bodies, arguments.reduction)
+                       : reduction_table(all.bodies, arguments.reduction));
+  return plot.empty() ? kOk : write_picture(all.bodies, arguments);
+}
+
+}  // namespace clearance

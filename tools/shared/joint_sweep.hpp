@@ -1,0 +1,30 @@
+// The default motion of a cell's robots, within the limits of their joints.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/cell/simulation.hpp"
+#include "config/scene/scene.hpp"
+#include "monitor/joint_batch.hpp"
+
+namespace clearance {
+
+// A sample without a stamp or a source.
+[[nodiscard]] JointSample moving_joint(std::size_t variable, double position, double velocity);
+
+// Every position swings about the middle of its limits, with a frequency of its own, through nine
+// tenths of its range and at most at half its velocity limit. A joint without limits swings through
+// a quarter turn to either side.
+class JointSweep {
+ public:
+  // The scene must outlive this.
+  explicit JointSweep(const Scene& scene);
+  // Positions and velocities of all variables, `t_s` after the start, in their order.
+  void at(double t_s, std::vector<JointSample>& joints) const;
+
+ private:
+  std::vector<Swing> swings_;  // by variable
+};
+
+}  // namespace clearance
