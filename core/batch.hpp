@@ -1,9 +1,9 @@
-// The distances of many pairs at once: the same answers as distance(), bit for bit, for less.
+// The distances of many pairs at once: the same answers as distance(), bit for bit, in less time.
 //
-// Pairs whose last features are still the closest are judged by vector code, 1, 2, 4 or 8 at a
-// time, whichever the machine has (run-time choice through Highway; the results do not depend on
-// it). The others go through distance(), one by one. Made for pairs that are tracked: bodies that
-// move a little between two rounds.
+// Vector code judges the pairs whose last features are still the closest, 1, 2, 4 or 8 at a time.
+// Highway chooses the width at run time, and the results do not depend on it. The other pairs go
+// through distance(), one by one. Made for pairs that are tracked: bodies that move a little
+// between two rounds.
 #pragma once
 
 #include <cstddef>
@@ -30,19 +30,19 @@ class DistanceBatch {
   DistanceBatch(DistanceBatch&&) noexcept;
   DistanceBatch& operator=(DistanceBatch&&) noexcept;
 
-  // One pose a body, as for relative_pose(). The results, one a pair, in the order of the pairs,
-  // are what distance() would have said, each with a tracking state of its own; they stay until the
+  // Takes one pose a body, as relative_pose() does. Returns one result a pair, in the order of the
+  // pairs: that of distance() with a tracking state of the pair's own. The results stay until the
   // next call. No heap, deterministic.
   std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept;
 
-  // Of the last round: the pair's witness point on B as its tracking state has it, in B's own frame
-  // and before the radius.
+  // The pair's witness point on B in the last round, in B's own frame and before the radius, as in
+  // TrackingState.
   [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept;
 
   // All tracking states become cold.
   void forget() noexcept;
 
-  // How many pairs of the last round distance() had to answer.
+  // The number of pairs of the last round that distance() had to answer.
   [[nodiscard]] std::size_t single_queries() const noexcept;
 
   // The vector instructions in use here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", or "SCALAR" for

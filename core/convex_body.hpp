@@ -1,16 +1,16 @@
-// A convex body as the queries see it: facets, edges and vertices of one polyhedron, with what
-// joins them; or a curved shape, which has none of these. Either has an optional radius around it.
+// A convex body as the queries see it. It is a polyhedron with facets, edges, vertices and their
+// adjacency, or a curved shape, which has none of these. Either has an optional radius around it.
 //
 // The polyhedron is an intersection of half-spaces n.x <= d (outward unit normals). It may be
-// unbounded (a floor is one half-space) and it may be lower-dimensional in two ways only: a point
-// or a segment, which with a radius are a sphere and a capsule. Made by the checked factories of
-// core/shapes.hpp from exact arithmetic; every number here is the exact one rounded once, so the
-// queries run in doubles.
+// unbounded: a floor is one half-space. It may be lower-dimensional in two ways only: a point or a
+// segment, which with a radius are a sphere and a capsule. The checked factories of core/shapes.hpp
+// make it by exact arithmetic. Every number here is the exact one rounded once, so the queries run
+// in doubles.
 //
-// Invariants: every edge has relative-interior points; every vertex's edges generate its cone;
-// every facet's edges bound it in counter-clockwise order as seen from outside (an open chain when
-// the facet is unbounded). No two facets are coplanar and no vertex lies within a facet or an edge,
-// exactly.
+// Invariants: Every edge has relative-interior points. The edges of every vertex generate its cone.
+// The edges of every facet bound it in counter-clockwise order as seen from outside; they are an
+// open chain when the facet is unbounded. No two facets are coplanar and no vertex lies within a
+// facet or an edge, exactly.
 #pragma once
 
 #include <array>
@@ -82,8 +82,8 @@ struct ConvexBody {
   std::vector<EdgeUse> facet_edges;
   std::vector<EdgeUse> vertex_edges;
 
-  // The body is hull(anchors) + cone(rays): `anchors` are the vertices where there are any, else
-  // one point of each minimal face (a line's or plane's point). A line counts as two opposite rays.
+  // The body is hull(anchors) + cone(rays). `anchors` are the vertices if there are any, else one
+  // point of each minimal face (of a line or a plane). A line counts as two opposite rays.
   std::vector<Vec3> anchors;
   std::vector<Ray> rays;
   RecessionCone recession_cone;  // of an unbounded body; made by add_query_tables()
@@ -108,14 +108,16 @@ struct ConvexBody {
       0.0;  // largest |point| without the radius from the frame's origin, rounded up, m
   // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
   double position_error = 0.0;
-  // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m;
-  // of an unbounded body without how far out the closest points lie. Made by add_query_tables().
+  // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m.
+  // For an unbounded body the part that grows with the place of the closest points is left out.
+  // Made by add_query_tables().
   double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
   // The body is the polyhedron or curved shape plus a sphere of this radius, m (exact); 0 to
   // kLargestCoordinate.
   double radius = 0.0;
 
-  // Of a body that is no polyhedron: all of the above but interior, radii and bounds is empty.
+  // A body that is no polyhedron has this; above, it has only its interior point, its radii and its
+  // bounds.
   CurvedShape curved;
 
   [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }
@@ -136,7 +138,7 @@ struct ConvexBody {
   [[nodiscard]] const Vec3& point_of(const Facet& f) const noexcept {
     return anchors[static_cast<std::size_t>(f.anchor)];
   }
-  // The i-th of what limits the facet.
+  // The i-th limit of the facet.
   [[nodiscard]] FacetLimit limit_of(const Facet& f, std::int32_t i) const noexcept {
     const auto number = [&](std::int32_t k) {
       return facet_limits.number(f.first_side, f.limits, i, k);

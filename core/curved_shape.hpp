@@ -1,5 +1,5 @@
-// What a curved body is, apart from the radius around it: an ellipsoid, or a truncated cone with
-// cylinder and cone among them.
+// A curved body without the radius around it: an ellipsoid, or a truncated cone, which may be a
+// cylinder or a cone.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct CurvedShape {
 
   Kind kind = Kind::kNone;        // kNone: the body is a polyhedron
   Vec3 semi_axes = Vec3::Zero();  // of an ellipsoid around the origin, along the frame's axes, m
-  // Of a truncated cone around the z-axis, the lower one first; it is the hull of both.
+  // The discs of a truncated cone around the z-axis, the lower one first; the cone is their hull.
   std::array<Disc, 2> discs;
 
   [[nodiscard]] bool operator==(const CurvedShape&) const noexcept = default;

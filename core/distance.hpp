@@ -1,10 +1,10 @@
-// How far apart are two convex bodies? Tracked: each call starts where the last one ended.
+// The distance of two convex bodies. Tracked: each call starts where the last one ended.
 //
-// Minimises |b - a| over a in A, b in B (§3.2). Tracked queries walk from the last closest features
-// to these (core/feature_walk); what the walk leaves open is decided by the active-set QP of
-// core/active_set/dqp3.hpp (§3.3, §3.4). Every answer is certified: a separating direction bounds
-// it from below (weak duality, §3.2), witness points on the bodies from above. Everything is in
-// frame A, in metres.
+// Minimises |b - a| over a in A, b in B (§3.2). Feature tracking goes from the last closest
+// features to the present ones (V-Clip, Lin-Canny; core/feature_tracking). What it leaves open is
+// decided by the active-set QP of core/active_set/dqp3.hpp (§3.3, §3.4). Every answer is certified:
+// a separating direction bounds it from below (weak duality, §3.2), witness points on the bodies
+// from above. Everything is in frame A, in metres.
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -15,7 +15,7 @@ namespace clearance {
 
 struct DistanceOptions {
   // False: the query does not look for the penetration depth, which takes most of the time where
-  // bodies overlap. Bodies that are not certified to be apart then get the status kDepthNotAsked,
+  // bodies overlap. Bodies that are not certified disjoint then get the status kDepthNotAsked,
   // and their lower bound may be -infinity.
   bool depth = true;
 };

@@ -1,4 +1,4 @@
-// What a distance query returns, and what a pair remembers between queries.
+// The result of a distance query, and the state that a pair keeps between queries.
 #pragma once
 
 #include <cstdint>
@@ -9,59 +9,63 @@ namespace clearance {
 
 enum class DistanceStatus : std::uint8_t {
   kConverged,       // upper - lower is rounding only
-  kTouching,        // apart or overlapping by less than rounding can tell: the bounds contain 0
+  kTouching,        // disjoint or overlapping by less than rounding: the bounds contain 0
   kOverlapping,     // certified: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
-  kDepthNotAsked,   // not certified apart, and DistanceOptions::depth is false
+  kDepthNotAsked,   // not certified disjoint, and DistanceOptions::depth is false
   kBadPose,         // no pose, see below: nothing is known
 };
 
 [[nodiscard]] const char* name(DistanceStatus status) noexcept;
 
-// Which way an answer came: core/README.md, "What the iteration is".
+// The method that has answered: core/README.md, "What the iteration is".
 enum class DistancePath : std::uint8_t {
-  kWalk,         // feature tracking certified it
-  kActiveSet,    // the active-set iteration, and of what touches or overlaps then the depth
-  kGjk,          // the active-set iteration and then GJK
-  kPenetration,  // penetration depth, at once from the features of the last overlap
-  kDirection,    // of curved bodies: the search for the separating direction (core/curved)
+  kFeatureTracking,  // feature tracking certified it
+  kActiveSet,        // the active-set iteration, and for bodies that touch or overlap the depth
+  kGjk,              // the active-set iteration and then GJK
+  kPenetration,      // penetration depth, at once from the features of the last overlap
+  kDirection,        // of curved bodies: the search for the separating direction (core/curved)
 };
 
-// Always, rounding included: lower <= true distance <= upper, for the exact bodies of the shapes'
-// doubles. The distance is signed: apart, that of the closest points; overlapping, minus the depth,
-// the length of the shortest translation after which the bodies only touch
-// (core/penetration/depth.hpp). Either way no motion that moves every point by at most s changes it
-// by more than s.
+// Always, rounding included: lower <= true distance <= upper. The truth is that of the exact bodies
+// whose numbers are the shapes' doubles. The distance is signed. If the bodies are disjoint, it is
+// that of the closest points. If they overlap, it is minus the penetration depth: the length of the
+// shortest translation after which the bodies only touch (core/penetration/depth.hpp). A motion
+// that moves every point by at most s changes it by at most s.
 //
-// Apart, point_on_a and point_on_b are closest points, and point_on_b - point_on_a = distance *
-// normal to within sqrt(upper^2 - lower^2): the points prove the upper bound and the normal the
-// lower one, so that these two bounds say how far one can be off the other. Overlapping, B moved by
-// depth * normal only touches A, and the two points are those that meet there: point_on_a is A's
-// farthest along the normal, point_on_b is B's farthest against it (where B is now), and again
-// point_on_b - point_on_a = distance * normal; of curved bodies along the normal only, to upper -
-// lower, and across it both points are anywhere in the contact. Touching, they coincide up to
-// rounding. Unbounded bodies may meet far away: then to the rounding of coordinates there.
+// Disjoint bodies: point_on_a and point_on_b are closest points, and point_on_b - point_on_a =
+// distance * normal to within sqrt(upper^2 - lower^2). The points prove the upper bound and the
+// normal the lower one, so the two bounds say how far one can be off the other.
 //
-// Two unbounded bodies are answered in doubles, with true bounds: where these cannot tell along
+// Overlapping bodies: B moved by depth * normal only touches A, and the two points are those that
+// meet there. point_on_a is A's support point along the normal, and point_on_b is B's support point
+// against it, where B is now. Again point_on_b - point_on_a = distance * normal. For curved bodies
+// this holds along the normal only, to upper - lower; across it both points are anywhere in the
+// contact.
+//
+// Touching bodies: the two points coincide up to rounding. Unbounded bodies may touch far away;
+// then the rounding is that of coordinates there.
+//
+// Two unbounded bodies are answered in doubles, with true bounds. If doubles cannot tell along
 // which directions neither body is unbounded, lower is -infinity and the status kIterationLimit.
 //
-// One rule for what is unknown, here and in reports: a bound that is not known is infinite, a
-// figure that is not known is NaN. All of it is unknown of a bad pose: one that is not finite, with
-// a quaternion that is off unit length by more than kUnitTolerance, or with frames more than
-// kLargestCoordinate apart. Nothing else makes a NaN.
+// One rule holds here and in reports: an unknown bound is infinite, any other unknown figure is
+// NaN. A bad pose leaves everything unknown. A pose is bad if it is not finite, if its quaternion
+// is off unit length by more than kUnitTolerance, or if the frames are more than kLargestCoordinate
+// from each other. Nothing else makes a NaN.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;
   Vec3 normal = Vec3::Zero();                                 // unit, from A towards B
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // witness points, both in frame A
   DistanceStatus status = DistanceStatus::kIterationLimit;
-  DistancePath path = DistancePath::kWalk;
+  DistancePath path = DistancePath::kFeatureTracking;
   std::uint16_t iterations = 0;
 };
 static_assert(sizeof(DistanceResult) == 104 && alignof(DistanceResult) == 8);
 
-// What of a body's boundary is active; kInside: nothing is. kUnknown: no hint. kDirection: of a
-// pair with a curved body.
+// The active part of a body's boundary. kInside: nothing is active. kUnknown: no hint. kDirection:
+// the pair has a curved body.
 enum class FeatureKind : std::uint8_t {
   kVertex,
   kEdge,
@@ -71,22 +75,23 @@ enum class FeatureKind : std::uint8_t {
   kUnknown = 255
 };
 
-// What a pair remembers between calls: the active feature of each body and where the witness lay on
-// it; of overlapping bodies, those that would touch if B were moved by its depth. A hint and never
-// a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
+// The state that a pair keeps between calls: the active feature of each body and the witness point
+// on it. For overlapping bodies, these are the features that would touch if B were moved by the
+// depth. A hint and never a fact: an empty, stale or wrong state costs iterations and leaves the
+// bounds true.
 //
-// Of a pair with a curved body `kind` is kDirection, a.point the last separating direction (frame
-// A), and `feature` names pieces (core/curved/tracking.hpp).
+// For a pair with a curved body, `kind` is kDirection, a.point is the last separating direction
+// (frame A), and `feature` names smooth parts (core/curved/tracking.hpp).
 //
-// After a query the two points, or b.point alone, are the witness points,
-// before radii, each in its own body's frame: transform(world_from_b, state.b.point) lies on B to
-// the rounding of B's own pose, however far away A is.
+// After a query the two points are the witness points before radii, each in its body's frame; with
+// a curved body only b.point is. transform(world_from_b, state.b.point) lies on B to the rounding
+// of B's own pose, however far away A is.
 struct alignas(64) TrackingState {
   struct Side {
     FeatureKind kind = FeatureKind::kUnknown;
     bool penetrating = false;      // of A only: the bodies overlapped
     std::int32_t feature = kNone;  // index into the body's vertices, edges or facets
-    Vec3 point = Vec3::Zero();     // in the body's own frame
+    Vec3 point = Vec3::Zero();     // in the body's frame
   };
   Side a, b;
 };

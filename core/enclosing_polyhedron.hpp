@@ -1,10 +1,11 @@
 // A coarser model of a body or of several: one convex polyhedron of few facets that holds them all.
 //
-// Few of the planes that bound the hull of the bodies, each pushed out to the farthest that any of
-// them reaches, rounding included: what lies inside all these half-spaces cannot leave a point of
-// the bodies out, whichever planes were chosen. Chosen greedily: again and again the planes that
-// cut off the vertices which stick out most (an outer sandwich algorithm; G. Rote, "The convergence
-// rate of the sandwich algorithm", 1992). Load time only: allocates, may take milliseconds.
+// It keeps few of the planes that bound the hull of the bodies, each pushed out to the largest
+// support value of the bodies, rounding included. So the half-spaces hold every point of the
+// bodies, whichever planes were chosen. The choice is greedy: in every round, the planes that cut
+// off the vertices which stick out most. This is an outer sandwich algorithm: G. Rote, "The
+// convergence rate of the sandwich algorithm", 1992. Load time only: allocates, may take
+// milliseconds.
 #pragma once
 
 #include <optional>

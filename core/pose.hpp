@@ -1,4 +1,4 @@
-// Where a body is, how it moves, and where one body is as seen from another.
+// The pose of a body, its velocity, and the pose of one body as seen from another.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,8 @@
 
 namespace clearance {
 
-// No coordinate, offset or radius of a shape is larger, and no two frames are farther apart, m.
+// No coordinate, offset or radius of a shape is larger, and no two frames are farther from each
+// other, m.
 inline constexpr double kLargestCoordinate = 1e12;
 // Quaternions are of unit length to this.
 inline constexpr double kUnitTolerance = 1e-6;
@@ -19,13 +20,13 @@ inline constexpr double kUnitTolerance = 1e-6;
 
 // A point x of the object's own frame is at position + R(orientation / |orientation|) x in the
 // world. The quaternion is of unit length to kUnitTolerance, and every use means its exact
-// normalisation. Quaternions are stored x, y, z, w (as Eigen does, and as on the wire). A cache
-// line each: queries over many pairs read poses here and there, and each on two lines takes a
+// normalisation. Quaternions are stored x, y, z, w (as Eigen does, and as on the wire). A pose is a
+// cache line: queries over many pairs read poses at random, and on two lines each they take a
 // thirtieth longer.
 struct alignas(64) Pose {
   Vec3 position = Vec3::Zero();  // m
-  // Eigen's own alignment of it is 8, 16 or 32, by the switches of each compilation; this covers
-  // them all, so that it is in one place for a library and whoever uses it.
+  // Eigen aligns it to 8, 16 or 32 bytes, by the switches of each compilation. 32 covers them all,
+  // so that a library and its users agree on its place.
   alignas(32) Eigen::Quaterniond orientation = Eigen::Quaterniond(1.0, 0.0, 0.0,
                                                                   0.0);  // Eigen's order: w,x,y,z
 };
@@ -55,15 +56,14 @@ static_assert(sizeof(Twist) == 48 && alignof(Twist) == 8);
 // A point of the object's frame, in the world.
 [[nodiscard]] Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
 
-// transform() is off by at most this times |position| + |point|: normalising the quaternion leaves
-// it within 2^-51, the nine entries of its matrix within 2^-49 of the exact matrix, and the product
-// and sum add three roundings of numbers no larger. The same covers compose(), and the orientation
-// that it gives.
+// transform() is off by at most this times |position| + |point|. The normalised quaternion is
+// within 2^-51, and the nine entries of its matrix are within 2^-49 of the exact ones. The product
+// and the sum add three roundings of numbers no larger. The bound covers compose() and its
+// orientation as well.
 inline constexpr double kPlacingError = 0x1p-47;
 
-// B as seen from A: x_a = rotation * x_b + translation. Made once a query. How far the two
-// doubles-only quantities can be from the exact ones is part of the value, so that bounds can
-// account for it.
+// B as seen from A: x_a = rotation * x_b + translation. Made once a query. The errors of both
+// quantities are part of the value, so that bounds can account for them.
 struct RelativePose {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();  // m, in frame A
@@ -72,10 +72,11 @@ struct RelativePose {
 };
 static_assert(sizeof(RelativePose) == 112 && alignof(RelativePose) == 8);
 
-// Error behaviour: none. Of a quaternion that is not of unit length, of frames more than
-// kLargestCoordinate apart, and of what is not finite come NaNs, of which distance() says kBadPose.
-// Equal orientations (up to the quaternions' sign) give exactly the identity, and orientations that
-// permute axes exactly that permutation, each with rotation_error 0: parallel stays parallel.
+// Error behaviour: none. NaNs come of a quaternion that is not of unit length, of frames more than
+// kLargestCoordinate from each other, and of numbers that are not finite. distance() says kBadPose
+// then. Equal orientations (up to the quaternions' sign) give exactly the identity. Orientations
+// that permute axes give exactly that permutation. Both have rotation_error 0: parallel stays
+// parallel.
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

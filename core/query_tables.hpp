@@ -1,5 +1,4 @@
-// What a ConvexBody keeps beside its features, so that queries find it in the order in which
-// they read it.
+// Tables that a ConvexBody keeps beside its features, in the order in which queries read them.
 #pragma once
 
 #include <array>
@@ -14,8 +13,9 @@ namespace clearance {
 
 struct ConvexBody;
 
-// Rows of vectors, one row a feature, as vector registers read them: a row of n vectors is its n x,
-// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end.
+// Rows of vectors, one row a feature, as vector registers read them. A row of n vectors is its n x,
+// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end, but
+// not over the table's.
 class VectorRows {
  public:
   explicit VectorRows(std::int32_t numbers) noexcept : numbers_(numbers) {}
@@ -43,10 +43,10 @@ class VectorRows {
   std::int32_t numbers_;
 };
 
-// What limits a facet's polygon in its plane: inward.x >= offset. That is what lies on one side of
-// an edge; and, at a sharp corner, what lies before the end of the edge that ends there. A point
-// that is off either edge there by no more than rounding may be past the vertex by that over the
-// sine of half its angle.
+// A limit of a facet's polygon in its plane: inward.x >= offset. An edge gives one: its inner side.
+// An edge that ends at a sharp corner gives a second one: the part before its end. A point that is
+// off both edges there by rounding may be past the vertex by as much over the sine of half the
+// angle.
 struct FacetLimit {
   Vec3 inward;
   double offset;
@@ -56,29 +56,29 @@ struct FacetLimit {
 // 1/3.
 inline constexpr double kSharpCorner = 7.0 / 9.0;
 
-// The directions in which an unbounded body is unbounded: sums of its lines (the lineality space),
-// either way along each, and of its other extreme rays.
+// The directions in which a body is unbounded. They are sums of multiples of its lines (the
+// lineality space) and non-negative multiples of its other extreme rays.
 struct RecessionCone {
   // Unit, at right angles; two of them are a whole plane.
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
   std::size_t line_count = 0;
   std::vector<Vec3> rays;  // unit
-  // How much of any of the rays, at least, lies along one direction at right angles to the lines;
+  // One direction at right angles to the lines has a derivative of at least this along every ray,
   // rounding included. 0 or less: no such direction is known.
   double least = 0.0;
   // Unit: a direction of the cone that leads away from every facet; zero: there is none.
   Vec3 inwards = Vec3::Zero();
 
-  // What of v is at right angles to the lines.
+  // The part of v at right angles to the lines.
   [[nodiscard]] Vec3 across_lines(Vec3 v) const noexcept {
     for (std::size_t i = 0; i < line_count; ++i) v -= v.dot(lines[i]) * lines[i];
     return v;
   }
 };
 
-// A cube around the origin, each face a grid; a direction's cell names the support point along
-// the cell's middle. 6 x 8 x 8 cells: on a facet-ball of 2,042 facets the climb from there takes
-// 3 edges on average, and the table is no larger than the vertices of a body of 26 facets.
+// A cube around the origin, each face a grid; the cell of a direction names the support point along
+// the middle of the cell. With 6 x 8 x 8 cells the climb on a facet-ball of 2,042 facets takes 3
+// edges on average. The table is no larger than the vertices of a body of 26 facets.
 class StartTable {
  public:
   static constexpr int kGrid = 8;
@@ -121,7 +121,7 @@ class StartTable {
 // The factories' last step.
 void add_query_tables(ConvexBody& body);
 
-// Bytes that a body takes, all of its tables included; what the allocator adds is not.
+// Bytes that a body takes, all of its tables included, without the allocator's overhead.
 [[nodiscard]] std::size_t footprint(const ConvexBody& body) noexcept;
 
 }  // namespace clearance

@@ -1,11 +1,11 @@
 // Checked factories: the only way to make a convex body.
 //
 // Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
-// rounded once at the end. What is not a solid closed convex body is refused with a reason a person
-// can act on, and so is what no scene holds: coordinates, offsets and radii beyond 1e12 m, extents
-// below 1e-12 m, normals shorter than 1e-100 or longer than 1e100, and unbounded bodies that open
-// by less than 1e-6 rad, or by that much less than half a turn. Redundant half-spaces disappear.
-// Load time only: allocates, may take milliseconds, never throws.
+// rounded once at the end. Anything but a solid closed convex body is refused with a reason a
+// person can act on. So are the bodies that no scene holds. Limits: coordinates, offsets and radii
+// of 1e12 m, extents of 1e-12 m, normals from 1e-100 to 1e100 long. An unbounded body must open by
+// at least 1e-6 rad, and by at least that much less than half a turn. Redundant half-spaces
+// disappear. Load time only: allocates, may take milliseconds, never throws.
 #pragma once
 
 #include <span>

@@ -3,8 +3,8 @@
 namespace clearance {
 namespace {
 
-// A stored point may lie this far outside the facet it is said to be on (relative to the body) and
-// still be taken for a point on it: 16 roundings, 2^-49.
+// A stored point counts as on its facet if it lies no farther outside than this, relative to the
+// body: 16 roundings, 2^-49.
 constexpr double kOnFacet = 0x1p-49;
 
 // A state may hold anything: its length has to be a number as well.
@@ -19,30 +19,30 @@ bool within(std::int32_t index, std::size_t size) noexcept {
 std::int32_t crossed_limit(const ConvexBody& body, const Facet& facet, const Vec3& p,
                            double tolerance) noexcept {
   double least = -tolerance;
-  std::int32_t beyond = kNone;
+  std::int32_t crossed = kNone;
   for (std::int32_t i = 0; i < facet.limits; ++i) {
     const FacetLimit limit = body.limit_of(facet, i);
     const double gap = limit.inward.dot(p) - limit.offset;
     if (!(gap < least)) continue;
     least = gap;
-    beyond = i;
+    crossed = i;
   }
-  return beyond;
+  return crossed;
 }
 
 std::int32_t facet_under(const ConvexBody& body, std::int32_t index, const Vec3& p) noexcept {
   for (std::size_t hops = 0; hops < body.facets.size(); ++hops) {
     const Facet& facet = body.facets[index];
-    const std::int32_t beyond = crossed_limit(body, facet, p);
-    if (beyond == kNone) break;
-    index = body.facets_beside[facet.first_side + beyond];
+    const std::int32_t crossed = crossed_limit(body, facet, p);
+    if (crossed == kNone) break;
+    index = body.facets_beside[facet.first_side + crossed];
   }
   return index;
 }
 
 void ActiveFeature::place_cold(const Vec3& other) noexcept {
   if (body_.vertices.empty()) return place_inside(body_.interior);
-  const Vec3 to_other = direction_to_own(other - point_to_common(body_.interior));
+  const Vec3 to_other = direction_to_local(other - point_to_a(body_.interior));
   place_at_vertex(body_.start.at(to_other));
 }
 
@@ -67,14 +67,15 @@ bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
   return false;
 }
 
-// On an unbounded body another pair's point may be so far out that rounding takes it off its
-// feature. The closest points are no farther away than this, where one of the bodies is bounded:
-// the distance is at most that of any two points.
+// On an unbounded body the point of another pair may be so far out that rounding takes it off its
+// feature. If one of the bodies is bounded, the closest points are no farther out than `farthest`,
+// because no two points are closer.
 void ActiveFeature::place_near(const TrackingState::Side& hint, const ActiveFeature& other,
-                               double apart) noexcept {
-  const double farthest = body_.bounding_radius + 2.0 * (other.body_.bounding_radius + apart);
-  if (place_tracked(hint) && (body_.bounded() || own_.norm() <= farthest)) return;
-  place_cold(other.point_to_common(other.body_.interior));
+                               double between_origins) noexcept {
+  const double farthest =
+      body_.bounding_radius + 2.0 * (other.body_.bounding_radius + between_origins);
+  if (place_tracked(hint) && (body_.bounded() || local_point_.norm() <= farthest)) return;
+  place_cold(other.point_to_a(other.body_.interior));
 }
 
 }  // namespace clearance

@@ -5,13 +5,15 @@
 // inside. x lies in the feature, so nothing else can block.
 #pragma once
 
+#include <cassert>
+
 #include "core/active_set/active_feature.hpp"
 
 namespace clearance {
 
 struct Alpha {
   double fraction = 1.0;  // of the wanted move, in [0, 1]; 1 means that nothing blocks
-  // What is reached there: the facet, the edge or the vertex that becomes the active feature.
+  // The index of the facet, edge or vertex that blocks and becomes the active feature.
   std::int32_t blocking = kNone;
 };
 
@@ -27,7 +29,7 @@ inline Alpha from_inside(const ActiveFeature& side, const Vec3& move) noexcept {
   for (std::size_t i = 0; i < facets.size(); ++i) {
     const double speed = facets[i].normal.dot(move);
     if (!(speed > 0.0)) continue;
-    const double f = fraction(facets[i].offset - facets[i].normal.dot(side.own()), speed);
+    const double f = fraction(facets[i].offset - facets[i].normal.dot(side.local_point()), speed);
     if (f < best.fraction) best = {f, static_cast<std::int32_t>(i)};
   }
   return best;
@@ -40,7 +42,7 @@ inline Alpha within_facet(const ActiveFeature& side, const Vec3& move) noexcept 
     const FacetLimit boundary = side.body().limit_of(facet, i);
     const double speed = -boundary.inward.dot(move);
     if (!(speed > 0.0)) continue;
-    const double gap = boundary.inward.dot(side.own()) - boundary.offset;
+    const double gap = boundary.inward.dot(side.local_point()) - boundary.offset;
     if (!(gap < best.fraction * speed)) continue;
     best = {fraction(gap, speed), side.body().facet_edges[facet.first_side + i].edge};
   }
@@ -50,7 +52,7 @@ inline Alpha within_facet(const ActiveFeature& side, const Vec3& move) noexcept 
 inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
   const Edge& edge = side.edge();
   const double speed = edge.direction.dot(move);
-  const double at = (side.own() - edge.point).dot(edge.direction);
+  const double at = (side.local_point() - edge.point).dot(edge.direction);
   if (at + speed > edge.end && speed > 0.0) return {fraction(edge.end - at, speed), edge.vertex[1]};
   if (at + speed < edge.begin && speed < 0.0) {
     return {fraction(at - edge.begin, -speed), edge.vertex[0]};
@@ -60,18 +62,19 @@ inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
 
 }  // namespace alpha_case
 
-[[nodiscard]] inline Alpha alpha(const ActiveFeature& side, const Vec3& move_in_common) noexcept {
+[[nodiscard]] inline Alpha alpha(const ActiveFeature& side, const Vec3& move_in_a) noexcept {
   if (side.feature() == FeatureKind::kVertex) return {};
-  const Vec3 move = side.direction_to_own(move_in_common);
+  const Vec3 move = side.direction_to_local(move_in_a);
   if (side.feature() == FeatureKind::kEdge) return alpha_case::along_edge(side, move);
   if (side.feature() == FeatureKind::kFacet) return alpha_case::within_facet(side, move);
   return alpha_case::from_inside(side, move);
 }
 
-// Makes the move and, where it was blocked, the blocking feature the active one.
-inline void advance(ActiveFeature& side, const Vec3& move_in_common, const Alpha& step) noexcept {
+// Makes the move. If it was blocked, the blocking feature becomes the active one.
+inline void advance(ActiveFeature& side, const Vec3& move_in_a, const Alpha& step) noexcept {
+  assert(!(step.fraction < 0.0) && !(step.fraction > 1.0));
   if (side.feature() == FeatureKind::kVertex) return;
-  const Vec3 to = side.own() + step.fraction * side.direction_to_own(move_in_common);
+  const Vec3 to = side.local_point() + step.fraction * side.direction_to_local(move_in_a);
   if (side.feature() == FeatureKind::kEdge) {
     if (step.blocking != kNone) return side.place_at_vertex(step.blocking);
     return side.place_on_edge(side.index(), to);

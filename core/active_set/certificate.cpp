@@ -1,6 +1,7 @@
 #include "core/active_set/certificate.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/active_set/separating_direction.hpp"
@@ -13,7 +14,7 @@ namespace {
 using direction_case::across;
 using direction_case::along;
 
-// As a unit vector; nothing that has no direction.
+// Adds v as a unit vector, unless it has no direction.
 void add_direction(Separators& list, const Vec3& v) noexcept {
   const double length = v.norm();
   if (length > 0.0 && std::isfinite(length)) list.add({v / length});
@@ -32,22 +33,23 @@ void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFe
   add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
-// m: how far the body reaches along `normal` (common frame), from its own origin. Of an unbounded
-// body, within that much of it; of a facet's own normal, its offset, which needs no search.
+// m: the support value of the body along `normal` (frame A), from the body's own origin. On an
+// unbounded body only points within `within` of the origin count. Along a facet's own normal it is
+// the facet's offset, which needs no search.
 double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                      double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
-  const Vec3 m = s.direction_to_own(normal);
-  return support(s.body(), m).reach + reach_along_rays(s.body(), m, within);
+  const Vec3 m = s.direction_to_local(normal);
+  return support(s.body(), m).value + support_along_rays(s.body(), m, within);
 }
 
-// Has every ray of the body a negative directional derivative along `normal`, beyond rounding? Of
-// the body whose facet has this normal, none has a positive one.
+// Has every ray of the body a negative directional derivative along `normal`, beyond rounding? No
+// ray has a positive one along the normal of one of the body's own facets.
 bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                 double direction_error) noexcept {
   if (facet != kNone) return true;
   const RecessionCone& cone = s.body().recession_cone;
-  const Vec3 m = s.direction_to_own(normal);
+  const Vec3 m = s.direction_to_local(normal);
   return cone.line_count == 0 && std::ranges::all_of(cone.rays, [&](const Vec3& ray) {
            return m.dot(ray) < -(kDerivativeError + direction_error);
          });
@@ -57,10 +59,10 @@ bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
 
 Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Separators list;
-  const Vec3 between = b.common() - a.common();
+  const Vec3 between = b.point_in_a() - a.point_in_a();
   add_facets(list, a, b);
-  // `between` is at right angles to the active edges but for rounding. These are not at right
-  // angles to each other, so that the projection across the second brings some of the first back.
+  // `between` is at right angles to the active edges but for rounding. The edges are not at right
+  // angles to each other: the projection across the second brings some of the first back.
   Vec3 direct = between;
   if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
@@ -81,10 +83,11 @@ double separation(const Separator& s, const ActiveFeature& a, const ActiveFeatur
                       ends_along(b, -s.normal, s.facet_of_b, error);
     if (!ends) return -kInfinity;
   }
-  const double of_a = support_value(a, s.normal, s.facet_of_a, p.reach_a);
-  const double of_b = support_value(b, -s.normal, s.facet_of_b, p.reach_b);
+  assert(is_unit_or_unknown(s.normal));
+  const double of_a = support_value(a, s.normal, s.facet_of_a, p.extent_a);
+  const double of_b = support_value(b, -s.normal, s.facet_of_b, p.extent_b);
   // The least n.x over B minus the greatest over A, each from its own frame's origin.
-  const Vec3 origin_of_b = b.point_to_common(Vec3::Zero());
+  const Vec3 origin_of_b = b.point_to_a(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }
 

@@ -1,5 +1,5 @@
-// What certifies an answer of the active-set iteration: a direction that separates the bodies by at
-// least `lower`.
+// The certificate of an answer of the active-set iteration: a direction that separates the bodies
+// by at least `lower` (weak duality, §3.2).
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace clearance {
 
-// A direction to try, unit up to rounding, common frame, from A towards B.
+// A direction to try: unit up to rounding, frame A, from A towards B.
 struct Separator {
   Vec3 normal;
-  // Where it is exactly a facet's normal (A's, or minus B's), that facet: its offset is the
-  // support.
+  // The facet of A whose normal this is, or of B whose normal is the opposite: its offset is the
+  // support value.
   std::int32_t facet_of_a = kNone, facet_of_b = kNone;
-  // Where it is across an edge of each, those.
+  // The edges of A and B to both of which it is orthogonal.
   std::int32_t edge_of_a = kNone, edge_of_b = kNone;
 };
 
@@ -34,9 +34,9 @@ class Separators {
 // The directions that the two active features suggest, the most accurate first.
 [[nodiscard]] Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept;
 
-// min over B of n.x minus max over A of n.x, for |n| = 1 (m, common frame): the distance is at
-// least this less p.error_bound. -infinity where an unbounded body leaves no bound, and for two
-// unbounded bodies where rounding cannot tell whether it does.
+// min over B of n.x minus max over A of n.x, for |n| = 1 (m, frame A). The distance is at least
+// this less p.error_bound. -infinity: an unbounded body leaves no bound, or both are unbounded and
+// rounding cannot tell whether they do.
 [[nodiscard]] double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                                 const Precision& p) noexcept;
 

@@ -1,8 +1,8 @@
 // The 'delta' step: the closest points of two features' affine hulls, the ten cases of Table 3.1
 // (§3.4.2).
 //
-// Where many pairs are closest (parallel features) the smallest move is chosen: halfway each
-// (§3.4.2.1).
+// If many pairs of points are closest, because the features are parallel, each point moves half of
+// the way: the smallest move (§3.4.2.1).
 #pragma once
 
 #include <array>
@@ -14,21 +14,17 @@
 namespace clearance {
 
 struct Delta {
-  Vec3 a, b;  // where x of A and of B should go, common frame
+  Vec3 a, b;  // the new places of x of A and of B, frame A
 };
 
 namespace delta_case {
 
-// Directions whose cross product is shorter than this are parallel as far as doubles can tell: the
-// unit vectors, once turned, carry an error of 2^-52 each.
-constexpr double kParallel = 0x1p-50;
+// Unit vectors with a shorter cross product are parallel as far as doubles can tell: once rotated,
+// each is off by 2^-52.
+constexpr double kParallelSine = 0x1p-50;
 
-inline Vec3 normal(const ActiveFeature& s) noexcept {
-  return s.direction_to_common(s.facet().normal);
-}
-inline Vec3 along(const ActiveFeature& s) noexcept {
-  return s.direction_to_common(s.edge().direction);
-}
+inline Vec3 normal(const ActiveFeature& s) noexcept { return s.direction_to_a(s.facet().normal); }
+inline Vec3 along(const ActiveFeature& s) noexcept { return s.direction_to_a(s.edge().direction); }
 
 inline Vec3 onto_plane(const Vec3& p, const Vec3& on, const Vec3& n) noexcept {
   return p - (p - on).dot(n) * n;
@@ -41,61 +37,62 @@ inline Vec3 onto_line(const Vec3& p, const Vec3& on, const Vec3& e) noexcept {
 
 inline void vertex_vertex(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = p.common();
-  to_q = q.common();
+  to_p = p.point_in_a();
+  to_q = q.point_in_a();
 }
 
 inline void vertex_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                         Vec3& to_q) noexcept {
-  to_p = p.common();
-  to_q = onto_line(p.common(), q.common(), along(q));
+  to_p = p.point_in_a();
+  to_q = onto_line(p.point_in_a(), q.point_in_a(), along(q));
 }
 
 inline void vertex_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
-  to_p = p.common();
-  to_q = onto_plane(p.common(), q.common(), normal(q));
+  to_p = p.point_in_a();
+  to_q = onto_plane(p.point_in_a(), q.point_in_a(), normal(q));
 }
 
 inline void vertex_inside(const ActiveFeature& p, const ActiveFeature&, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = to_q = p.common();
+  to_p = to_q = p.point_in_a();
 }
 
 inline void edge_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                       Vec3& to_q) noexcept {
   const Vec3 e = along(p), f = along(q);
-  const Vec3 between = q.common() - p.common();
+  const Vec3 between = q.point_in_a() - p.point_in_a();
   // The part of f across e: its length is the sine of the angle between them, without cancellation
   // in s.
   const Vec3 across = f - f.dot(e) * e;
   const double sine2 = across.squaredNorm();
-  if (sine2 < kParallel * kParallel) {
-    to_p = p.common() + 0.5 * between.dot(e) * e;
-    to_q = onto_line(to_p, q.common(), f);
+  if (sine2 < kParallelSine * kParallelSine) {
+    to_p = p.point_in_a() + 0.5 * between.dot(e) * e;
+    to_q = onto_line(to_p, q.point_in_a(), f);
     return;
   }
-  // Across e as well: of a long `between`, what rounding leaves of e in `across` would count.
+  // Across e as well: rounding leaves a part of e in `across`, which would count for a long
+  // `between`.
   const double s = -(between - between.dot(e) * e).dot(across) / sine2;
-  to_q = q.common() + s * f;
-  to_p = onto_line(to_q, p.common(), e);
+  to_q = q.point_in_a() + s * f;
+  to_p = onto_line(to_q, p.point_in_a(), e);
 }
 
 inline void edge_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                        Vec3& to_q) noexcept {
   const Vec3 e = along(p), n = normal(q);
   const double sine = e.dot(n);
-  if (std::abs(sine) < kParallel) {
-    to_p = 0.5 * (p.common() + onto_line(q.common(), p.common(), e));
-    to_q = onto_plane(to_p, q.common(), n);
+  if (std::abs(sine) < kParallelSine) {
+    to_p = 0.5 * (p.point_in_a() + onto_line(q.point_in_a(), p.point_in_a(), e));
+    to_q = onto_plane(to_p, q.point_in_a(), n);
     return;
   }
-  to_p = to_q = p.common() + ((q.common() - p.common()).dot(n) / sine) * e;
+  to_p = to_q = p.point_in_a() + ((q.point_in_a() - p.point_in_a()).dot(n) / sine) * e;
 }
 
 inline void edge_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                         Vec3& to_q) noexcept {
-  to_p = to_q = onto_line(q.common(), p.common(), along(p));
+  to_p = to_q = onto_line(q.point_in_a(), p.point_in_a(), along(p));
 }
 
 inline void facet_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
@@ -104,25 +101,25 @@ inline void facet_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to
   const Vec3 n_across = n - n.dot(m) * m;  // in q's plane
   const Vec3 m_across = m - m.dot(n) * n;  // in p's plane
   const double sine2 = n_across.squaredNorm();
-  if (sine2 < kParallel * kParallel) {
-    to_p = 0.5 * (p.common() + onto_plane(q.common(), p.common(), n));
-    to_q = onto_plane(to_p, q.common(), m);
+  if (sine2 < kParallelSine * kParallelSine) {
+    to_p = 0.5 * (p.point_in_a() + onto_plane(q.point_in_a(), p.point_in_a(), n));
+    to_q = onto_plane(to_p, q.point_in_a(), m);
     return;
   }
-  const Vec3 between = q.common() - p.common();
-  const Vec3 on_line_p = p.common() + (between.dot(m) / sine2) * m_across;
-  const Vec3 on_line_q = q.common() - (between.dot(n) / sine2) * n_across;
+  const Vec3 between = q.point_in_a() - p.point_in_a();
+  const Vec3 on_line_p = p.point_in_a() + (between.dot(m) / sine2) * m_across;
+  const Vec3 on_line_q = q.point_in_a() - (between.dot(n) / sine2) * n_across;
   to_p = to_q = 0.5 * (on_line_p + on_line_q);
 }
 
 inline void facet_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
-  to_p = to_q = onto_plane(q.common(), p.common(), normal(p));
+  to_p = to_q = onto_plane(q.point_in_a(), p.point_in_a(), normal(p));
 }
 
 inline void inside_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = to_q = 0.5 * (p.common() + q.common());
+  to_p = to_q = 0.5 * (p.point_in_a() + q.point_in_a());
 }
 
 }  // namespace delta_case

@@ -8,7 +8,7 @@
 namespace clearance {
 
 enum class Dqp3End : std::uint8_t {
-  kCertified,  // every release would part the bodies, beyond rounding: KKT satisfied
+  kCertified,  // every release would increase the distance, beyond rounding: KKT satisfied
   kOptimal,    // no release brings the bodies closer, as far as rounding can tell
   kContact,    // the two points coincide to within `contact`
   kStalled,    // a release did not bring them closer: rounding decides from here on
@@ -18,12 +18,13 @@ enum class Dqp3End : std::uint8_t {
 struct Dqp3Outcome {
   Dqp3End end = Dqp3End::kLimit;
   std::uint16_t iterations = 0;
-  // From A to B, common frame, as long as the active features are apart (m).
+  // Frame A, from A to B; its length is the distance of the active features, m.
   Vec3 separating_direction = Vec3::Zero();
 };
 
 // Moves both sides from where they are to the closest points. Ends: between two releases the
-// distance falls strictly, so no active set comes twice. `contact`: m, what counts as coincidence.
+// distance falls strictly, so no active set comes twice. `contact`: points within this of each
+// other (m) coincide.
 [[nodiscard]] Dqp3Outcome dqp3(ActiveFeature& a, ActiveFeature& b, double contact) noexcept;
 
 }  // namespace clearance

@@ -7,9 +7,8 @@
 namespace clearance {
 
 struct Lambda {
-  // The directional derivative of the approach to the other point, at best: > 0 means release.
-  // Negative beyond rounding, it proves that the feature is the farthest of its body along
-  // `direction`.
+  // The best directional derivative of the approach to the other point: > 0 means release. If it is
+  // negative beyond rounding, the feature is the support of its body along `direction`.
   double derivative = -kInfinity;
   FeatureKind to = FeatureKind::kInside;  // the feature that remains
   std::int32_t index = kNone;
@@ -37,15 +36,14 @@ inline Lambda of_vertex(const ActiveFeature& side, const Vec3& direction) noexce
 
 }  // namespace lambda_case
 
-// The release that gains most. `direction` points from this body's x to the other's, common frame.
-// The derivative is minus the multiplier of the thesis: its three cases (3.4.23) to (3.4.25), the
-// last one over all edges that leave the vertex rather than the three of one choice of facets. All
-// derivatives are in the unit of `direction`, so that they can be compared between the bodies, as
-// the scaling of (3.4.25) is there for.
-[[nodiscard]] inline Lambda lambda(const ActiveFeature& side,
-                                   const Vec3& direction_in_common) noexcept {
+// The release that gains most. `direction` points from this body's x to the other's, in frame A.
+// The derivative is minus the multiplier of the thesis, equations (3.4.23) to (3.4.25). The last of
+// these looks at three edges of one choice of facets; this looks at all edges that leave the
+// vertex. All derivatives are in the unit of `direction`, so that those of the two bodies can be
+// compared. The scaling of (3.4.25) serves the same end.
+[[nodiscard]] inline Lambda lambda(const ActiveFeature& side, const Vec3& direction_in_a) noexcept {
   if (side.feature() == FeatureKind::kInside) return {};
-  const Vec3 direction = side.direction_to_own(direction_in_common);
+  const Vec3 direction = side.direction_to_local(direction_in_a);
   if (side.feature() == FeatureKind::kFacet) return lambda_case::of_facet(side, direction);
   return side.feature() == FeatureKind::kEdge ? lambda_case::of_edge(side, direction)
                                               : lambda_case::of_vertex(side, direction);

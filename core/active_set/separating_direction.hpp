@@ -1,5 +1,5 @@
-// The direction from A's point to B's as the features define it, free of what cancellation leaves
-// in the difference of two rounded points.
+// The direction from A's point to B's as the features define it. The difference of two rounded
+// points would carry cancellation errors; this direction does not.
 #pragma once
 
 #include "core/active_set/active_feature.hpp"
@@ -7,31 +7,31 @@
 namespace clearance {
 
 struct SeparatingDirection {
-  Vec3 vector;  // from A towards B, as long as the features are apart, common frame
-  bool exact =
-      false;  // unit vector good to rounding: at right angles to every active edge, along the facet
+  Vec3 vector;  // frame A, from A towards B; its length is the features' distance, m
+  // The unit vector is good to rounding: at right angles to every active edge, along the facet.
+  bool exact = false;
 };
 
 namespace direction_case {
 
-// Edges whose cross product is shorter than this leave too little of its direction.
+// Below this sine the cross product of two edges has lost too many digits of its direction.
 inline constexpr double kShortest = 1e-5;
 
 inline Vec3 across(const Vec3& v, const Vec3& e) noexcept { return v - v.dot(e) * e; }
-// Unit vectors that the rotation's doubles have turned are not quite of unit length.
+// A unit vector rotated in doubles is not quite of unit length.
 inline Vec3 along(const ActiveFeature& s) noexcept {
-  return s.direction_to_common(s.edge().direction).normalized();
+  return s.direction_to_a(s.edge().direction).normalized();
 }
 inline Vec3 normal_of(const ActiveFeature& s) noexcept {
-  return s.direction_to_common(s.facet().normal).normalized();
+  return s.direction_to_a(s.facet().normal).normalized();
 }
 
-// A direction across two, each of them unit or zero: at right angles to both up to rounding,
-// however nearly parallel they are.
+// A direction at right angles to e and f, each of them unit or zero, up to rounding, however nearly
+// parallel the two are.
 inline Vec3 across_both(const Vec3& e, const Vec3& f) noexcept {
   if (e.isZero(0.0)) return f.isZero(0.0) ? Vec3::UnitZ() : f.unitOrthogonal();
-  const Vec3 turned = e.dot(f) < 0.0 ? Vec3(f + e) : Vec3(f - e);
-  const Vec3 across = e.cross(turned).normalized();
+  const Vec3 difference = e.dot(f) < 0.0 ? Vec3(f + e) : Vec3(f - e);
+  const Vec3 across = e.cross(difference).normalized();
   if (across.isZero(0.0)) return e.unitOrthogonal();
   return (across - across.dot(e) * e).normalized();
 }
@@ -55,7 +55,7 @@ inline SeparatingDirection from_facet(const Vec3& normal, const Vec3& between,
 [[nodiscard]] inline SeparatingDirection separating_direction(const ActiveFeature& a,
                                                               const ActiveFeature& b) noexcept {
   using namespace direction_case;
-  const Vec3 between = b.common() - a.common();
+  const Vec3 between = b.point_in_a() - a.point_in_a();
   const bool a_vertex = a.feature() == FeatureKind::kVertex,
              b_vertex = b.feature() == FeatureKind::kVertex;
   if (a.feature() == FeatureKind::kFacet) return from_facet(a.facet().normal, between, b_vertex);

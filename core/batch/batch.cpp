@@ -18,9 +18,9 @@
 #include "core/query/tracked_query.hpp"
 
 namespace clearance {
-// A round judges all blocks; pairs whose lanes failed leave them, with those in no block they are
-// queried one by one, and those that keep their features long enough enter a block. All memory is
-// taken by the constructor: a round allocates nothing.
+// A round judges all blocks. Pairs whose lanes failed leave their blocks. These, and the pairs in
+// no block, are queried one by one; a pair that keeps its features long enough enters a block. The
+// constructor takes all memory: a round allocates nothing.
 class DistanceBatch::Rounds {
  public:
   Rounds(std::span<const ConvexBody* const> bodies, std::span<const BodyPair> pairs)
@@ -73,13 +73,13 @@ class DistanceBatch::Rounds {
   struct Changed {
     std::uint32_t pair;
     FeaturePair features;
-    WalkStart start;
+    TransitionsMade start;
   };
 
   static constexpr std::uint32_t kBits = 64;  // of a word of unassigned_
 
-  // A bool, and not the features if they fit: an optional of an enum is stored as two parts and
-  // loaded as one, a failed store forwarding that takes up to 6 % of a batch's time.
+  // Returns a bool and not an optional of the features. The optional would be stored in two parts
+  // and loaded as one: the failed store forwarding takes up to 6 % of a batch's time.
   [[nodiscard]] bool fits_lane(std::uint32_t pair) const noexcept {
     return clearance::fits_lane(of_.a(pair), of_.b(pair), of_.states[pair]);
   }
@@ -112,7 +112,7 @@ class DistanceBatch::Rounds {
     const std::uint32_t pair = block.pair[lane];
     slots_.leave(pair);
     TrackingState& state = of_.states[pair];
-    const WalkStart start =
+    const TransitionsMade start =
         to_next_feature(block.features, of_.a(pair), of_.b(pair), of, lane, state);
     changed_.push_back({pair, feature_pair(state), start});
   }
@@ -123,13 +123,13 @@ class DistanceBatch::Rounds {
     new (&results_[pair])
         DistanceResult(distance(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair]));
   }
-  void query_after(std::uint32_t pair, WalkStart start) noexcept {
+  void query_after(std::uint32_t pair, TransitionsMade start) noexcept {
     const auto [a, b] = of_.pairs[pair];
     new (&results_[pair]) DistanceResult(
         query_after_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
   }
 
-  // Sorted by where they are now: the processor foresees what it has just done.
+  // Sorted by their features: the processor predicts branches that it has just taken.
   void query_changed() noexcept {
     std::array<std::uint32_t, kFeaturePairs + 1> ends{};
     for (const Changed& c : changed_) ++ends[static_cast<std::size_t>(c.features) + 1U];
@@ -151,16 +151,16 @@ class DistanceBatch::Rounds {
     slots_.enter(pair);
   }
 
-  // A body that has no place yet would cost more than one that is tracked, round after round: the
-  // result of the last one holds.
+  // A body without a pose would cost more than a tracked one, round after round. The last result
+  // still holds.
   [[nodiscard]] bool is_still_nowhere(std::uint32_t pair) const noexcept {
     if (results_[pair].status != DistanceStatus::kBadPose) return false;
     const auto [a, b] = of_.pairs[pair];
     return std::isnan(poses_[a].position.x()) || std::isnan(poses_[b].position.x());
   }
 
-  // In the order of the pairs. After more than one transition the features are others, or the pair
-  // is not for vector code.
+  // In the order of the pairs. A query with more than one transition has other features now, or is
+  // none for vector code.
   void query_unassigned() noexcept {
     for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
       for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {
@@ -184,8 +184,8 @@ class DistanceBatch::Rounds {
     query_after(pair, of.start);
     Residence& residence = residences_[pair];
     residence.add(rounds_, true);
-    // The lanes knew of no neighbour, and the query ended at the same features: what lanes cannot
-    // certify, they are not given again for a while.
+    // The lane named no neighbour and the query ended at the same features: lanes cannot certify
+    // this pair, so it stays outside for a while.
     if (results_[pair].iterations == 1) {
       residence.wait(Residence::kRetry);
     } else if (!fits_lane(pair)) {

@@ -1,9 +1,9 @@
-// What a batch remembers of eight pairs, in the order in which vector code reads it.
+// Eight pairs of a batch, in the order in which vector code reads them.
 //
-// A row holds one number of eight tracked pairs and is a cache line; vectors of 2, 4 or 8 lanes
-// read the same rows. All of a block have the same pair of features (FeaturePair), so that
-// straight-line code decides whether these are still closest, without gathering anything: the
-// features' own numbers are in the rows, written when a tracked pair came to them.
+// A row holds one number of eight tracked pairs and is a cache line. Vectors of 2, 4 or 8 lanes
+// read the same rows. All pairs of a block have the same FeaturePair, so that straight-line code
+// decides whether the features are still closest. It gathers nothing: a pair's feature numbers are
+// written into the rows when the pair comes to these features.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "core/distance_result.hpp"
-#include "core/feature_walk/feature_pair.hpp"
+#include "core/feature_tracking/feature_pair.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -24,30 +24,30 @@ constexpr bool at_vertex_of_b(FeaturePair pair) { return kind_on_b(pair) == Feat
 
 // Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
 // first of them up to the points are not read of a plain block, nor kept.
-enum CommonRow : std::size_t {
-  kReachA,
-  kReachB,
+enum SharedRow : std::size_t {
+  kBoundingRadiusA,
+  kBoundingRadiusB,
   kErrorBoundA,  // ConvexBody::error_bound_as_a, error_bound_as_b
   kErrorBoundB,
-  kBeyondPlain,
-  kUnboundedA = kBeyondPlain,
+  kFirstSpecialRow,
+  kUnboundedA = kFirstSpecialRow,
   kUnboundedB,
   kRadiusA,
   kRadiusB,
-  kBareA,  // nothing is beside the feature: a point's only vertex, a segment's only edge
-  kBareB,
+  kIsolatedA,  // nothing is beside the feature: a point's only vertex, a segment's only edge
+  kIsolatedB,
   kPointA,                // 3 rows: the witness points of the last query, each in its body's frame
   kPointB = kPointA + 3,  // 3 rows
   kFeatureRows = kPointB + 3
 };
 
-// Rows of the features, from kFeatureRows on: that of more dimensions first (of two of a kind A's),
-// then what repeats:
+// Rows of the features, from kFeatureRows on. The feature of more dimensions comes first; of two of
+// the same kind, A's. After them come the entries that repeat:
 //   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
 //   facet   normal 3, offset
 //   vertex  position 3
 //   limits of a facet: inward 3, offset each; edges of a vertex: outgoing direction 3 each
-inline constexpr std::size_t kMostRepeats = 8;  // what has more is left to the single query
+inline constexpr std::size_t kMostRepeats = 8;  // features with more are left to the single query
 inline constexpr std::size_t kEdgeRows = 14, kFacetRows = 4, kVertexRows = 3;
 inline constexpr std::size_t kSideRows = 4, kDirectionRows = 3;
 inline constexpr std::size_t kInwardRow = 8;  // of an edge
@@ -59,7 +59,7 @@ inline constexpr std::size_t kSides = kFacetRows + kVertexRows;            // fa
 inline constexpr std::size_t kSidesAtEdge = kFacetRows + kEdgeRows;        // edge-facet
 inline constexpr std::size_t kDirectionsAtFacet = kSides + kMostRepeats * kSideRows;
 inline constexpr std::size_t kSidesOfA = 2 * kFacetRows;  // facet-facet
-inline constexpr std::size_t kMostSidesOfTwo = 6;         // of each: what the rows have room for
+inline constexpr std::size_t kMostSidesOfTwo = 6;         // of each: as many as the rows can hold
 inline constexpr std::size_t kSidesOfB = kSidesOfA + kMostSidesOfTwo * kSideRows;
 
 inline constexpr std::size_t kRows =
@@ -70,8 +70,8 @@ static_assert(kSidesAtEdge + kMostRepeats * kSideRows <= kRows - kFeatureRows);
 struct alignas(64) BatchBlock {
   std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};
   std::array<std::uint32_t, kBlockLanes> pair{};  // of a lane not in use: one past the last pair
-  // The most often that what repeats does in a lane since the block was empty, of A's feature and
-  // of B's. Every lane has as many, its last several times.
+  // The most entries (edges of a vertex or limits of a facet) of any lane since the block was
+  // empty, for A's feature and for B's. Lanes with fewer repeat their last one.
   std::uint8_t most_a = 0, most_b = 0;
   std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
   std::uint8_t taken = 0;  // bit i: a pair is in lane i
@@ -83,7 +83,8 @@ struct alignas(64) BatchBlock {
 // Which neighbour takes over where the features are the closest no longer.
 enum NextFeature : std::int32_t {
   kNextUnknown = -1,  // rounding cannot tell, or it is not lanes' to say
-  // From 0 on: the vertex's edge at an edge, the facet's side, the edge of A's vertex of two.
+  // 0 and more: the edge of a vertex at an edge, the side of a facet, or the edge of A's vertex of
+  // two.
   kNextOfOther = kMostRepeats,     // + i: the edge of a vertex at a facet, of B's of two
   kNextBeside = 2 * kMostRepeats,  // + k: of an edge at a vertex, its facet
   kNextEnd = kNextBeside + 2,      // + k: of an edge (A's of two) its vertex
@@ -104,7 +105,7 @@ struct BatchRound {
   BatchBlock* blocks = nullptr;
   const Pose* world_from_body = nullptr;
   DistanceResult* results = nullptr;  // [pair]
-  FailedLanes* failed = nullptr;      // room for all blocks and one more
+  FailedLanes* failed = nullptr;      // [blocks + 1]
   struct List {
     const std::uint32_t* blocks = nullptr;
     std::size_t count = 0;
@@ -112,9 +113,10 @@ struct BatchRound {
   std::array<List, kFeaturePairs> lists;
 };
 
-// Judges every lane: where the features of the last query are the closest still and the distance is
-// certified, writes what distance() would, bit for bit; the others are listed as failed, in so many
-// blocks. Picks the widest vectors that the machine has; the results do not depend on it.
+// Judges every lane. If the features of the last query are still closest and the distance is
+// certified, writes the result of distance(), bit for bit. The other lanes are listed as failed;
+// returns in how many blocks. Uses the widest vectors that the machine has; the results do not
+// depend on it.
 [[nodiscard]] std::size_t run_batch(const BatchRound& round) noexcept;
 
 // The instruction set that run_batch uses here: "AVX3" (AVX-512), "AVX2", "SSE4", "NEON", "SCALAR".

@@ -1,7 +1,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/batch/kernel.cpp"
-// Four widths: one lane at the x86-64 baseline, SSE4, AVX2, AVX-512; two lanes, NEON, on Arm. What
-// lies between has the same width as one of these.
+// Four widths: one lane at the x86-64 baseline, SSE4, AVX2, AVX-512; two lanes, NEON, on Arm.
+// Instruction sets between these have the same width as one of them.
 #ifndef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "core/batch/block.hpp"
-#include "core/batch/parallel_steps-inl.hpp"
-#include "core/batch/steps-inl.hpp"
+#include "core/batch/parallel_transitions-inl.hpp"
+#include "core/batch/transitions-inl.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/result_numbers.hpp"
 
@@ -22,7 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-// What of Precision a certificate takes, m.
+// The members of Precision that a certificate needs, m.
 struct Precisions {
   Lanes error_bound, gap_tolerance;
 };
@@ -30,21 +30,22 @@ struct Precisions {
 // precision() of core/model/error_bounds.hpp.
 HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativePoses& pose,
                                  Lanes farthest) {
-  const auto row = [&](CommonRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
-  const Lanes apart = norm(pose.translation), radius_a = row(kReachA), radius_b = row(kReachB);
-  Lanes reach_a = radius_a, reach_b = radius_b, ulps = all(kGapToleranceUlps[0]);
+  const auto row = [&](SharedRow r) HWY_ATTR { return load(rows + r * kBlockLanes); };
+  const Lanes translation = norm(pose.translation), radius_a = row(kBoundingRadiusA),
+              radius_b = row(kBoundingRadiusB);
+  Lanes extent_a = radius_a, extent_b = radius_b, ulps = all(kGapToleranceUlps[0]);
   Lanes on_features = row(kErrorBoundA) + row(kErrorBoundB);
   if (!plain) {
     const Lanes at_a = row(kUnboundedA), at_b = row(kUnboundedB);
-    reach_a = hn::Max(radius_a, at_a * ((radius_b + apart) + farthest));
-    reach_b = hn::Max(radius_b, at_b * ((radius_a + apart) + farthest));
-    on_features = on_features + at_a * (all(kUlp * kUlpsOnA) * reach_a);
-    on_features = on_features + at_b * (all(kUlp * kUlpsOnB) * reach_b);
+    extent_a = hn::Max(radius_a, at_a * ((radius_b + translation) + farthest));
+    extent_b = hn::Max(radius_b, at_b * ((radius_a + translation) + farthest));
+    on_features = on_features + at_a * (all(kUlp * kUlpsOnA) * extent_a);
+    on_features = on_features + at_b * (all(kUlp * kUlpsOnB) * extent_b);
     ulps = hn::IfThenElse(hn::Gt(at_a + at_b, all(0.0)), all(kGapToleranceUlps[1]), ulps);
   }
-  const Lanes size = (reach_a + reach_b) + apart;
-  const Lanes turned = hn::Min(reach_b, (reach_a + apart) + all(kStretched) * farthest);
-  const Lanes between = all(kUlp * kUlpsBetween) * apart + pose.translation_error;
+  const Lanes size = (extent_a + extent_b) + translation;
+  const Lanes turned = hn::Min(extent_b, (extent_a + translation) + all(kStretched) * farthest);
+  const Lanes between = all(kUlp * kUlpsBetween) * translation + pose.translation_error;
   return {(on_features + between) + pose.rotation_error * turned, (ulps * all(kUlp)) * size};
 }
 
@@ -61,7 +62,7 @@ HWY_INLINE Points unless(LaneMask where, const Points& kept, const Points& v) {
           hn::IfThenElse(where, kept.z, v.z)};
 }
 
-// From the polyhedra's surfaces to those of the swept-sphere bodies.
+// Moves from the polyhedra's surfaces to those of the swept-sphere bodies.
 HWY_INLINE void add_radii(const double* rows, Answers& r) {
   const Lanes radius_a = load(rows + kRadiusA * kBlockLanes);
   const Lanes radius_b = load(rows + kRadiusB * kBlockLanes);
@@ -77,12 +78,12 @@ HWY_INLINE void add_radii(const double* rows, Answers& r) {
   r.good = hn::And(r.good, hn::Gt(r.lower, all(0.0)));
 }
 
-// certify() of core/feature_walk/steps-inl.hpp.
+// certify() of core/feature_tracking/transitions-inl.hpp.
 HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
-  const LaneMask narrow = hn::Le(c.apart - c.certified, p.gap_tolerance);
-  Answers r{c.apart,
+  const LaneMask narrow = hn::Le(c.distance - c.certified, p.gap_tolerance);
+  Answers r{c.distance,
             c.certified - p.error_bound,
-            c.apart + p.error_bound,
+            c.distance + p.error_bound,
             c.normal,
             c.point_a,
             c.point_b,
@@ -90,8 +91,8 @@ HWY_INLINE Answers certify(const Closest& c, const Precisions& p) {
   return r;
 }
 
-// Of all lanes, failed ones too: the query that such a pair is left to writes its result once more.
-// A lane without a pair writes to the spare result behind the last (BatchBlock::pair).
+// Writes the results of all lanes. The single query of a failed lane overwrites its result. A lane
+// without a pair writes to the spare result behind the last (BatchBlock::pair).
 HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t first,
                       DistanceResult* results) {
   double* to[kWidth];
@@ -99,7 +100,7 @@ HWY_INLINE void write(const Answers& r, const BatchBlock& block, std::size_t fir
     DistanceResult& result = results[block.pair[first + i]];
     to[i] = number_at(result, 0);
     result.status = DistanceStatus::kConverged;
-    result.path = DistancePath::kWalk;
+    result.path = DistancePath::kFeatureTracking;
     result.iterations = 1;
   }
   store_columns({{r.distance, r.lower, r.upper, r.normal.x}}, to, 0);
@@ -130,7 +131,7 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   const RelativePoses pose = relative_poses(load_poses(poses, &block.body_a[first]),
                                             load_poses(poses, &block.body_b[first]));
   const Closest c = closest<kPair>({rows + kFeatureRows * kBlockLanes, block}, pose);
-  Answers r = certify(c, precisions(rows, block.plain, pose, c.apart));
+  Answers r = certify(c, precisions(rows, block.plain, pose, c.distance));
   if (HWY_LIKELY(block.plain)) {
     write(r, block, first, round.results);
   } else {
@@ -148,21 +149,21 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
     store_points(c.point_a, r.good, rows + kPointA * kBlockLanes);
   }
   if constexpr (!at_vertex_of_b(kPair)) {
-    store_points(c.own_b, r.good, rows + kPointB * kBlockLanes);
+    store_points(c.local_b, r.good, rows + kPointB * kBlockLanes);
   }
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Tag(), r.good, bits);
   return bits[0];
 }
 
-// Lists what has failed behind the first `count`; how much there is then.
+// Lists the failed lanes behind the first `count` entries; returns the new count.
 template <FeaturePair kPair>
 std::size_t judge_list(const BatchRound& round, std::size_t count) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kPair)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
-    // Kept only where a lane has failed; else the next block writes over it. Hence the entry that
-    // BatchRound::failed has beyond the number of blocks.
+    // Kept only where a lane has failed; else the next block writes over it. So BatchRound::failed
+    // has one entry more than there are blocks.
     FailedLanes& failed = round.failed[count];
     std::size_t good = 0;
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {

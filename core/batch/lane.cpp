@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <utility>
 
 namespace clearance {
@@ -32,7 +33,7 @@ bool few(std::int32_t repeats, std::size_t most = kMostRepeats) noexcept {
   return repeats <= static_cast<std::int32_t>(most);
 }
 
-// How often what repeats of the feature does: the edges of a vertex, the limits of a facet.
+// The number of edges of a vertex, or of limits of a facet.
 template <FeatureKind kKind>
 std::int32_t repeats_of(const ConvexBody& body, const Side& side) noexcept {
   if constexpr (kKind == FeatureKind::kVertex) return body.vertices[side.feature].edges;
@@ -55,8 +56,8 @@ const double* row_of(const ConvexBody& body, const Side& side) noexcept {
 template <FeatureKind kKind>
 constexpr std::size_t kStride = kKind == FeatureKind::kVertex ? kDirectionRows : kSideRows;
 
-// A feature with what vector code needs of it; a facet without sides is one. Of a vertex, the
-// witness point is where it is, as after any query but those that touch: lanes do not write it.
+// Is this a feature that vector code can judge? A facet without sides is one. The witness point of
+// a vertex has to be the vertex, as after any query but those that touch: lanes do not write it.
 bool can_be_judged(const ConvexBody& body, const Side& side) noexcept {
   if (side.kind > FeatureKind::kFacet || !few(repeats(body, side))) return false;
   return side.kind != FeatureKind::kVertex || side.point == body.vertices[side.feature].position;
@@ -82,8 +83,8 @@ void put(const ConvexBody& body, const Side& side, LaneWriter& to) noexcept {
   }
 }
 
-// Of a lane in which less repeats than `most` times: the last once more; of a half-space, which has
-// no sides, zeros, within which everything lies.
+// Fills a lane with fewer than `most` entries by repeating its last one. A half-space, which has no
+// sides, gets zeros: limits within which everything lies.
 void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t stride,
               std::size_t before, std::size_t most) noexcept {
   for (std::size_t i = stride * before; i < stride * most; ++i) {
@@ -91,7 +92,8 @@ void lengthen(BatchBlock& block, std::size_t lane, std::size_t row, std::size_t 
   }
 }
 
-// What repeats of one body's feature in a lane, from `row` on; every lane has as many as any needs.
+// Writes the edges or limits of one body's feature into a lane, from `row` on. Every lane has as
+// many as the one with the most.
 template <FeatureKind kKind>
 void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const ConvexBody& body,
                  const Side& side, std::uint8_t& most) noexcept {
@@ -112,8 +114,8 @@ void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const Con
   lengthen(block, lane, row, stride, count, most);
 }
 
-// Where it is, by the kinds of the body's feature and of the other's; an edge's neighbours are
-// among its own numbers.
+// The first row of these entries, by the kinds of the body's feature and of the other body's. The
+// neighbours of an edge are among its own numbers.
 constexpr std::size_t repeats_row(FeatureKind of, FeatureKind other, bool is_b) noexcept {
   const bool vertex = of == FeatureKind::kVertex;
   if (of == other && vertex) return is_b ? kDirectionsOfB : kDirectionsOfA;
@@ -122,7 +124,7 @@ constexpr std::size_t repeats_row(FeatureKind of, FeatureKind other, bool is_b) 
   return vertex ? kDirectionsAtFacet : kSides;
 }
 
-// First the feature of more dimensions, of two of a kind A's; then what repeats.
+// First the feature of more dimensions, or A's of two of a kind; then the edges or limits.
 template <FeatureKind kOfA, FeatureKind kOfB>
 void put_features(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
                   const TrackingState& state) noexcept {
@@ -157,12 +159,13 @@ bool point_or_segment(const ConvexBody& body) noexcept {
   return body.facets.empty() && !body.vertices.empty();
 }
 
-// Nothing lies beside the feature: beside a segment's ends, its edge does.
+// Has the feature no neighbours? The ends of a segment have one, its edge.
 bool bare(const ConvexBody& body, const Side& side) noexcept {
   return point_or_segment(body) && (side.kind == FeatureKind::kEdge || body.edges.empty());
 }
 
-// The rows from kBeyondPlain on say nothing of it. Vector code skips them in a block of such pairs.
+// Says nothing in the rows from kFirstSpecialRow on. Vector code skips these rows in a block of
+// plain pairs.
 bool plain(const ConvexBody& body) noexcept {
   return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }
@@ -170,11 +173,12 @@ bool plain(const ConvexBody& body) noexcept {
 // These rows are not read in a plain block, so they have not been written so far.
 void stay_plain_no_longer(BatchBlock& block) noexcept {
   block.plain = false;
-  for (std::size_t row = kBeyondPlain; row < kPointA; ++row) block.rows[row].fill(0.0);
+  for (std::size_t row = kFirstSpecialRow; row < kPointA; ++row) block.rows[row].fill(0.0);
 }
 
-// What a lane has by its bodies and its last witness points, whatever the features.
-void put_common(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
+// Writes the numbers of a lane that do not depend on its features: its bodies' and the last witness
+// points.
+void put_shared(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
                 const TrackingState& state) noexcept {
   LaneWriter to(block, lane, 0);
   to.put(a.bounding_radius);
@@ -201,7 +205,8 @@ void put_common(BatchBlock& block, std::size_t lane, const ConvexBody& a, const 
 bool fits_lane(const ConvexBody& a, const ConvexBody& b, const TrackingState& state) noexcept {
   if (state.a.penetrating || !can_be_judged(a, state.a) || !can_be_judged(b, state.b)) return false;
   if (!a.bounded() && !b.bounded()) return false;
-  // An edge of an unbounded body may have no ends: core/feature_walk leaves it undecided as well.
+  // An edge of an unbounded body may have no ends: core/feature_tracking leaves it undecided as
+  // well.
   switch (feature_pair(state)) {
     case FeaturePair::kEdgeEdge:
       return a.bounded() && b.bounded();
@@ -225,7 +230,8 @@ void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) 
 
 void fill_lane(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
                const TrackingState& state) noexcept {
-  put_common(block, lane, a, b, state);
+  assert(lane < kBlockLanes && feature_pair(state) == block.features && fits_lane(a, b, state));
+  put_shared(block, lane, a, b, state);
   kPutFeatures[static_cast<std::size_t>(block.features)](block, lane, a, b, state);
 }
 
@@ -236,7 +242,7 @@ void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& 
   }
 }
 
-Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept {
+Vec3 last_point(const BatchBlock& block, std::size_t lane, SharedRow row) noexcept {
   return {block.rows[row][lane], block.rows[row + 1][lane], block.rows[row + 2][lane]};
 }
 

@@ -18,7 +18,7 @@ void fill_lane(BatchBlock& block, std::size_t lane, const ConvexBody& a, const C
                const TrackingState& state) noexcept;
 
 // The witness points of the last query that vector code has settled.
-[[nodiscard]] Vec3 last_point(const BatchBlock& block, std::size_t lane, CommonRow row) noexcept;
+[[nodiscard]] Vec3 last_point(const BatchBlock& block, std::size_t lane, SharedRow row) noexcept;
 void take_last_points(const BatchBlock& block, std::size_t lane, TrackingState& state) noexcept;
 
 }  // namespace clearance

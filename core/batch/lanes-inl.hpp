@@ -1,7 +1,7 @@
 // Points and directions of as many pairs as a vector has lanes. Compiled once an instruction set.
 //
 // Only single roundings in the order of the scalar code: no fused multiply-add, no approximate
-// quotient. That is what makes the results independent of the vectors' width.
+// quotient. So the results do not depend on the vectors' width.
 #if defined(CLEARANCE_BATCH_VECTORS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_VECTORS_INL_HPP_
 #undef CLEARANCE_BATCH_VECTORS_INL_HPP_
@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As many doubles as a vector of this instruction set holds, at most those of a block's row.
+// A vector of this instruction set, of at most the eight doubles of a block's row.
 using Tag = hn::CappedTag<double, kBlockLanes>;
 using Lanes = hn::Vec<Tag>;
 using LaneMask = hn::Mask<Tag>;
@@ -57,7 +57,8 @@ HWY_INLINE Points operator*(Lanes s, const Points& a) {
 HWY_INLINE Points over(const Points& a, Lanes s) {
   return {hn::Div(a.x, s), hn::Div(a.y, s), hn::Div(a.z, s)};
 }
-// From x to z, as sum3() of core/numerics/vec4-inl.hpp: the order of sums is part of the result.
+// Sums from x to z, like sum3() of core/numerics/vec4-inl.hpp: the order of sums is part of the
+// result.
 HWY_INLINE Lanes dot(const Points& a, const Points& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
@@ -73,8 +74,8 @@ HWY_INLINE Lanes load(const double* row) { return hn::Load(Tag(), row); }
 HWY_INLINE Points load_points(const double* rows) {
   return {load(rows), load(rows + kBlockLanes), load(rows + 2 * kBlockLanes)};
 }
-// Elsewhere what was there. Not by masked stores: AVX2's take a Zen 4 so long that batches are 6 to
-// 8 % slower.
+// Lanes outside `where` keep their numbers. Not by masked stores: AVX2's take a Zen 4 so long that
+// batches are 6 to 8 % slower.
 HWY_INLINE void store_points(const Points& p, LaneMask where, double* rows) {
   const auto store = [&](Lanes v, double* row)
                          HWY_ATTR { hn::Store(hn::IfThenElse(where, v, load(row)), Tag(), row); };

@@ -1,6 +1,6 @@
-// What lies beside the features of as many pairs as a vector has lanes: the least or greatest of
-// its directional derivatives, and by which number the neighbour that takes over is known
-// (NextFeature). Compiled once an instruction set.
+// The neighbours of the features of as many pairs as a vector has lanes. Finds their least or
+// greatest directional derivative, and the number (NextFeature) of the neighbour that takes over.
+// Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
 #undef CLEARANCE_BATCH_NEIGHBOURS_INL_HPP_
@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-// Where a lane's rows are and how often what repeats does.
+// The rows of the features of some lanes.
 struct FeatureRows {
   const double* rows;  // of the first lane, at kFeatureRows
   const BatchBlock& block;
@@ -26,17 +26,17 @@ struct FeatureRows {
   [[nodiscard]] HWY_INLINE Lanes lanes(std::size_t row) const {
     return load(rows + row * kBlockLanes);
   }
-  [[nodiscard]] HWY_INLINE Lanes common(CommonRow row) const {
+  [[nodiscard]] HWY_INLINE Lanes shared(SharedRow row) const {
     return load(rows - (kFeatureRows - row) * kBlockLanes);
   }
-  [[nodiscard]] HWY_INLINE Points common_points(CommonRow row) const {
+  [[nodiscard]] HWY_INLINE Points shared_points(SharedRow row) const {
     return load_points(rows - (kFeatureRows - row) * kBlockLanes);
   }
-  // A directional derivative of what lies beside a feature; where nothing does, `of_nothing`.
-  [[nodiscard]] HWY_INLINE Lanes unless_bare(CommonRow row, Lanes derivative,
-                                             double of_nothing) const {
+  // A directional derivative of a neighbour; `of_nothing` if the feature has no neighbours.
+  [[nodiscard]] HWY_INLINE Lanes unless_isolated(SharedRow row, Lanes derivative,
+                                                 double of_nothing) const {
     if (HWY_LIKELY(block.plain)) return derivative;
-    return hn::IfThenElse(hn::Eq(common(row), all(0.0)), derivative, all(of_nothing));
+    return hn::IfThenElse(hn::Eq(shared(row), all(0.0)), derivative, all(of_nothing));
   }
 };
 
@@ -61,8 +61,9 @@ HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, al
 HWY_INLINE Lanes next_if(LaneMask beyond_rounding, Lanes next) {
   return hn::IfThenElse(beyond_rounding, next, all(kNextUnknown));
 }
-// Where s is beyond an end of an edge, the vertex there comes first: `at_begin` or the next number.
-HWY_INLINE Lanes unless_beyond(Lanes begin, Lanes end, Lanes s, NextFeature at_begin, Lanes next) {
+// If s lies beyond an end of the edge, the vertex there comes first: `at_begin` or the next number.
+HWY_INLINE Lanes unless_past_end(Lanes begin, Lanes end, Lanes s, NextFeature at_begin,
+                                 Lanes next) {
   next = hn::IfThenElse(hn::Ge(s, end), all(at_begin + 1), next);
   return hn::IfThenElse(hn::Le(s, begin), all(at_begin), next);
 }
@@ -72,7 +73,7 @@ template <bool kOfB>
 struct Beside {
   const FeatureRows& at;
   std::size_t row;
-  static constexpr CommonRow kBare = kOfB ? kBareB : kBareA;
+  static constexpr SharedRow kBare = kOfB ? kIsolatedB : kIsolatedA;
 
   [[nodiscard]] HWY_INLINE Extreme least(const Points& g) const {
     return least_of(kOfB ? at.block.most_b : at.block.most_a, g);
@@ -91,7 +92,7 @@ struct Beside {
     Lanes number = all(0.0);
     for (std::size_t i = 0; i < count; ++i, number = after(number))
       lowest.lower(along(i, g), number);
-    lowest.derivative = at.unless_bare(kBare, lowest.derivative, kInfinity);
+    lowest.derivative = at.unless_isolated(kBare, lowest.derivative, kInfinity);
     return lowest;
   }
   [[nodiscard]] HWY_INLINE Extreme greatest_of(std::size_t count, const Points& g) const {
@@ -99,7 +100,7 @@ struct Beside {
     Lanes number = all(0.0);
     for (std::size_t i = 0; i < count; ++i, number = after(number))
       highest.raise(along(i, g), number);
-    highest.derivative = at.unless_bare(kBare, highest.derivative, -kInfinity);
+    highest.derivative = at.unless_isolated(kBare, highest.derivative, -kInfinity);
     return highest;
   }
   [[nodiscard]] HWY_INLINE Lanes along(std::size_t i, const Points& g) const {

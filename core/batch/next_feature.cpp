@@ -13,10 +13,10 @@ struct Features {
   Side& on_other;
 };
 
-constexpr WalkStart kOneTransition{.transitions = 1};
+constexpr TransitionsMade kOneTransition{.transitions = 1};
 
-// Where an edge ends: it need not.
-WalkStart go(Side& side, FeatureKind kind, std::int32_t feature) noexcept {
+// `feature` is kNone at the open end of an edge: no transition.
+TransitionsMade go(Side& side, FeatureKind kind, std::int32_t feature) noexcept {
   if (feature == kNone) return {};
   side.kind = kind;
   side.feature = feature;
@@ -28,32 +28,33 @@ const EdgeUse& edge_of_vertex(const ConvexBody& body, const Side& side, std::int
 }
 
 // Onto the vertex's edge, or past it to its far end.
-WalkStart along_edge(const ConvexBody& body, Side& side, std::int32_t i,
-                     double derivative) noexcept {
+TransitionsMade along_edge(const ConvexBody& body, Side& side, std::int32_t i,
+                           double derivative) noexcept {
   const EdgeUse& use = edge_of_vertex(body, side, i);
   const Edge& edge = body.edges[use.edge];
-  // `derivative` is g.e with |g| the distance and |e| = 1: how far along the edge's line the
-  // closest point is, m.
+  // `derivative` is g.e with |g| the distance and |e| = 1: the place of the closest point along the
+  // edge's line, m.
   const std::int32_t far = edge.vertex[1 - use.side];
   return derivative >= edge.end && far != kNone ? go(side, FeatureKind::kVertex, far)
                                                 : go(side, FeatureKind::kEdge, use.edge);
 }
 
-// To the facet beside it that approaches, or to the end that the closest point lies beyond.
-WalkStart leave_edge(const ConvexBody& body, Side& side, std::int32_t next) noexcept {
+// Moves to the facet beside the edge that approaches, or to the end that the closest point has
+// passed.
+TransitionsMade leave_edge(const ConvexBody& body, Side& side, std::int32_t next) noexcept {
   const Edge& edge = body.edges[side.feature];
   return next < kNextEnd ? go(side, FeatureKind::kFacet, edge.facet[next - kNextBeside])
                          : go(side, FeatureKind::kVertex, edge.vertex[next - kNextEnd]);
 }
 
-WalkStart from_edge_and_vertex(const Features& f, std::int32_t next) noexcept {
+TransitionsMade from_edge_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextBeside) return leave_edge(f.owner, f.on_owner, next);
   return go(f.on_other, FeatureKind::kEdge, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
-// The edge of the vertex that approaches fastest leads to its far end; a side that the vertex lies
-// beyond, to that edge of the facet.
-WalkStart from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
+// If an edge of the vertex approaches, the vertex at its far end is next. If the vertex lies beyond
+// a side of the facet, that edge of the facet is next.
+TransitionsMade from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);
     return go(f.on_other, FeatureKind::kVertex, f.other.edges[use.edge].vertex[1 - use.side]);
@@ -62,8 +63,8 @@ WalkStart from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   return go(f.on_owner, FeatureKind::kEdge, f.owner.facet_edges[facet.first_side + next].edge);
 }
 
-// Of what does not recede beside crossing edges.
-WalkStart to_facets_beside(const Features& f, std::int32_t next) noexcept {
+// Moves to the facets beside crossing edges that do not recede.
+TransitionsMade to_facets_beside(const Features& f, std::int32_t next) noexcept {
   const std::int32_t of_a = next % kNextBesideB, of_b = next / kNextBesideB;
   const Edge& first = f.owner.edges[f.on_owner.feature];
   const Edge& second = f.other.edges[f.on_other.feature];
@@ -72,8 +73,8 @@ WalkStart to_facets_beside(const Features& f, std::int32_t next) noexcept {
   return {.transitions = 1, .parallel_transitions = 1};
 }
 
-// The ends come first (unless_beyond() of neighbours-inl.hpp), then the facets beside.
-WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
+// The ends come first (unless_past_end() of neighbours-inl.hpp), then the facets beside.
+TransitionsMade from_edges(const Features& f, std::int32_t next) noexcept {
   if (next < kNextEnd) return to_facets_beside(f, next);
   if (next < kNextEndB) return leave_edge(f.owner, f.on_owner, next);
   return leave_edge(f.other, f.on_other, next - kNextEndB + kNextEnd);
@@ -81,8 +82,9 @@ WalkStart from_edges(const Features& f, std::int32_t next) noexcept {
 
 }  // namespace
 
-WalkStart to_next_feature(FeaturePair features, const ConvexBody& a, const ConvexBody& b,
-                          const FailedLanes& of, std::size_t lane, TrackingState& state) noexcept {
+TransitionsMade to_next_feature(FeaturePair features, const ConvexBody& a, const ConvexBody& b,
+                                const FailedLanes& of, std::size_t lane,
+                                TrackingState& state) noexcept {
   const auto next = static_cast<std::int32_t>(of.next[lane]);
   if (next == kNextUnknown) return {};
   const Features f = kind_on_b(features) > kind_on_a(features) ? Features{b, a, state.b, state.a}

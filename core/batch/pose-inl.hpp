@@ -28,15 +28,15 @@ struct Rotations {
   Points x, y, z;  // rows
 };
 
-// B as seen from A, and what rounding can have done to it: as in RelativePose4 of
-// core/model/relative_pose-inl.hpp (of the rotation in the 2-norm, of the translation in m).
+// B as seen from A, with bounds of the rounding in it: RelativePose4 of
+// core/model/relative_pose-inl.hpp for lanes.
 struct RelativePoses {
   Rotations rotation;
   Points translation;
   Lanes rotation_error, translation_error;
 };
 
-// As the sums of Diagonals: each row's begins at the diagonal.
+// Sums in the order of Diagonals: the sum of each row begins at the diagonal.
 HWY_INLINE Points direction_to_a(const RelativePoses& a_from_b, const Points& p) {
   const Rotations& r = a_from_b.rotation;
   return {dot({r.x.x, r.x.y, r.x.z}, {p.x, p.y, p.z}), dot({r.y.y, r.y.z, r.y.x}, {p.y, p.z, p.x}),
@@ -58,7 +58,8 @@ HWY_INLINE Points point_to_b(const RelativePoses& a_from_b, const Points& p) {
 static_assert(sizeof(Pose) == 8 * sizeof(double) && alignof(Pose) == sizeof(Pose));
 static_assert(offsetof(Pose, position) == 0 && offsetof(Pose, orientation) == 4 * sizeof(double));
 
-// Of the bodies which[0], ..., which[kWidth - 1]: rows in memory, columns in vectors.
+// Loads the poses of the bodies which[0], ..., which[kWidth - 1]: rows in memory, columns in
+// vectors.
 HWY_INLINE Poses load_poses(const Pose* poses, const std::uint32_t* which) {
   const double* rows[kWidth];
   for (std::size_t i = 0; i < kWidth; ++i) rows[i] = poses[which[i]].position.data();
@@ -94,7 +95,7 @@ HWY_INLINE LaneMask are_unit(const Quaternions& q) {
   return hn::Le(hn::Abs(hn::Sub(square_of(q), all(1.0))), all(1.99 * kUnitTolerance));
 }
 
-// 2 / |q|^2 of what is nearly_unit(); of any length: two_over_any_square().
+// 2 / |q|^2 if nearly_unit(q); two_over_any_square() is for any length.
 HWY_INLINE Lanes two_over_square(Lanes square) {
   return hn::Mul(all(2.0), hn::Sub(all(2.0), square));
 }
@@ -136,20 +137,21 @@ HWY_INLINE LaneMask multiple_of_half(Lanes v) {
   const Lanes twice = hn::Add(v, v);
   return hn::Eq(twice, hn::Round(twice));
 }
-// Of unit quaternions, as permutes_axes() of core/model/relative_pose-inl.hpp.
+// The same test of unit quaternions as permutes_axes() of core/model/relative_pose-inl.hpp.
 HWY_INLINE LaneMask permute_axes(const Quaternions& q) {
   return hn::And(hn::And(multiple_of_half(q.x), multiple_of_half(q.y)),
                  hn::And(multiple_of_half(q.z), multiple_of_half(q.w)));
 }
 
 // set_exactness() of core/model/relative_pose-inl.hpp.
-HWY_INLINE void set_exactness(const Quaternions& a, const Quaternions& b, Lanes apart,
+HWY_INLINE void set_exactness(const Quaternions& a, const Quaternions& b, Lanes translation_length,
                               RelativePoses& pose) {
   const LaneMask a_permutes = permute_axes(a);
   const LaneMask exact = hn::Or(equal_up_to_sign(a, b), hn::And(a_permutes, permute_axes(b)));
   pose.rotation_error = hn::IfThenElse(exact, all(0.0), pose.rotation_error);
-  pose.translation_error = hn::IfThenElse(
-      a_permutes, hn::Mul(all(kPermutedTranslationError), apart), pose.translation_error);
+  pose.translation_error =
+      hn::IfThenElse(a_permutes, hn::Mul(all(kPermutedTranslationError), translation_length),
+                     pose.translation_error);
 }
 
 // Leaves no number of a pose that is not good, so that its lane fails.
@@ -176,15 +178,16 @@ HWY_INLINE RelativePoses relative_poses(const Poses& world_from_a, const Poses& 
   }
   RelativePoses out{rotation_matrices(q, over_q), turn_back(a, over_a, between),
                     all(kRotationError), all(0.0)};
-  const Lanes apart = norm(out.translation);
-  const LaneMask near = hn::Le(apart, all(0.5 * kLargestCoordinate));
+  const Lanes translation_length = norm(out.translation);
+  const LaneMask near = hn::Le(translation_length, all(0.5 * kLargestCoordinate));
   if (HWY_UNLIKELY(!hn::AllTrue(Tag(), hn::And(unit, near)))) {
     spoil(hn::And(near, hn::And(are_unit(a), are_unit(b))), out);
   }
-  out.translation_error = hn::Mul(all(kTranslationError), apart);
-  // As may_be_exact() there: moving orientations nearly never pass.
+  out.translation_error = hn::Mul(all(kTranslationError), translation_length);
+  // The same test as may_be_exact() there: moving orientations nearly never pass it.
   const LaneMask may_be_exact = hn::Or(multiple_of_half(a.w), multiple_of_half(q.z));
-  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), may_be_exact))) set_exactness(a, b, apart, out);
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), may_be_exact)))
+    set_exactness(a, b, translation_length, out);
   return out;
 }
 

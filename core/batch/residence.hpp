@@ -1,8 +1,9 @@
-// How long a tracked pair of a batch keeps its features, and so whether it is worth a lane.
+// The number of rounds for which a tracked pair keeps its features, which says whether a lane is
+// worth it.
 //
-// A pair in a lane costs a third of a single query; one that has to leave its lane, one and a half
-// of them more. So a pair that changes its features in more than about a quarter of the rounds is
-// better off outside.
+// A pair in a lane costs a third of a single query. A pair that has to leave its lane costs one and
+// a half queries more. So a pair that changes its features in more than about a quarter of the
+// rounds is better off outside.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@ class Residence {
  public:
   // Features that vector code could not tell of are tried there again after so many rounds.
   static constexpr std::uint16_t kRetry = 64;
-  // Of features that vector code does not judge: nearly unlimited.
+  // For features that vector code does not judge: nearly unlimited.
   static constexpr std::uint16_t kNotAtAll = 0xffff;
 
   // After the query of round `now`, a counter that wraps around. `changed`: it ended at other

@@ -88,7 +88,7 @@ BatchSlots::Slot BatchSlots::append(FeaturePair features) noexcept {
   return {blocks.back(), blocks_[blocks.back()].lanes++};
 }
 
-// By the last pair of the same features, so that the end is what gets shorter.
+// Takes the last pair of the same features, so that the list gets shorter at its end.
 void BatchSlots::close_holes(std::size_t most) noexcept {
   for (std::size_t features = 0; features < kFeaturePairs; ++features) {
     Settled& of = settled_[features];

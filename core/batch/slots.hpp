@@ -1,4 +1,4 @@
-// Where in the blocks of a batch its pairs are.
+// The places of a batch's pairs in its blocks.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// The pairs of a batch and what they remember.
+// The pairs of a batch and their states.
 struct BatchPairs {
   std::vector<const ConvexBody*> bodies;
   std::vector<BodyPair> pairs;
@@ -57,7 +57,8 @@ class BatchSlots {
   void enter(std::uint32_t pair) noexcept;
   // Takes the points of its last query along, to its state.
   void leave(std::uint32_t pair) noexcept;
-  // Moves pairs into lanes that others have left; a few of those stay, for what comes next.
+  // Moves pairs into lanes that others have left. A few free lanes stay, for the pairs that enter
+  // next.
   void close_holes() noexcept { close_holes(kMostHoles); }
 
  private:

@@ -8,7 +8,7 @@
 namespace clearance::exact {
 namespace {
 
-// How far inside every plane; negative outside one.
+// The least gap to any plane; negative outside one.
 double depth(const ConvexBody& body, const Vec3& point) {
   double least = kInfinity;
   for (const Facet& facet : body.facets) {
@@ -36,7 +36,7 @@ Vec3 centroid(const ConvexBody& body) {
   return volume > 0.0 ? Vec3(apex + moment / (4.0 * volume)) : apex;
 }
 
-// From the mean of the anchors along the rays' mean, as far as the anchors are spread.
+// Goes from the mean of the anchors along the mean of the rays, by the spread of the anchors.
 Vec3 beyond_anchors(const ConvexBody& body) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());

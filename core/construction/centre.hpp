@@ -6,7 +6,8 @@
 namespace clearance::exact {
 
 // The centre, unless the body is so thin that doubles lose it; `known` is inside but may be far off
-// centre. Of an unbounded body, from its anchors as far along its rays as they are spread.
+// centre. The centre of an unbounded body lies along its rays from the anchors, by the spread of
+// the anchors.
 [[nodiscard]] Vec3 well_inside(const ConvexBody& body, const Vec3& known);
 
 }  // namespace clearance::exact

@@ -18,10 +18,10 @@ struct Triangle {
   bool alive = true;
 };
 
-// A horizon edge: the triangle beyond it stays, the one on this side goes.
+// A horizon edge: the triangle outside stays, the one on this side goes.
 struct HorizonEdge {
   int from, to;
-  int beyond;
+  int outside;
 };
 
 // Fisher-Yates from a fixed seed: std::shuffle may differ between standard libraries.
@@ -135,9 +135,9 @@ class HullBuilder {
   void insert(int point) {
     find_horizon(point);
     fill_horizon(point);
-    // A point that saw a triangle that is gone sees a new one or is inside: the plane through a
-    // horizon edge and the new point is a non-negative combination of the two old planes that met
-    // there.
+    // A point that saw a removed triangle sees a new one or is inside. The reason: the plane
+    // through a horizon edge and the new point is a non-negative combination of the two old planes
+    // that met there.
     for (const int gone : going_) {
       int other = triangles_[at(gone)].first_conflict;
       while (other != kNoIndex) {
@@ -179,13 +179,13 @@ class HullBuilder {
     coming_.clear();
     for (const HorizonEdge& edge : horizon_) {
       const int fresh =
-          add_triangle({edge.from, edge.to, point}, {edge.beyond, kNoIndex, kNoIndex});
+          add_triangle({edge.from, edge.to, point}, {edge.outside, kNoIndex, kNoIndex});
       coming_.push_back(fresh);
       triangle_from_[at(edge.from)] = fresh;
-      HullTriangle& beyond = triangles_[at(edge.beyond)].link;
+      HullTriangle& outside = triangles_[at(edge.outside)].link;
       for (std::size_t i = 0; i < 3; ++i) {
-        if (beyond.vertex[i] == edge.to && beyond.vertex[(i + 1) % 3] == edge.from) {
-          beyond.neighbor[i] = fresh;
+        if (outside.vertex[i] == edge.to && outside.vertex[(i + 1) % 3] == edge.from) {
+          outside.neighbor[i] = fresh;
         }
       }
     }

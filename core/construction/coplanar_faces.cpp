@@ -5,7 +5,7 @@
 namespace clearance::exact {
 namespace {
 
-constexpr int kUnknown = -1;
+constexpr int kNoFace = -1;
 
 // A directed edge: vertex[side] -> vertex[side + 1] of a triangle.
 struct HalfEdge {
@@ -26,11 +26,11 @@ int apex(const HullTriangle& triangle, const HullTriangle& base) {
 // The face of every triangle: coplanar neighbours share one.
 std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriangle> triangles,
                               int& count) {
-  std::vector<int> face(triangles.size(), kUnknown);
+  std::vector<int> face(triangles.size(), kNoFace);
   std::vector<int> open;
   count = 0;
   for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
-    if (face[seed] != kUnknown) continue;
+    if (face[seed] != kNoFace) continue;
     FilteredPlane plane(points, triangles[seed].vertex);
     face[seed] = count;
     open.push_back(static_cast<int>(seed));
@@ -38,7 +38,7 @@ std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriang
       const HullTriangle& triangle = triangles[at(open.back())];
       open.pop_back();
       for (const int neighbor : triangle.neighbor) {
-        if (face[at(neighbor)] != kUnknown) continue;
+        if (face[at(neighbor)] != kNoFace) continue;
         if (plane.side(points, apex(triangles[at(neighbor)], triangle)) != 0) continue;
         face[at(neighbor)] = count;
         open.push_back(neighbor);
@@ -72,7 +72,7 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
   int count = 0;
   const std::vector<int> face = face_numbers(points, triangles, count);
   std::vector<HullFace> faces(at(count));
-  const auto beyond = [&](HalfEdge edge) {
+  const auto face_across = [&](HalfEdge edge) {
     return face[at(triangles[at(edge.triangle)].neighbor[edge.side])];
   };
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -80,21 +80,22 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
     if (!result.vertex.empty()) continue;
     for (std::size_t side = 0; side < 3; ++side) {
       HalfEdge start{static_cast<int>(t), side};
-      if (beyond(start) == face[t]) continue;
+      if (face_across(start) == face[t]) continue;
       // Walk to where the neighbour changes, so that the loop starts at a true vertex.
       HalfEdge edge = next_on_boundary(triangles, face, start);
-      while (beyond(edge) == beyond(start)) edge = next_on_boundary(triangles, face, edge);
+      while (face_across(edge) == face_across(start))
+        edge = next_on_boundary(triangles, face, edge);
       start = edge;
-      int last_beyond = kUnknown;
+      int last_face = kNoFace;
       do {
-        if (beyond(edge) != last_beyond) {
-          last_beyond = beyond(edge);
+        if (face_across(edge) != last_face) {
+          last_face = face_across(edge);
           result.vertex.push_back(triangles[at(edge.triangle)].vertex[edge.side]);
-          result.neighbor.push_back(last_beyond);
+          result.neighbor.push_back(last_face);
         }
         edge = next_on_boundary(triangles, face, edge);
       } while (edge.triangle != start.triangle || edge.side != start.side);
-      // Of true vertices no three of a face lie in one line.
+      // No three true vertices of a face lie in one line.
       result.plane = plane_through(points.exact(result.vertex[0]), points.exact(result.vertex[1]),
                                    points.exact(result.vertex[2]));
       reduce(result.plane);

@@ -113,8 +113,8 @@ Integer DepthProgramme::ample_box() const {
 
 void DepthProgramme::solve(const Integer& box) {
   constraints_.resize(at(rows_));
-  // The start is a corner of the box at t = 1, with all of the objective on the last bound: dual
-  // feasible, whatever the rows are.
+  // The start is a vertex of the box at t = 1, with all of the objective on the last bound. That is
+  // dual feasible, whatever the rows are.
   for (std::size_t i = 0; i < 3; ++i) {
     basis_.member[i] = static_cast<int>(constraints_.size());
     constraints_.push_back(bound(i, 1, free_[i] ? box : Integer(0)));

@@ -1,8 +1,8 @@
 // How deep inside a set of half-spaces can a point be? A linear programme, solved exactly.
 //
-// max t subject to n.x + m t <= d for every row, with m > 0 the power of two next below |n|'s
-// largest component: four variables. Dual simplex from a vertex of a box: pivots in integers;
-// pricing in doubles, with an exact check wherever rounding could matter. At the end every row
+// max t subject to n.x + m t <= d for every row, in four variables; m > 0 is the power of two next
+// below the largest component of |n|. Dual simplex from a vertex of a box. Pivots are in integers.
+// Pricing is in doubles, with an exact check wherever rounding could matter. At the end every row
 // holds exactly.
 #pragma once
 
@@ -35,7 +35,7 @@ struct DepthBasis {
   void invert(const std::vector<DepthConstraint>& constraints);
   // The coefficients of `a` as a combination of the members, times `determinant`.
   [[nodiscard]] Integer4 combination(const Integer4& a) const;
-  // Where the members meet, times `determinant`.
+  // The point in which the members meet, times `determinant`.
   [[nodiscard]] Integer4 solution(const std::vector<DepthConstraint>& constraints) const;
 };
 

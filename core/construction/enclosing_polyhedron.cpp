@@ -15,7 +15,7 @@ namespace {
 // A round takes half of the facets that are left (next_cuts): twelve are enough for thousands.
 constexpr int kMostRounds = 12;
 
-// Of a curved body's circles so many points stand for it where planes are chosen.
+// So many points of each circle stand for a curved body when planes are chosen.
 constexpr int kRound = 16;
 
 // The bodies' hull: a polyhedron is the hull of spheres of these radii around its anchors.
@@ -33,8 +33,8 @@ class Outline {
       farthest = std::max(farthest, n.dot(sphere.centre) + length * sphere.radius);
     }
     for (const Curved& body : curved_) {
-      const double reach = clearance::support_value(*body.shape, body.turn.transpose() * n);
-      farthest = std::max(farthest, n.dot(body.origin) + reach + length * body.radius);
+      const double value = clearance::support_value(*body.shape, body.turn.transpose() * n);
+      farthest = std::max(farthest, n.dot(body.origin) + value + length * body.radius);
     }
     return farthest + 0x1p-49 * size_;  // three roundings of a product, two of the sum
   }
@@ -64,7 +64,7 @@ class Outline {
     double radius;  // and what placing may have moved it, m
   };
 
-  // A curved body, turned and then moved.
+  // A curved body, rotated and then moved.
   struct Curved {
     const CurvedShape* shape;
     Mat3 turn;
@@ -135,7 +135,7 @@ std::vector<HalfSpace> candidates(std::span<const PlacedShape> bodies, const Out
   return planes;
 }
 
-double beyond(const HalfSpace& plane, const Vec3& point) {
+double height_above(const HalfSpace& plane, const Vec3& point) {
   return plane.normal.dot(point) - plane.offset;
 }
 
@@ -147,15 +147,16 @@ struct CutVertex {
 CutVertex judged(const Vec3& vertex, const std::vector<HalfSpace>& planes) {
   CutVertex result;
   for (const HalfSpace& plane : planes) {
-    const double depth = beyond(plane, vertex);
+    const double depth = height_above(plane, vertex);
     if (depth > result.sticks_out) result = {depth, &plane};
   }
   return result;
 }
 
-// The planes to cut with next, at most `room`: no vertex twice when one cut takes most of it off.
+// The planes to cut with next, at most `most_cuts`: no vertex twice when one cut takes most of it
+// off.
 std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfSpace>& planes,
-                                 double tolerance, std::size_t room) {
+                                 double tolerance, std::size_t most_cuts) {
   std::vector<std::pair<CutVertex, Vec3>> vertices;
   for (const Vertex& vertex : body.vertices) {
     const CutVertex cut_off = judged(vertex.position, planes);
@@ -164,15 +165,15 @@ std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfS
   std::stable_sort(vertices.begin(), vertices.end(), [](const auto& left, const auto& right) {
     return left.first.sticks_out > right.first.sticks_out;
   });
-  // Half of what there is room for, so that later cuts are chosen by what these leave.
-  const std::size_t most = std::min(room, std::max<std::size_t>(2, room / 2));
+  // Half of the cuts that are left, so that later cuts are chosen by the result of these.
+  const std::size_t most = std::min(most_cuts, std::max<std::size_t>(2, most_cuts / 2));
   std::vector<HalfSpace> cuts;
   for (const auto& [cut_off, position] : vertices) {
     if (cuts.size() == most) break;
     const Vec3& point = position;
     const double enough = 0.5 * cut_off.sticks_out;
     const bool done = std::any_of(cuts.begin(), cuts.end(), [&](const HalfSpace& cut) {
-      return beyond(cut, point) >= enough;
+      return height_above(cut, point) >= enough;
     });
     if (!done) cuts.push_back(*cut_off.plane);
   }

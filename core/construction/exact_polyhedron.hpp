@@ -34,8 +34,8 @@ struct Solid {
 // The intersection of rows that are finite and whose normals are not zero.
 [[nodiscard]] std::variant<Solid, ShapeError> intersection_of(std::span<const HalfSpace> rows);
 
-// Rounds every coordinate once; refused when a coordinate leaves the range in which squares are
-// finite, or a direction that is kept exactly the room for it.
+// Rounds every coordinate once. Refused: a coordinate whose square is not finite, or a direction
+// that is to be kept exactly and does not fit into doubles.
 [[nodiscard]] ShapeResult rounded_polyhedron(const Solid& solid);
 
 }  // namespace clearance::exact

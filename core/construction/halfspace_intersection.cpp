@@ -1,7 +1,7 @@
-// Half-spaces to facets, edges and vertices through polarity: seen from an interior point c, the
-// rows n.x <= d become points n / (d - n.c), and the facets of their hull are the vertices of the
-// intersection. A further point at the dual's origin stands for the plane at infinity: hull faces
-// that pass through it are rays.
+// Half-spaces to facets, edges and vertices through polarity. Seen from an interior point c, the
+// rows n.x <= d become points n / (d - n.c). The facets of the hull of these points are the
+// vertices of the intersection. A further point at the origin of the dual stands for the plane at
+// infinity: hull faces that pass through it are rays.
 #include <algorithm>
 #include <string>
 
@@ -45,8 +45,8 @@ std::vector<Integer4> dual_points(const std::vector<Integer4>& planes, const Int
   return points;
 }
 
-// A dual face's plane h as a homogeneous point of the primal space: (h / -h_w) + centre, or with w
-// = 0 the direction of a ray.
+// The plane h of a dual face as a homogeneous point of the primal space: (h / -h_w) + centre. With
+// w = 0 it is the direction of a ray.
 Integer4 primal_point(const Integer4& plane, const Integer4& centre) {
   Integer4 point;
   const Integer weight = -plane[3];
@@ -140,8 +140,8 @@ class DualReader {
   }
 
   // Calls visit(left row, right row, dual face it comes from, dual face it goes to) once for each
-  // dual edge between two rows. A dual face lies to the left of its boundary, so crossing the dual
-  // edge vertex -> next vertex from the right to the left is walking with `vertex` on the left.
+  // dual edge between two rows. A dual face lies to the left of its boundary. So the primal edge
+  // that crosses the dual edge vertex -> next from right to left has `vertex` on its left.
   template <typename Visit>
   void for_each_edge(const Visit& visit) {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -174,7 +174,7 @@ Solid parallel_planes(const std::vector<Integer4>& planes, const Integer4& centr
   Solid solid;
   solid.interior = centre;
   const Integer3 up = head(planes[0]);
-  // Of each sense of the normal only the nearest plane is a facet.
+  // For each sense of the normal only the nearest plane is a facet.
   std::array<int, 2> tightest{kNone, kNone};  // by side
   for (std::size_t row = 0; row < planes.size(); ++row) {
     int& best = tightest[sgn(dot(up, head(planes[row]))) > 0 ? 0 : 1];

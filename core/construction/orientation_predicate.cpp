@@ -7,9 +7,8 @@
 namespace clearance::exact {
 namespace {
 
-// A determinant of four rounded rows is off by at most 17 * 2^-53 of its permanent to first order
-// (8 from the inputs, 3 from products, 6 from sums); 32 leaves room for the permanent's own
-// rounding.
+// To first order a determinant of four rounded rows is off by at most 17 * 2^-53 of its permanent.
+// The inputs give 8, products 3, sums 6. 32 covers the permanent's own rounding as well.
 constexpr double kDeterminantError = 0x1p-48;
 // Products of four components stay far from underflow when none is smaller than this beside the
 // largest.

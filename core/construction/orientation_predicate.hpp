@@ -11,8 +11,8 @@
 
 namespace clearance::exact {
 
-// Homogeneous points with a rounded copy of each: relative error at most 2^-52 a component, up to a
-// power of two of the whole point (which changes no sign).
+// Homogeneous points with a rounded copy of each. A component of the copy is off by at most 2^-52,
+// up to a power of two of the whole point, which changes no sign.
 class PointSet {
  public:
   explicit PointSet(std::span<const Integer4> points);

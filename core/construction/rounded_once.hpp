@@ -1,4 +1,4 @@
-// From exact numbers to doubles, rounded once.
+// Exact numbers to doubles, rounded once.
 #pragma once
 
 #include "core/construction/integer_vector.hpp"

@@ -59,8 +59,8 @@ struct SegmentLine {
   exact::Rounded length;
 };
 
-// The exact line between two points, its direction and length each rounded once: with weights w of
-// the homogeneous points, the length is |d| / w = |d|^2 / sqrt(|d|^2 w^2).
+// The exact line between two points; its direction and its length are each rounded once. With
+// weights w of the homogeneous points, the length is |d| / w = |d|^2 / sqrt(|d|^2 w^2).
 SegmentLine line_from(const Vec3& start, const Vec3& end) {
   const exact::Integer4 a = exact::integer_multiple({start.x(), start.y(), start.z(), 1.0});
   const exact::Integer4 b = exact::integer_multiple({end.x(), end.y(), end.z(), 1.0});
@@ -144,7 +144,7 @@ ShapeResult point(const Vec3& position, double radius) {
   body.anchors.push_back(position);
   body.interior = position;
   // Rounded up: a norm is off by 2.5 ulps.
-  body.bounding_radius = position.norm() * (1.0 + 0x1p-50);
+  body.bounding_radius = position.norm() * kRoundedUp;
   body.radius = radius;
   add_query_tables(body);
   return body;
@@ -174,7 +174,7 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
   body.vertex_edges = {{0, 0}, {0, 1}};
   body.anchors = {start, end};
   body.interior = 0.5 * start + 0.5 * end;
-  body.bounding_radius = std::max(start.norm(), end.norm()) * (1.0 + 0x1p-50);
+  body.bounding_radius = std::max(start.norm(), end.norm()) * kRoundedUp;
   body.position_error = line.length.exact ? 0.0 : kUlp * line.length.value;
   body.radius = radius;
   add_query_tables(body);

@@ -11,14 +11,14 @@
 
 namespace clearance::exact {
 
-// Rows whose normals have a positive combination of zero with an offset of zero (`flat`) or less:
-// proof by Farkas that nothing lies strictly inside all of them.
+// Rows with a positive combination whose normal is zero and whose offset is zero (`flat`) or less.
+// By Farkas' lemma nothing lies strictly inside all of them.
 struct NoInterior {
   std::vector<int> rows;  // indices, ascending, at most four
   bool flat;              // the rows still share points, in a common plane
 };
 
-// What the normals span.
+// The space that the normals span.
 struct NormalSpan {
   int rank;  // 1 to 3
   Integer3

@@ -1,4 +1,5 @@
-// From an exact solid to the doubles of the queries: every number rounded once, then joined up.
+// Makes the doubles of the queries from an exact solid: rounds every number once, then joins the
+// features up.
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +33,7 @@ class Rounder {
       result[axis] = rounded.value;
       error[axis] = error_of(rounded);
     }
-    note(error.norm() * (1.0 + 0x1p-50));
+    note(error.norm() * kRoundedUp);
     return result;
   }
 
@@ -114,7 +115,7 @@ class Assembler {
     return rounder_.over_root(squared, squared * weight * weight);
   }
 
-  // What one facet sees of its edges: leaves `from`, goes to `to` (kNone: infinity), facet on the
+  // An edge as one of its facets sees it: from `from` to `to` (kNone: infinity), the facet on the
   // left.
   struct Side {
     int from, to;
@@ -160,8 +161,8 @@ class Assembler {
     }
   }
 
-  // Where two sides meet at so sharp an angle that a point past the corner is beyond neither of
-  // them by more than rounding, the facet is limited there once more: across the first side's end.
+  // At a sharp vertex a point may be past the vertex and beyond neither side by more than rounding.
+  // The facet gets one limit more there: across the end of the first side.
   void add_sharp_corners(Facet& facet) {
     facet.limits = facet.sides;
     const auto use_of = [&](std::int32_t i) {
@@ -228,7 +229,7 @@ class Assembler {
     }
   }
 
-  // What an unbounded body keeps exactly.
+  // The rays and lines of an unbounded body, exactly where doubles can hold them.
   void add_rays() {
     for (const Integer3& ray : solid_.rays) {
       const RoundedDirection direction = nearest_direction(ray);
@@ -289,7 +290,7 @@ double thickness(const ConvexBody& body) {
     const Vec3 back = -facet.normal;
     const bool ends = std::ranges::all_of(
         body.rays, [&](const Ray& ray) { return back.dot(ray.direction) <= kDerivativeError; });
-    if (ends) least = std::min(least, facet.offset + support(body, back).reach);
+    if (ends) least = std::min(least, facet.offset + support(body, back).value);
   }
   return least;
 }
@@ -310,7 +311,7 @@ ShapeResult rounded_polyhedron(const Solid& solid) {
     }
     farthest = std::max(farthest, anchor.norm());
   }
-  body.bounding_radius = farthest * (1.0 + 0x1p-50);
+  body.bounding_radius = farthest * kRoundedUp;
   Vec3 inside;
   for (std::size_t i = 0; i < 3; ++i) {
     inside[static_cast<Eigen::Index>(i)] =

@@ -138,7 +138,7 @@ HWY_INLINE BodySupport polyhedron_support(const ConvexBody& body, const SidePart
   if (steepest > 4.0 * kDerivativeError && !active.has(whole.anchor)) {
     found.missing = whole.anchor;
   } else {
-    found.value = std::max(found.value, whole.reach);
+    found.value = std::max(found.value, whole.value);
   }
   return found;
 }

@@ -39,7 +39,8 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
   found.upper = end.upper;
   found.error = rounding_error(
       {&a, a.bounding_radius}, {&b, b.bounding_radius},
-      {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.apart}, end.upper, size);
+      {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation_length}, end.upper,
+      size);
   found.size = size;
   found.radius_a = a.radius;
   found.radius_b = b.radius;
@@ -56,7 +57,7 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {
-    if (!(a_from_b.apart > 0.0)) return false;
+    if (!(a_from_b.translation_length > 0.0)) return false;
     x = a_from_b.translation;
     state.active.count = 0;
   }
@@ -64,7 +65,7 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   // The thorough effort answers bodies whose smooth parts are not round.
   if (a.is_curved() != side_a.is_round() || b.is_curved() != side_b.is_round()) return false;
   if (HWY_UNLIKELY(state.active.count == 0)) x = start(side_a, side_b, a_from_b, x, state.active);
-  const double size = a.bounding_radius + b.bounding_radius + a_from_b.apart;
+  const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
         newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x, state.active);

@@ -94,7 +94,7 @@ HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const Rela
     const double radius = side.round.parts[at].radius;
     within = x * x + y * y <= radius * radius;
   } else {
-    found.edge = side_beyond(side.body, side.body.facets[at], found.below);
+    found.edge = crossed_side(side.body, side.body.facets[at], found.below);
     within = found.edge == kNone;
   }
   if (above || !within) found.end = within ? FaceEnd::kClosest : FaceEnd::kBeside;

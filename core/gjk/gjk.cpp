@@ -40,11 +40,11 @@ class WideMinkowskiDifference {
 
   // The support point along -n, n in the common frame.
   [[nodiscard]] DifferenceVertex support_point(const Vec3& n) const noexcept {
-    return make(cut_off_support(a_.body(), n, p_.reach_a),
-                cut_off_support(b_.body(), -b_.direction_to_own(n), p_.reach_b));
+    return make(cut_off_support(a_.body(), n, p_.extent_a),
+                cut_off_support(b_.body(), -b_.direction_to_local(n), p_.extent_b));
   }
   [[nodiscard]] DifferenceVertex make(const Vec3& a, const Vec3& b_own) const noexcept {
-    DifferenceVertex c{a, b_own, to_common(b_own), {}};
+    DifferenceVertex c{a, b_own, to_a(b_own), {}};
     c.difference = c.b - wide(c.a);
     return c;
   }
@@ -65,7 +65,7 @@ class WideMinkowskiDifference {
     if (steepest) point += (4.0 * reach / steepest->direction.norm()) * steepest->direction;
     return point;
   }
-  [[nodiscard]] Wide to_common(const Vec3& v) const noexcept {
+  [[nodiscard]] Wide to_a(const Vec3& v) const noexcept {
     const Mat3& r = pose_.rotation;
     const Wide w = wide(v);
     return Wide{dot(wide(r.row(0)), w), dot(wide(r.row(1)), w), dot(wide(r.row(2)), w)} +
@@ -88,7 +88,7 @@ void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
   b.place(b.feature(), b.index(), simplex.mean([](const DifferenceVertex& c) { return c.b_in_b; }));
   r.upper = std::min(r.upper, length + p.error_bound);
   r.distance = length;
-  r.point_on_a = a.common();
+  r.point_on_a = a.point_in_a();
   r.point_on_b = simplex.mean([](const DifferenceVertex& c) { return rounded(c.b); });
 }
 
@@ -101,8 +101,8 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
   const WideMinkowskiDifference body(a, b, a_from_b, p);
   WideSimplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.
-  const bool near = a.own().norm() <= 4.0 * p.reach_a && b.own().norm() <= 4.0 * p.reach_b;
-  (void)simplex.add(near ? body.make(a.own(), b.own())
+  const bool near = a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
+  (void)simplex.add(near ? body.make(a.local_point(), b.local_point())
                          : body.make(a.body().anchors[0], b.body().anchors[0]));
   for (int round = 0; round < kRounds; ++round) {
     const ClosestPoint<DoubleDouble> closest = simplex.reduce();

@@ -1,8 +1,8 @@
-// The directional derivatives of what lies beside a vertex or an edge, and a facet's limits, four
-// at a time. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// The directional derivatives of the neighbours of a vertex or an edge, and the limits of a facet,
+// four at a time. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// A body's support value along g is highest at a vertex where every edge has a negative directional
-// derivative along g: all edges recede. So is an edge across g beside which both facets recede.
+// A vertex is the support point of a convex body along g if all its edges recede: every directional
+// derivative along g is negative. An edge across g is the support if both of its facets recede.
 // These are the tests that certify a pair.
 #if defined(CLEARANCE_CORE_EDGE_SCAN) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_EDGE_SCAN
@@ -76,24 +76,24 @@ HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
   return edge.facet[0] == kNone || both_less(facet_derivatives(edge, g), vec2(limit));
 }
 
-// What limits the facet's polygon, as an edge, beyond which the tip lies farthest; kNone: it lies
-// within.
-HWY_INLINE std::int32_t side_beyond(const ConvexBody& body, const Facet& facet, Vec4 tip) {
+// The edge of that limit of the facet's polygon beyond which the tip lies farthest; kNone: the tip
+// lies within.
+HWY_INLINE std::int32_t crossed_side(const ConvexBody& body, const Facet& facet, Vec4 tip) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;
   const Vec4 at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
   double least = 0.0;
-  std::int32_t beyond = kNone;
+  std::int32_t crossed = kNone;
   for (std::int32_t i = 0; i < n; i += 4) {
     const Vec4 within = derivatives(row, n, i, at) - load4(row + 3 * n + i);
     if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
     for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
       if (!(lane(within, k) < least)) continue;
       least = lane(within, k);
-      beyond = body.facet_edges[facet.first_side + i + k].edge;
+      crossed = body.facet_edges[facet.first_side + i + k].edge;
     }
   }
-  return beyond;
+  return crossed;
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -1,12 +1,12 @@
-// What rounding can do to one query, as lengths. Derived once, so that every bound can be widened
-// by it.
+// Bounds of the rounding in one query, as lengths, by which every other bound is widened.
 //
-// One ulp here is 2^-53, the largest relative error of one rounding. The counts are upper bounds;
-// the derivation is in core/README.md, "Why the bounds hold in floating point", and
+// One ulp here is 2^-53, the largest relative error of one rounding. The counts are upper bounds.
+// Their derivation is in core/README.md, "Why the bounds hold in floating point", and
 // core/ROUNDING.md.
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/convex_body.hpp"
 #include "core/numerics/error_constants.hpp"
@@ -15,53 +15,55 @@
 namespace clearance {
 
 struct Precision {
-  double size;  // m: reach_a + reach_b + |translation|: what ulps are counted in
-  // m: no bound computed in doubles from this model is off by more, either way.
+  double size;  // m: extent_a + extent_b + |translation|, the unit of the ulps
+  // m: no bound computed in doubles from this model is off by more, up or down.
   double error_bound;
   // m: an upper bound this close to the lower one (before error_bound) is as good as it gets.
   double gap_tolerance;
-  double reach_a, reach_b;  // m: the closest points lie within these of their frames' origins
-  double promised;          // m: as near to each other are bounds that have converged
+  double extent_a, extent_b;  // m: the closest points lie within these of their frames' origins
+  double promised;            // m: the bounds of a converged answer differ by no more
 
-  // Are bounds, error_bound included, this near to each other what a converged answer promises?
+  // Are bounds with this gap, error_bound included, as near to each other as a converged answer's?
   [[nodiscard]] bool converged(double gap) const noexcept {
     return gap <= std::max(gap_tolerance + 2.0 * error_bound, promised);
   }
 };
 
-// How well B's place as seen from A is known, and how far away it is (m).
+// The errors of B's place as seen from A, and its distance (m).
 struct PlacePrecision {
   double rotation_error, translation_error;  // as in RelativePose
-  double apart;                              // |translation|
+  double translation;                        // |translation|
 };
 
-// `farthest`: an upper bound of the distance or penetration depth (m), which limits where on an
-// unbounded body the closest points can lie.
+// `farthest`: an upper bound of the distance or penetration depth (m). It limits the part of an
+// unbounded body in which the closest points can lie.
 //
-// A wrong rotation moves a point of B by its error times reach_b. Or else B may be thought of as
-// fixed: the wrong rotation then turns A about B's origin, from where A reaches no farther than
-// reach_a + apart, and what it is short of a rotation stretches the distance. Both are bounds, so
-// the smaller one counts.
+// A wrong rotation moves a point of B by at most its error times extent_b. Or B is fixed and the
+// wrong rotation turns A about B's origin, and no point of A is farther from there than extent_a
+// plus the translation. The part of the error that is no rotation then stretches the distance. Both
+// are bounds, so the smaller one counts.
 [[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
+  assert(!(farthest < 0.0) && !(b_in_a.translation < 0.0));
   Precision p;
-  const double apart = b_in_a.apart;
+  const double translation = b_in_a.translation;
   double ulps = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;
-  p.reach_a = a.bounding_radius;
-  p.reach_b = b.bounding_radius;
+  p.extent_a = a.bounding_radius;
+  p.extent_b = b.bounding_radius;
   if (!a.bounded()) {
-    p.reach_a = std::max(p.reach_a, b.bounding_radius + apart + farthest);
-    on_features += kUlp * kUlpsOnA * p.reach_a;
+    p.extent_a = std::max(p.extent_a, b.bounding_radius + translation + farthest);
+    on_features += kUlp * kUlpsOnA * p.extent_a;
   }
   if (!b.bounded()) {
-    p.reach_b = std::max(p.reach_b, a.bounding_radius + apart + farthest);
-    on_features += kUlp * kUlpsOnB * p.reach_b;
+    p.extent_b = std::max(p.extent_b, a.bounding_radius + translation + farthest);
+    on_features += kUlp * kUlpsOnB * p.extent_b;
   }
   if (!a.bounded() || !b.bounded()) ulps = kGapToleranceUlps[!a.bounded() + !b.bounded()];
-  p.size = p.reach_a + p.reach_b + apart;
-  const double turned =
-      a.bounded() ? std::min(p.reach_b, p.reach_a + apart + kStretched * farthest) : p.reach_b;
-  p.error_bound = on_features + (kUlp * kUlpsBetween * apart + b_in_a.translation_error) +
+  p.size = p.extent_a + p.extent_b + translation;
+  const double turned = a.bounded()
+                            ? std::min(p.extent_b, p.extent_a + translation + kStretched * farthest)
+                            : p.extent_b;
+  p.error_bound = on_features + (kUlp * kUlpsBetween * translation + b_in_a.translation_error) +
                   b_in_a.rotation_error * turned;
   p.gap_tolerance = ulps * kUlp * p.size;
   p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kContactGap) * p.size;

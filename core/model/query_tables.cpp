@@ -1,6 +1,7 @@
 #include "core/query_tables.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/convex_body.hpp"
 #include "core/model/support_function.hpp"
@@ -20,7 +21,8 @@ void add_outgoing(ConvexBody& body) {
   }
 }
 
-// What lies on the far ends of vertices' edges, and on the far sides of facets'.
+// The vertices at the far ends of vertices' edges, and the facets on the far sides of facets'
+// edges.
 void add_neighbours(ConvexBody& body) {
   body.neighbours.clear();
   body.facets_beside.clear();
@@ -32,8 +34,9 @@ void add_neighbours(ConvexBody& body) {
   }
 }
 
-// How far every facet is from the middle, less what can be off: a normal is by 2 roundings, their
-// product by 3, the difference by 1, and whoever adds the radius to a product of their own adds 2.
+// The least distance of a facet from the interior point, less its error. In roundings: 2 of the
+// normal, 3 of the product, 1 of the difference. Users add the radius to a product, which takes 2
+// more.
 double inner_radius(const ConvexBody& body) {
   constexpr double kRoundings = 16 * kUlp;
   if (!body.bounded() || body.facets.empty()) return 0.0;
@@ -44,7 +47,8 @@ double inner_radius(const ConvexBody& body) {
   return std::max(0.0, nearest - kRoundings * body.bounding_radius - body.position_error);
 }
 
-// Of each facet its sides, and across the ends of those that meet the next one at a sharp corner.
+// Writes the sides of each facet, and limits across the ends of those sides that meet the next one
+// at a sharp angle.
 void add_facet_limits(ConvexBody& body) {
   body.facet_limits.resize(body.facet_edges.size());
   for (const Facet& facet : body.facets) {
@@ -75,7 +79,8 @@ void add_planes(ConvexBody& body) {
 }
 
 // Rays and an orthonormal basis of the lineality space (Gram and Schmidt). A line that has more
-// than half of it across those before it is a new direction; what rounding leaves of others is not.
+// than half of it across those before it is a new direction; the rest that rounding leaves of
+// others is not.
 void sort_rays(const ConvexBody& body, RecessionCone& out) {
   for (const Ray& ray : body.rays) {
     if (!ray.is_line) {
@@ -87,17 +92,17 @@ void sort_rays(const ConvexBody& body, RecessionCone& out) {
   }
 }
 
-// Two directions are tried: against the sum of the facets' normals, as no ray leads out of a facet
-// and only lines run along all of them, and the sum of the rays, along which one of many may have
-// nothing but those of a slender cone have all.
+// Two directions are tried. The first is against the sum of the facets' normals: no ray leads out
+// of a facet, and only lines run along all facets. The second is the sum of the rays, which is good
+// for slender cones; of many rays one may be at right angles to it.
 double least_part(const RecessionCone& of, const Vec3& against_normals) {
   Vec3 along = Vec3::Zero();
   for (const Vec3& ray : of.rays) along += ray;
   double most = -kInfinity;
   for (const Vec3& sum : {against_normals, along}) {
-    const Vec3 way = of.across_lines(sum).normalized();
+    const Vec3 direction = of.across_lines(sum).normalized();
     double least = kInfinity;
-    for (const Vec3& ray : of.rays) least = std::min(least, way.dot(ray));
+    for (const Vec3& ray : of.rays) least = std::min(least, direction.dot(ray));
     most = std::max(most, least);
   }
   return most - kSlopeError;
@@ -106,10 +111,11 @@ double least_part(const RecessionCone& of, const Vec3& against_normals) {
 // Against the sum of all normals, if it leads away from each by more than rounding.
 Vec3 inwards(const ConvexBody& body, const Vec3& against_normals) {
   constexpr double kAway = 0x1p-20;
-  const Vec3 way = against_normals.normalized();
-  const bool away = std::all_of(body.facets.begin(), body.facets.end(),
-                                [&](const Facet& facet) { return facet.normal.dot(way) < -kAway; });
-  return away ? way : Vec3(Vec3::Zero());
+  const Vec3 direction = against_normals.normalized();
+  const bool away = std::all_of(body.facets.begin(), body.facets.end(), [&](const Facet& facet) {
+    return facet.normal.dot(direction) < -kAway;
+  });
+  return away ? direction : Vec3(Vec3::Zero());
 }
 
 void add_recession_cone(ConvexBody& body) {
@@ -122,8 +128,8 @@ void add_recession_cone(ConvexBody& body) {
   body.recession_cone.inwards = inwards(body, against_normals);
 }
 
-// What grew while the body was made keeps no room to grow in.
-void release_spare_room(ConvexBody& body) {
+// Frees the spare capacity of the tables, which no longer grow.
+void release_spare_capacity(ConvexBody& body) {
   const auto release = [](auto&... tables) { (tables.shrink_to_fit(), ...); };
   release(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges, body.anchors,
           body.neighbours, body.facets_beside);
@@ -137,9 +143,11 @@ std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
 }  // namespace
 
 void add_query_tables(ConvexBody& body) {
-  const double reach = body.bounded() ? body.bounding_radius : 0.0;
-  body.error_bound_as_a = kUlp * kUlpsOnA * reach + (body.position_error + kUnderflow);
-  body.error_bound_as_b = kUlp * kUlpsOnB * reach + body.position_error;
+  assert(std::all_of(body.facets.begin(), body.facets.end(),
+                     [](const Facet& facet) { return is_unit_or_unknown(facet.normal); }));
+  const double radius = body.bounded() ? body.bounding_radius : 0.0;
+  body.error_bound_as_a = kUlp * kUlpsOnA * radius + (body.position_error + kUnderflow);
+  body.error_bound_as_b = kUlp * kUlpsOnB * radius + body.position_error;
   body.inner_radius = inner_radius(body);
   add_recession_cone(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
@@ -148,7 +156,7 @@ void add_query_tables(ConvexBody& body) {
   add_neighbours(body);
   add_facet_limits(body);
   add_planes(body);
-  release_spare_room(body);
+  release_spare_capacity(body);
   if (body.vertices.empty()) return;
   for (int cell = 0; cell < StartTable::kCells; ++cell) {
     body.start.set(cell, support(body, StartTable::middle(cell).normalized()).anchor);

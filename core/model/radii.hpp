@@ -1,5 +1,4 @@
-// From the polyhedra to the swept-sphere bodies: each is its polyhedron plus a sphere of its
-// radius.
+// Polyhedra become swept-sphere bodies: a body is its polyhedron plus a sphere of its radius.
 #pragma once
 
 #include <cmath>
@@ -13,16 +12,16 @@ namespace clearance {
   return a.radius + b.radius;
 }
 
-// What taking their sum off a bound of the polyhedra's distance, about `distance`, rounds.
+// The rounding error, m, of a bound of about `distance` when the sum of the radii is taken off.
 [[nodiscard]] inline double rounding_of_radii(double sum, double distance) noexcept {
   return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
 }
 
-// Will bounds of the polyhedra's distance, `gap` from each other, be as near as a converged
-// answer's when the radii are taken off? Each is widened by what that may round, and then rounded,
-// by as much at most. `size`: Precision::size.
-[[nodiscard]] inline bool is_as_promised(const ConvexBody& a, const ConvexBody& b, double size,
-                                         double distance, double gap) noexcept {
+// Bounds of the polyhedra's distance are `gap` from each other. Will they be as near as a converged
+// answer's when the radii are taken off? That widens each by its rounding error, and rounds it by
+// as much at most. `size`: Precision::size.
+[[nodiscard]] inline bool converges_with_radii(const ConvexBody& a, const ConvexBody& b,
+                                               double size, double distance, double gap) noexcept {
   const double sum = radii(a, b);
   return gap + 4.0 * rounding_of_radii(sum, distance) <= kConvergedGap * (size + sum);
 }
@@ -37,7 +36,7 @@ namespace clearance {
 // Witness points move from the polyhedra's surfaces to the rounded bodies'.
 inline void add_radii(DistanceResult& r, const ConvexBody& a, const ConvexBody& b) noexcept {
   const double sum = radii(a, b);
-  if (sum == 0.0 || r.upper == -kInfinity) return;  // what no translation parts stays so
+  if (sum == 0.0 || r.upper == -kInfinity) return;  // bodies that no translation separates stay so
   const double rounding = rounding_of_radii(sum, r.upper);
   r.distance -= sum;
   r.lower -= sum + rounding;

@@ -18,9 +18,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// A matrix of three rows by its cyclic diagonals: what stands at (i, i), at (i, i + 1) and at
-// (i, i + 2), modulo 3. Its product with a vector takes that vector turned by no, one and two
-// places: nothing is spread over a register, and no rows or columns have to be put together.
+// A 3 x 3 matrix by its cyclic diagonals: the elements (i, i), (i, i + 1) and (i, i + 2), modulo 3.
+// Its product with a vector takes that vector rotated by no, one and two lanes. So nothing is
+// spread over a register, and no rows or columns have to be put together.
 struct Diagonals {
   Vec4 main, next, last;
 };
@@ -28,11 +28,12 @@ HWY_INLINE Vec4 operator*(const Diagonals& m, Vec4 v) {
   return (m.main * v + m.next * yzx(v)) + m.last * zxy(v);
 }
 
-// B as seen from A, and the rotation the other way as well.
+// B as seen from A, and the inverse rotation as well.
 struct RelativePose4 {
   Diagonals rotation, transposed;
   Vec4 translation;
-  double rotation_error, translation_error, apart;  // as in RelativePose
+  double rotation_error, translation_error;  // as in RelativePose
+  double translation_length;                 // m
 };
 
 HWY_INLINE Vec4 direction_to_a(const RelativePose4& r, Vec4 v) { return r.rotation * v; }
@@ -44,8 +45,8 @@ HWY_INLINE Vec4 point_to_b(const RelativePose4& r, Vec4 p) {
   return direction_to_b(r, p - r.translation);
 }
 
-// conj(a) * b: the orientation of B as seen from A. b is spread as it is loaded: permutations of
-// registers are what queries wait for.
+// conj(a) * b: the orientation of B as seen from A. b is spread as it is loaded: queries wait for
+// permutations of registers.
 HWY_INLINE Vec4 relative(Vec4 a, const double* b) {
   const Vec4 by_x = with_signs(pick<3, 2, 1, 0>(a), vec4(0.0, -0.0, 0.0, 0.0));
   const Vec4 by_y = with_signs(pick<2, 3, 0, 1>(a), vec4(0.0, 0.0, -0.0, 0.0));
@@ -62,8 +63,8 @@ HWY_INLINE bool nearly_unit(double square) {
   return HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit);
 }
 
-// 2 / |q|^2: what makes rotations of it without a square root. Of unit
-// quaternions to a dozen digits without a division: kMatrixError says why.
+// 2 / |q|^2, the factor that makes a rotation of q without a square root. If q is of unit length to
+// a dozen digits, it takes no division: kMatrixError says why.
 HWY_INLINE double two_over_square(Vec4 q) {
   const double square = square_of(q);
   return nearly_unit(square) ? 2.0 * (2.0 - square) : 2.0 / square;
@@ -81,12 +82,13 @@ HWY_INLINE void set_rotation(Vec4 q, RelativePose4& r) {
 }
 
 // R(q/|q|)^T v by two cross products.
-HWY_INLINE Vec4 turn_back(Vec4 q, Vec4 v) {
+HWY_INLINE Vec4 rotate_back(Vec4 q, Vec4 v) {
   const Vec4 c = cross(q, v);
   return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
 }
 
-// Of a unit quaternion, multiples of 1/2 permute the axes, and products of two such are exact.
+// A unit quaternion whose components are multiples of 1/2 permutes the axes, and products of two
+// such are exact.
 inline bool permutes_axes(const Eigen::Quaterniond& q) {
   const Eigen::Array4d twice = 2.0 * q.coeffs().array();
   return (twice == twice.round()).all();
@@ -95,19 +97,21 @@ inline HWY_NOINLINE void set_exactness(const Pose& a, const Pose& b, RelativePos
   const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
   const bool a_permutes = permutes_axes(a.orientation);
   if (p == q || p == -q || (a_permutes && permutes_axes(b.orientation))) r.rotation_error = 0.0;
-  if (a_permutes) r.translation_error = kPermutedTranslationError * r.apart;
+  if (a_permutes) r.translation_error = kPermutedTranslationError * r.translation_length;
 }
-// A quick look that moving orientations do not pass: w of a or z of conj(a) b is 0, 1/2 or 1 where
-// anything is exact, which have no digits.
+// A quick test that moving orientations do not pass. If anything is exact, w of a or z of conj(a) b
+// is 0, 1/2 or 1 in magnitude, whose mantissas are zero.
 HWY_INLINE bool may_be_exact(double w_of_a, double z_of_both) {
   const auto has_digits = [](double x) { return std::bit_cast<std::uint64_t>(x) << 12 != 0; };
   return !has_digits(w_of_a) || !has_digits(z_of_both);
 }
 
-// For quaternions that are not of unit length to rounding, and frames that are far apart.
-inline HWY_NOINLINE bool is_good(const Pose& world_from_a, const Pose& world_from_b, double apart) {
+// For quaternions that are not of unit length to rounding, and for frames that are far away from
+// each other.
+inline HWY_NOINLINE bool is_good(const Pose& world_from_a, const Pose& world_from_b,
+                                 double translation_length) {
   return is_unit(world_from_a.orientation) && is_unit(world_from_b.orientation) &&
-         apart <= kLargestCoordinate;
+         translation_length <= kLargestCoordinate;
 }
 
 HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b) {
@@ -116,15 +120,15 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
   const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
   RelativePose4 r;
   set_rotation(q, r);
-  r.translation = turn_back(a, between);
-  r.apart = norm(r.translation);
+  r.translation = rotate_back(a, between);
+  r.translation_length = norm(r.translation);
   r.rotation_error = kRotationError;
-  r.translation_error = kTranslationError * r.apart;
+  r.translation_error = kTranslationError * r.translation_length;
   const bool unit = nearly_unit(square_of(a)) && nearly_unit(square_of(q));
-  if (HWY_UNLIKELY(!unit || !(r.apart <= kLargestCoordinate)) &&
-      !is_good(world_from_a, world_from_b, r.apart)) {
-    r.apart = std::numeric_limits<double>::quiet_NaN();
-    r.translation = spread(r.apart);
+  if (HWY_UNLIKELY(!unit || !(r.translation_length <= kLargestCoordinate)) &&
+      !is_good(world_from_a, world_from_b, r.translation_length)) {
+    r.translation_length = std::numeric_limits<double>::quiet_NaN();
+    r.translation = spread(r.translation_length);
   }
   if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
     set_exactness(world_from_a, world_from_b, r);
@@ -141,7 +145,7 @@ HWY_INLINE RelativePose4 pose4_of(const RelativePose& pose) {
   r.translation = load3(pose.translation);
   r.rotation_error = pose.rotation_error;
   r.translation_error = pose.translation_error;
-  r.apart = norm(r.translation);
+  r.translation_length = norm(r.translation);
   return r;
 }
 

@@ -15,8 +15,8 @@ static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
 // So that four numbers may be stored from point_on_b on, before the status is written.
 static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
 
-// Where number i lies in the storage of the whole result. A pointer to a member would end at the
-// end of that member; this one is made from the bytes of the result, all of which it may reach.
+// The address of number i in the storage of the whole result. A pointer to a member would end with
+// that member. This one is made from the bytes of the result, and may go up to their end.
 [[nodiscard]] inline double* number_at(DistanceResult& result, std::size_t i) noexcept {
   std::byte* const bytes = reinterpret_cast<std::byte*>(&result);
   return static_cast<double*>(static_cast<void*>(bytes + i * sizeof(double)));

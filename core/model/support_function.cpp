@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "core/numerics/error_constants.hpp"
@@ -19,9 +20,9 @@ struct Climber {
   double steepest = kInfinity;  // directional derivative along m of that edge of `at`
 };
 
-// Along the steepest edge, where its derivative is positive beyond rounding, so that it ends. By
-// derivatives, as ends a rounding apart are equally high. True: it has moved. Neither that nor
-// which edge it is could a branch foresee.
+// Moves along the steepest edge if its derivative is positive beyond rounding, so the climb ends.
+// It compares derivatives, because the heights of close vertices may round to the same. True: it
+// has moved. No branches: neither the move nor the edge is predictable.
 bool climb(const ConvexBody& body, Climber& climber) noexcept {
   const Vertex& vertex = body.vertices[climber.at];
   const double* row = body.outgoing.row(vertex.first_edge);
@@ -42,7 +43,7 @@ bool climb(const ConvexBody& body, Climber& climber) noexcept {
   return ascends != 0;
 }
 
-// Some of them at a time: one waits for memory while the others go on.
+// Advances all climbers in turn: while one waits for memory the others go on.
 void climb_together(const ConvexBody& body, Climber* climbers, std::size_t count) noexcept {
   std::array<std::uint8_t, kLookedUpTogether> climbing;
   for (std::size_t i = 0; i < count; ++i) climbing[i] = static_cast<std::uint8_t>(i);
@@ -79,10 +80,10 @@ class NearlySupporting {
   std::size_t size_ = 0;
 };
 
-// An upper bound of the directional derivative along `across` of any direction of the cone that is
-// of unit length, where `across` is orthogonal to its lines. Parts of the rays across the lines
-// have at least RecessionCone::least along one direction, so that a sum of unit length has no more
-// than 1/least of them, each with the derivative of the steepest ray at most.
+// An upper bound of the directional derivative along `across` over all unit directions of the cone;
+// `across` is orthogonal to its lines. Every ray has at least RecessionCone::least along one
+// direction. So a sum of unit length has weights of at most 1/least in total, each with at most the
+// derivative of the steepest ray.
 double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcept {
   if (!(cone.least > 0.0)) return kInfinity;
   double steepest = 0.0;
@@ -90,16 +91,34 @@ double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcep
   return steepest / cone.least;
 }
 
-// An upper bound of the directional derivative along m of any unit direction of the cone: along its
-// lines, and beside them as its rays have across the lines.
-double cone_derivative(const RecessionCone& cone, const Vec3& m) noexcept {
-  const Vec3 across = cone.across_lines(m);
-  const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
-  return derivative_by_rays(cone, across) + of_lines;
+// The same bound for cones whose rays all but cancel, as those of a gable of a small slope. If all
+// rays have negative derivatives along a direction near `across`, beyond rounding, the tilt of
+// `across` against that direction is a bound. The direction tried is just past the steepest ray.
+double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
+  const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
+  const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
+  if (steepest == cone.rays.end()) return kInfinity;
+  const Vec3 ray_across = cone.across_lines(*steepest);
+  const double step =
+      (std::max(0.0, across.dot(ray_across)) + 2.0 * kSlopeError) / ray_across.squaredNorm();
+  const Vec3 past = cone.across_lines(across - step * ray_across);
+  for (const Vec3& ray : cone.rays) {
+    if (!(past.dot(ray) <= -kSlopeError)) return kInfinity;
+  }
+  return (across - past).norm();
 }
 
-// The same from the facets: no direction of the cone has a positive derivative along their normals,
-// nor along m one above the tilt of m against a normal.
+// An upper bound of the directional derivative along m over all unit directions of the cone. It
+// adds that of the lines and that of the rays across the lines.
+double cone_derivative(const RecessionCone& cone, const Vec3& m,
+                       double (*of_rays)(const RecessionCone&, const Vec3&) noexcept) noexcept {
+  const Vec3 across = cone.across_lines(m);
+  const double of_lines = cone.line_count > 0 ? (m - across).norm() + kSlopeError : 0.0;
+  return of_rays(cone, across) + of_lines;
+}
+
+// The same bound from the facets. No direction of the cone has a positive derivative along a
+// facet's normal. So its derivative along m is at most the tilt of m against that normal.
 double derivative_by_facets(const ConvexBody& body, const Vec3& m) noexcept {
   double tilt2 = kInfinity;
   for (const Facet& facet : body.facets) {
@@ -114,12 +133,13 @@ Support support_by_scan(const ConvexBody& body, const Vec3& m) noexcept {
   Support best{m.dot(body.anchors[0]), 0};
   for (std::size_t i = 1; i < body.anchors.size(); ++i) {
     const double value = m.dot(body.anchors[i]);
-    if (value > best.reach) best = {value, static_cast<std::int32_t>(i)};
+    if (value > best.value) best = {value, static_cast<std::int32_t>(i)};
   }
   return best;
 }
 
 Support support(const ConvexBody& body, const Vec3& m) noexcept {
+  assert(is_unit_or_unknown(m));
   if (!body.bounded() || body.anchors.size() <= kScan) return support_by_scan(body, m);
   Climber climber{m, body.start.at(m)};
   while (climb(body, climber)) continue;
@@ -132,7 +152,7 @@ Support support(const ConvexBody& body, const Vec3& m) noexcept {
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const Vertex& vertex = body.vertices[candidates[k]];
     const double value = m.dot(vertex.position);
-    if (value > best.reach) best = {value, candidates[k]};
+    if (value > best.value) best = {value, candidates[k]};
     for (std::int32_t i = 0; i < vertex.edges; ++i) {
       const std::int32_t next = body.neighbours[vertex.first_edge + i];
       const double derivative = m.dot(body.outgoing_of(vertex, i));
@@ -142,18 +162,22 @@ Support support(const ConvexBody& body, const Vec3& m) noexcept {
   return best;
 }
 
-// A point is an anchor plus a sum of rays; what of it lies along lines, and what across, is no
-// longer than the sum.
-double reach_along_rays(const ConvexBody& body, const Vec3& m, double within) noexcept {
+// A point is an anchor plus a sum of rays. Its parts along and across the lines are no longer than
+// the sum.
+double support_along_rays(const ConvexBody& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const RecessionCone& cone = body.recession_cone;
-  double rate = cone_derivative(cone, m);
-  if (rate > kSlopeError) rate = std::min(rate, derivative_by_facets(body, m));
+  double rate = cone_derivative(cone, m, derivative_by_rays);
+  if (rate > kSlopeError) {
+    rate = std::min(
+        {rate, cone_derivative(cone, m, derivative_past_steepest), derivative_by_facets(body, m)});
+  }
   return rate * (within + body.bounding_radius);
 }
 
-void look_up_farthest(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
-                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept {
+void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
+                            std::span<const std::uint16_t> facets,
+                            std::uint16_t* vertices) noexcept {
   std::array<Climber, kLookedUpTogether> climbers;
   for (std::size_t k = 0; k < facets.size(); ++k) {
     const Vec3 m = -(turn * body.facets[facets[k]].normal);

@@ -1,5 +1,4 @@
-// How far a body reaches in a direction, as a bound that holds (the support function h(m) = max
-// m.x).
+// The support function of a body, h(m) = max m.x, as a bound that holds in doubles.
 #pragma once
 
 #include <cstddef>
@@ -11,31 +10,32 @@
 namespace clearance {
 
 struct Support {
-  double reach =
-      0.0;  // max over the anchors of m.x as computed: off by at most 3 roundings of |m||x|
-  std::int32_t anchor = 0;  // where it is attained
+  double value =
+      0.0;  // max over the anchors of m.x as computed, off by at most 3 roundings of |m||x|
+  std::int32_t anchor = 0;  // the anchor at which it is attained
 };
 
-// Exact up to the rounding of the products: bodies of many vertices are climbed along their edges
-// from where the start table says, and no vertex is left out that could be higher (see
-// support_function.cpp); others are scanned. m: unit up to rounding, the body's frame.
+// Exact up to the rounding of the products. On bodies of many vertices it climbs along edges from
+// the vertex that the start table names. It leaves out no vertex that could be higher
+// (support_function.cpp). Other bodies are scanned. m: unit up to rounding, in the body's frame.
 [[nodiscard]] Support support(const ConvexBody& body, const Vec3& m) noexcept;
 
 // Over all anchors, without the edge graph.
 [[nodiscard]] Support support_by_scan(const ConvexBody& body, const Vec3& m) noexcept;
 
-// For an unbounded body: how much farther than its anchors it reaches along m, at most, at points
-// whose distance from the frame's origin is at most `within` (m). Rounding included. 0 for a
-// bounded body.
-[[nodiscard]] double reach_along_rays(const ConvexBody& body, const Vec3& m,
-                                      double within) noexcept;
+// By how much the support value of an unbounded body along m may exceed that of its anchors. Counts
+// points no farther than `within` (m) from the frame's origin. Rounding included. 0 for a bounded
+// body.
+[[nodiscard]] double support_along_rays(const ConvexBody& body, const Vec3& m,
+                                        double within) noexcept;
 
 inline constexpr std::size_t kLookedUpTogether = 16;
 
-// For up to kLookedUpTogether facets of `body`, a vertex of `other` that is deepest below each or
-// nearly so: vertices[facet]. `turn` leads from body's frame to other's. `other`: bounded, with
-// edges.
-void look_up_farthest(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
-                      std::span<const std::uint16_t> facets, std::uint16_t* vertices) noexcept;
+// For each of up to kLookedUpTogether facets of `body`, sets vertices[facet]: a vertex of `other`
+// that is deepest below the facet, or nearly so. `rotation` leads from body's frame to other's.
+// `other`: bounded, with edges.
+void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
+                            std::span<const std::uint16_t> facets,
+                            std::uint16_t* vertices) noexcept;
 
 }  // namespace clearance

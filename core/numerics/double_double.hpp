@@ -1,8 +1,8 @@
 // Twice the precision of a double: the unevaluated sum of two of them, about 32 digits.
 //
-// Sums and products of doubles are exact by Knuth's and Dekker's error-free transformations, which
-// need no fused multiply-add and give the same bits on every machine. Magnitudes between 1e-140 and
-// 1e140.
+// Sums and products of doubles are exact by the error-free transformations of Knuth and Dekker.
+// They need no fused multiply-add and give the same bits on every machine. Magnitudes between
+// 1e-140 and 1e140.
 #pragma once
 
 #include <cmath>

@@ -13,9 +13,9 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 // For |q|^2 = 1 + e as near to 1 as this, 2/|q|^2 is 2 (2 - |q|^2) but for e^2 < 2^-55.
 inline constexpr double kNearlyUnit = 0x1p-28;
 
-// What follows is to first order; the second is 2^-50 of it, and every count is rounded up by more.
-// tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at once are
-// worst.
+// The counts below are to first order. The second order is 2^-50 of it, and every count is rounded
+// up by more. tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at
+// once are worst.
 
 // Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
 // - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
@@ -28,76 +28,78 @@ inline constexpr double kNearlyUnit = 0x1p-28;
 // The last three make a matrix of bounds; its 2-norm and 6|x| are together at most 15.52.
 inline constexpr double kMatrixError = 15.6 * kUlp;
 
-// Error of a Hamilton product a b of unit length. b's components multiply four vectors, all of unit
-// length and at right angles: the products are off by |b_i| ulps each, together at most 2; the two
-// pair sums by sqrt(b_x^2 + b_y^2) and sqrt(b_z^2 + b_w^2), together sqrt 2; their sum by 1. The
-// rotation turns by twice the angle: 8.83.
+// Error of a Hamilton product a b of unit length. The components of b multiply four vectors of unit
+// length, at right angles to each other. The products are off by |b_i| ulps each, together at most
+// 2. The two pair sums are off by sqrt(b_x^2 + b_y^2) and sqrt(b_z^2 + b_w^2), together sqrt 2, and
+// their sum by 1. The rotation turns by twice the angle: 8.83.
 inline constexpr double kProductError = 9 * kUlp;
 
 // R(q/|q|)^T v by two cross products, q = (x, w) of unit length and exact inputs. A cross product
-// of u and v is off by 2/sqrt 3 ulps of |u||v| in its products and 1 of itself: c = x cross v
-// by 2.16 |x|, which x cross c - w c turns and no more. That has 2.16 |x|, |w| and 1 of its own, of
-// |c| <= |x|: all in all below 5.37, twice 5.37. The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5.
-// The product with it: 2, the sum: 1.
+// of u and v is off by 2/sqrt 3 ulps of |u||v| in its products and 1 of itself. So c = x cross v is
+// off by 2.16 |x|, which x cross c - w c rotates without making it longer. That difference has
+// errors of 2.16 |x|, |w| and 1 of its own, in |c| <= |x|. The sum is below 5.37, and counts twice.
+// The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5. The product with it: 2, the sum: 1.
 inline constexpr double kTurnError = 21.25 * kUlp;
 
-// Of RelativePose: in the 2-norm, and per metre between the origins, v being a difference itself;
-// the last where the turn only permutes axes.
+// The errors of RelativePose: the rotation's in the 2-norm, and the translation's per metre between
+// the origins, where v is a rounded difference. The last one is for a rotation that only permutes
+// axes.
 inline constexpr double kRotationError = kMatrixError + kProductError;
 inline constexpr double kTranslationError = kTurnError + kUlp;
 inline constexpr double kPermutedTranslationError = 4 * kUlp;
 
-// How much of a wrong rotation may be none (a stretch): the quaternion's error turns only.
+// The part of the rotation's error that may be a stretch and no rotation: an error of the
+// quaternion only rotates.
 inline constexpr double kStretched = kMatrixError / kRotationError;
 
-// Evaluating n.(R b + t - a) / |n| or |R b + t - a|, with a and b on the features that hold them,
-// in frame A, where B is what R's doubles make of it and every direction is brought to unit length:
-// in ulps of |a|, |b| and |t|
+// The errors of n.(R b + t - a) / |n| and |R b + t - a| in ulps of |a|, |b| and |t|. The points a
+// and b are on their features, in frame A, and B is as the doubles of R make it. Every direction is
+// brought to unit length. The counts:
 //   rotating a vector (the products 3^(1/2), two of them summed 2^(1/2), together 3; all three 1):
 //   4; placing it, and the difference of a and b: 1 each of what is placed, which is no longer than
 //   all three together; a cross product with an edge 2.16, a norm 2.5, a product with a normal 3, a
 //   norm's quotient 2.5 + 1;
-//   an edge is at right angles to n but for 3.2, over twice a body's reach.
-// Of an edge and a vertex that is 12, 11 and 7, of a facet and a vertex 9, 9 and 9. Across edges it
-// is 10, 22 and 9, most of it from how well B's edge is known; not all of that can go with the
-// rotation's own error at once, and where it is worst 15 % of the whole is left (the test's kind
-// "edge, edge").
+//   an edge is at right angles to n but for 3.2, over twice a body's size.
+// For an edge and a vertex that comes to 12, 11 and 7, for a facet and a vertex to 9, 9 and 9. For
+// two edges it is 10, 22 and 9, most of it from the direction of B's edge. Not all of that can
+// occur together with the rotation's own error: in the worst pose 15 % of the whole is left (the
+// test's kind "edge, edge").
 inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
 
 // Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
 inline constexpr double kUnderflow = 1e-150;
 
-// Bounds no farther apart than this, before the error bound, are as good as it gets, and nothing
-// else is tried; by how many of the bodies are unbounded, as errors of direction grow along their
-// rays.
+// Bounds that differ by no more than this, before the error bound, are as good as it gets, and
+// nothing else is tried. The index is the number of unbounded bodies: errors of direction grow
+// along their rays.
 inline constexpr double kGapToleranceUlps[] = {6.5, 16.0, 16.0};
 
-// What a converged answer promises: upper - lower is at most 1e-14 of Precision::size. Of bodies
-// that overlap or touch, and of two unbounded ones, 1.25e-14.
+// The promise of a converged answer: upper - lower is at most 1e-14 of Precision::size. For bodies
+// that overlap or touch, and for two unbounded ones, it is 1.25e-14.
 inline constexpr double kConvergedGap = 90 * kUlp, kContactGap = 112 * kUlp;
 
-// Of a sum of radii, and of what is left when it is taken off a bound.
+// Relative error of a sum of radii, and of a bound from which it has been taken off.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
 
-// Of a vector at an angle below this to an edge, rounding may turn its cross product with the edge
-// (2.5 ulps of the vector) so far towards the edge that a second one comes out shorter.
+// Below this angle between a vector and an edge, rounding (2.5 ulps of the vector) may tilt their
+// cross product towards the edge. A second cross product then comes out too short.
 inline constexpr double kSlender = 0x1p-20;
 
 // A directional derivative beyond this, per unit length, has the sign that exact arithmetic would
-// give with R's doubles: a body's unit vector is off by 1 ulp, the direction rotated by 4, and of
-// their product all but the last sum, which is exact there or as small as the derivative, by 2: 7
-// of 8.
+// give with the doubles of R. Of these 8 ulps, the body's unit vector takes 1, the rotated
+// direction 4, and their product 2. The last sum of the product is exact there, or its rounding as
+// small as the derivative.
 inline constexpr double kDerivativeError = 0x1p-50;
 
-// What rounding may hide of a slope: its direction's, its product's and its sum's.
+// The error of a slope: the rounding of its direction, its product and its sum.
 inline constexpr double kSlopeError = 0x1p-50;
 
 // Facets that are parallel along two edges may be tilted by a little more than either.
 inline constexpr double kParallelTilt = 2.0 * kDerivativeError;
 
-// How far off the tilt of an edge or facet against a direction may be: rotating the direction (4),
-// both directions' own rounding (1 each). What their product adds, 2 over the smaller body's size,
-// is left over of the counts above: a point on a parallel feature takes 12 and 9 of them.
+// The error of the tilt of an edge or facet against a direction: 4 of the rotated direction, and 1
+// of each direction's own rounding. Their product adds 2 over the smaller body's size. The counts
+// above cover these, as a point on a parallel feature takes 12 and 9.
 inline constexpr double kTiltError = 6 * kUlp;
 
 // Edges nearer to parallel than this (the sine's square) have no direction across both that is

@@ -1,7 +1,7 @@
 // Vectors of three doubles in registers of four, for the code that is compiled once a vector width
-// (hwy/foreach_target.h): two registers of two at the x86-64 baseline and on Arm, one of four with
-// AVX2. What the fourth lane holds never matters. Every operation is an elementwise one of IEEE
-// doubles, and sums have a fixed order: the width does not change a bit.
+// (hwy/foreach_target.h). There are two registers of two at the x86-64 baseline and on Arm, and one
+// of four with AVX2. The value of the fourth lane never matters. Every operation is an elementwise
+// one of IEEE doubles, and sums have a fixed order: the width does not change a bit.
 #if defined(CLEARANCE_CORE_VEC4) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_VEC4
 #undef CLEARANCE_CORE_VEC4

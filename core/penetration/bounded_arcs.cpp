@@ -6,8 +6,8 @@
 
 namespace clearance {
 
-// Most arcs lie between facets that one and the same point is deep enough below: Y's lowest; or,
-// where the bodies are deep in each other, its inner sphere.
+// Most arcs are settled by one point that is deep enough below both facets. It is Y's lowest
+// vertex, or its inner sphere where the bodies are deep in each other.
 void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   lower_to(best_.height);
   const bool sphere = of_y.sphere() != nullptr;
@@ -21,7 +21,7 @@ void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   }
 }
 
-// Of an arc that ends at two listed facets, the first sees to it.
+// The first of two listed facets takes the arc between them.
 void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   const ConvexBody& x = body_.x();
   const Facet& here = x.facets[facet];
@@ -38,8 +38,8 @@ void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   }
 }
 
-// The vertex of Y that was looked up below a facet; or the deepest of those held against all, if it
-// is deep enough. What a sphere has settled is looked up now.
+// The vertex of Y that was looked up below a facet, or the deepest of those held against all
+// facets, if it is deep enough. A facet that a sphere has settled is looked up now.
 Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
   if (of_y.vertex(facet) == DeepestPoints::kNoVertex) {
     const Facet& here = body_.x().facets[facet];
@@ -50,7 +50,7 @@ Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y)
     }
     if (deepest->below(here) >= goal()) return deepest->at;
     const std::uint16_t list[] = {static_cast<std::uint16_t>(facet)};
-    look_up_farthest(body_.x(), body_.y(), body_.y_from_x().turn, list, of_y.vertices());
+    look_up_support_points(body_.x(), body_.y(), body_.y_from_x().turn, list, of_y.vertices());
   }
   return body_.point_from_y(body_.y().anchors[of_y.vertex(facet)]);
 }

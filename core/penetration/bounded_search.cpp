@@ -16,7 +16,8 @@ std::size_t few_of(const ConvexBody& body) noexcept {
 
 }  // namespace
 
-// A body of few vertices: with all of them held against all facets, what is known of each is exact.
+// A body of few vertices: all of them are held against all facets, so the depth below each facet is
+// exact.
 void NormalSearch::take_least(const Facing& facing, const DeepestVertices& vertices) noexcept {
   const std::int32_t facet = vertices.where_least();
   const Facet& f = facing.body.facets[facet];
@@ -36,10 +37,10 @@ std::int32_t NormalSearch::look_up(const Facing& facing, std::int32_t facet) noe
   return anchor;
 }
 
-// What the points leave open: the deepest vertex below the facet that is least deep is one more to
-// hold against all facets, as long as it brings the goal nearer (which it hardly does where the
-// last query's direction was the first to beat); or else the other body's inner sphere, and then
-// again.
+// Settles facets that the points leave open. The deepest vertex below the least deep facet is one
+// more point to hold against all facets, as long as it brings the goal nearer. It hardly does if
+// the direction of the last query was the first target. After that the other body's inner sphere is
+// tried, and then vertices again.
 DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
                                                  DeepestPoints& points) noexcept {
   DeepestPoints::Shallow shallow = points.list_shallow(settled());
@@ -63,8 +64,8 @@ DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
   return shallow;
 }
 
-// What is open then. A vertex that need not be the deepest is enough where it is deep enough; where
-// it is not, the deepest is looked for.
+// Settles the facets that are still open. Any vertex that is deep enough will do; if none is known,
+// the deepest is looked for.
 void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) noexcept {
   const DeepestPoints::Shallow shallow = narrow_down(facing, points);
   if (ended_early()) return;
@@ -76,7 +77,7 @@ void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) n
   for (std::size_t k = 0; k < shallow.facets.size() && !ended_early(); k += kLookedUpTogether) {
     const auto some =
         shallow.facets.subspan(k, std::min(kLookedUpTogether, shallow.facets.size() - k));
-    look_up_farthest(facing.body, facing.other, turn, some, points.vertices());
+    look_up_support_points(facing.body, facing.other, turn, some, points.vertices());
     for (const std::uint16_t facet : some) {
       const std::int32_t vertex = points.vertex(facet);
       if (!is_settled(facing, facet, vertex)) {
@@ -86,7 +87,7 @@ void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) n
   }
 }
 
-// One by one: what was found for one of them settles most of those beside it.
+// Goes one by one: the point found for one facet settles most of its neighbours.
 void NormalSearch::look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
                                std::uint16_t* vertices) noexcept {
   std::int32_t last = kNone;
@@ -127,8 +128,8 @@ void NormalSearch::facets_of_y_by_points() noexcept {
   look_at_facets(facing, of_x);
 }
 
-// Along the arc between two facets' normals h is no less than what one point of Y has at both.
-// Those that the main point does not settle are few, mostly.
+// Along the arc between two facets' normals h is at least the smaller of the two heights of one
+// point of Y. Those that the main point does not settle are few, mostly.
 void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
   lower_to(best_.height);
   const ConvexBody& x = body_.x();
@@ -201,7 +202,7 @@ void NormalSearch::many_vertices() noexcept {
 
 void NormalSearch::run_bounded() noexcept {
   const bool few = DeepestVertices::fit(body_.y().anchors) &&
-                   body_.x().facets.size() <= DeepestVertices::kMostFacets;
+                   body_.x().facets.size() <= DeepestVertices::kMostScanned;
   if (few) {
     few_vertices();
   } else {

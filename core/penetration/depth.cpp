@@ -10,24 +10,24 @@
 namespace clearance {
 namespace {
 
-// Beyond what Precision::error_bound counts, in roundings of Precision::size: a direction of an arc
-// and the exact one next to it on the exact arc (6), a vertex in its plane (6).
+// Errors that Precision::error_bound does not count, in roundings of Precision::size. A direction
+// of an arc is off the exact arc by 6, and a vertex off its plane by 6.
 constexpr double kOnArc = 12 * kUlp;
-// How near two bounds of h must come, in the same unit.
+// Two bounds of h are the same within this, in the same unit.
 constexpr double kGapTolerance = 8 * kUlp;
 
 using Source = NormalSearch::Source;
 
-// Where the best direction is exactly a facet's, the certificate may use the facet.
+// If the best direction is exactly a facet's normal, the certificate may use the facet.
 Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& best,
                     const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
-    return {body.to_common(best.n).normalized()};
+    return {body.to_a(best.n).normalized()};
   }
   const bool of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
   if (!of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
   const Vec3& normal = b.body().facets[best.facet].normal;
-  return {-b.direction_to_common(normal).normalized(), kNone, best.facet};
+  return {-b.direction_to_a(normal).normalized(), kNone, best.facet};
 }
 
 // At no distance, for heights: vertices are anchors, and of an unbounded body, too, no more than
@@ -35,24 +35,24 @@ Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& b
 Precision precision_of_vertices(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose& a_from_b) noexcept {
   Precision p = precision(a, b, a_from_b, 0.0);
-  const double beyond_a = p.reach_a - a.bounding_radius, beyond_b = p.reach_b - b.bounding_radius;
-  p.size -= beyond_a + beyond_b;
-  p.error_bound -= kUlp * (kUlpsOnA * beyond_a + kUlpsOnB * beyond_b);
+  const double excess_a = p.extent_a - a.bounding_radius, excess_b = p.extent_b - b.bounding_radius;
+  p.size -= excess_a + excess_b;
+  p.error_bound -= kUlp * (kUlpsOnA * excess_a + kUlpsOnB * excess_b);
   return p;
 }
 
-// What a height that the search has found may be off by.
+// m: the error of a height that the search has found.
 double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
                           double height) noexcept {
-  // What a wrong rotation scales (see Precision) is the depth here, as far as B's reach allows.
-  const double apart = a_from_b.translation.norm();
-  const double scaled = std::clamp(p.reach_b - p.reach_a - apart, 0.0, std::abs(height));
+  // A wrong rotation scales the depth here (see Precision), up to B's extent.
+  const double translation = a_from_b.translation.norm();
+  const double scaled = std::clamp(p.extent_b - p.extent_a - translation, 0.0, std::abs(height));
   return kOnArc * p.size + p.error_bound + a_from_b.rotation_error * scaled;
 }
 
-// The certified distance along `s` that parts the bodies. A facet of X, or the arc of an
-// edge of X, has a direction exactly there in which X reaches exactly as far as that feature. Where
-// that comes out too far from `lower`, Depth's, every ulp counts, and both ways are gone.
+// The certified distance along `s` that separates the bodies. At a facet of X, or on the arc of an
+// edge of X, the support value of X is exactly that of the feature. If the result is too far from
+// `lower`, the lower bound of the depth, every ulp counts: both methods are tried.
 double certified(const NormalSearch::Best& best, const Separator& s, const ActiveFeature& a,
                  const ActiveFeature& b, const Precision& p, double rounding,
                  double lower) noexcept {
@@ -62,9 +62,9 @@ double certified(const NormalSearch::Best& best, const Separator& s, const Activ
   return std::min(by_feature, -separation(s, a, b, p) + p.error_bound);
 }
 
-// How far a matrix is from the nearest rotation (2-norm), what rounding hides of it included.
+// The distance of a matrix from the nearest rotation (2-norm), rounding included.
 double off_rotation(const Mat3& r) noexcept {
-  return 0.5 * (r.transpose() * r - Mat3::Identity()).norm() + 0x1p-50;
+  return 0.5 * (r.transpose() * r - Mat3::Identity()).norm() + 8 * kUlp;
 }
 
 // Depth::lower from the least h that the search has found anywhere.
@@ -73,14 +73,14 @@ double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
   const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
   // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
-  // If the bodies penetrate there, they are no farther apart than B is from there.
+  // If the bodies penetrate there, their distance is at most the displacement of B back from there.
   RelativePose placed = a_from_b;
   const double off = off_rotation(a_from_b.rotation);
   placed.rotation_error = off;
   placed.translation_error = 0.0;
   const Precision there = precision_of_vertices(a.body(), b.body(), placed);
   if (!(least > rounding_of_height(placed, there, least))) return -kInfinity;
-  return least - rounding - 2.0 * off * p.reach_b;
+  return least - rounding - 2.0 * off * p.extent_b;
 }
 
 // Two points or segments have no inside: they meet in a point and are parted by next to nothing.
@@ -88,7 +88,7 @@ Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
                         const Precision& p) noexcept {
   const auto along = [](const ActiveFeature& s) {
     return s.body().edges.empty() ? Vec3::Zero().eval()
-                                  : s.direction_to_common(s.body().edges[0].direction);
+                                  : s.direction_to_a(s.body().edges[0].direction);
   };
   const Vec3 n = direction_case::across_both(along(a), along(b));
   const double forth = separation({n}, a, b, p), back = separation({-n}, a, b, p);
@@ -108,7 +108,7 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   const MinkowskiDifference body(a.body(), b.body(), a_from_b);
   Depth out;
   if (!body.y().bounded()) return out;  // two unbounded bodies: nothing is known
-  NormalSearch search(body, kGapTolerance * start.size, a_from_b.rotation_error + 0x1p-50);
+  NormalSearch search(body, kGapTolerance * start.size, a_from_b.rotation_error + kDerivativeError);
   if (guess != nullptr) {
     const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
     const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
@@ -118,7 +118,7 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
       search.guess_facet_of_y(of_y);
     } else {
       const std::int32_t edge_of_x = body.x_is_b() ? guess->edge_of_b : guess->edge_of_a;
-      search.guess(body.from_common(guess->normal), edge_of_x);
+      search.guess(body.from_a(guess->normal), edge_of_x);
     }
   }
   if (!search.ended_early()) search.run();

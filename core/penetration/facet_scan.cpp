@@ -24,7 +24,7 @@ struct Facets {
         z(hn::LoadU(Tag(), row + 2 * stride)),
         offset(hn::LoadU(Tag(), row + 3 * stride)) {}
 
-  // How deep a point lies below them: d - n.x.
+  // The depth of a point below the facets: d - n.x.
   [[nodiscard]] HWY_INLINE Numbers over(const double* point) const {
     const auto number = [&](int k) HWY_ATTR { return hn::Set(Tag(), point[k]); };
     const auto along =
@@ -123,7 +123,7 @@ std::size_t list_shallow(const double* row, std::size_t count, const DeepestPoin
   return size;
 }
 
-// Lists where one point is not as deep as `enough`; some may be beyond the row.
+// Lists where one point is not as deep as `enough`; lanes past the row's end may be among them.
 std::size_t list_not_below(const double* row, std::size_t count, const DeepestPoints::Point* point,
                            double enough, std::uint16_t* list) {
   const Tag tag;
@@ -149,8 +149,8 @@ HWY_EXPORT(mark_deep);
 // A larger body's facets a part at a time, each over the one before.
 void DeepestVertices::find_deepest() noexcept {
   const std::size_t facets = body_.facets.size();
-  for (std::size_t first = 0; first < facets; first += kMostFacets) {
-    const std::size_t end = std::min(kMostFacets, facets - first);
+  for (std::size_t first = 0; first < facets; first += kMostScanned) {
+    const std::size_t end = std::min(kMostScanned, facets - first);
     const double least = HWY_DYNAMIC_DISPATCH(deepest_of_all)(body_.planes.row(0) + first, facets,
                                                               end, points_[0].data(), count_,
                                                               depths_.data(), whose_.data());

@@ -12,13 +12,13 @@
 
 namespace clearance {
 
-// For each facet n.x <= d of a body the greatest d - n.x (m) over the vertices of another, and
-// whose it is.
+// For each facet n.x <= d of a body: the greatest d - n.x (m) over the vertices of another body,
+// and the vertex that has it.
 class DeepestVertices {
  public:
   static constexpr std::size_t kMostVertices = 24;
-  // Of a body with no more edges than one of so many vertices can have (66).
-  static constexpr std::size_t kMostFacets = 44;
+  // The edges of a body of so many vertices are no more than this (66).
+  static constexpr std::size_t kMostScanned = 44;
 
   [[nodiscard]] static bool fit(const std::vector<Vec3>& vertices) noexcept {
     return vertices.size() <= kMostVertices;
@@ -37,7 +37,7 @@ class DeepestVertices {
   [[nodiscard]] double least() const noexcept { return least_; }
   [[nodiscard]] std::int32_t where_least() const noexcept { return where_least_; }
 
-  // What follows is for bodies of no more than kMostFacets.
+  // The members below are for bodies of no more than kMostScanned.
 
   // The deepest vertex below a facet, and its number.
   [[nodiscard]] const Vec3& deepest(std::int32_t facet) const noexcept {
@@ -50,7 +50,7 @@ class DeepestVertices {
   // Marks which vertices are so deep (m) below which facets, and lists those that vertex `main` is
   // not.
   [[nodiscard]] std::span<const std::int32_t> mark(double enough, std::size_t main) noexcept;
-  // As last marked: is that one? Is any of them, below both?
+  // Is this vertex marked? Is any vertex marked for both?
   [[nodiscard]] bool main_is(std::int32_t facet) const noexcept {
     return (marks_[static_cast<std::size_t>(facet)] & main_) != 0;
   }
@@ -62,7 +62,7 @@ class DeepestVertices {
   void find_deepest() noexcept;
 
   // Vectors of up to four run over the end.
-  static constexpr std::size_t kRow = kMostFacets + 4;
+  static constexpr std::size_t kRow = kMostScanned + 4;
 
   const ConvexBody& body_;
   std::array<double, kRow> depths_, whose_;  // [facet]
@@ -81,18 +81,17 @@ class DeepestPoints {
   static constexpr std::size_t kMostFacets = 16384;
   static constexpr std::size_t kMostPoints = 4;
 
-  // A point, or the sphere around it, all of which belongs to the other body: that reaches d - n.at
-  // + radius below a facet.
+  // A point of the other body, or a sphere inside it. Its depth below a facet is d - n.at + radius.
   struct Point {
     Vec3 at;        // the body's frame
     double radius;  // m
-    double margin;  // m: what rounding may hide of how far `at` is inside a facet
+    double margin;  // m: the rounding error of the depth of `at` below a facet
     [[nodiscard]] double below(const Facet& facet) const noexcept {
       return (facet.offset - facet.normal.dot(at)) + radius;
     }
-    // How deep it must be below two facets that it is `enough` deep below all between them: a
-    // sphere's middle must be inside both for certain. Beyond the edge of a body all but flat it
-    // may be outside both by less than rounding can tell, and along the arc by metres.
+    // A point at least this deep below two facets is `enough` deep below all planes between them.
+    // The centre of a sphere must be inside both for certain. Past the edge of a body that is all
+    // but flat, a centre may be outside both by less than rounding, and along the arc by metres.
     [[nodiscard]] double for_arcs(double enough) const noexcept {
       return std::max(enough, radius + margin);
     }
@@ -108,7 +107,7 @@ class DeepestPoints {
   [[nodiscard]] bool room_beside_sphere() const noexcept {
     return count_ + (sphere() == nullptr) < kMostPoints;
   }
-  // Only where there is room.
+  // Only if there is a free slot.
   void add(const Vec3& at) noexcept { points_[count_++] = {at, 0.0, 0.0}; }
   // Once.
   void add_sphere(const Vec3& middle, double radius, double margin) noexcept {
@@ -135,7 +134,8 @@ class DeepestPoints {
     std::int32_t where_least;               // the first facet of all with the least depth
   };
   [[nodiscard]] Shallow list_shallow(double enough) noexcept;
-  // Those that one point is not so deep below that it is so along arcs; for is_listed(), too.
+  // Lists the facets below which the point is not deep enough to be so along arcs as well;
+  // is_listed() knows them, too.
   [[nodiscard]] std::span<const std::uint16_t> list_not_below(const Point& point,
                                                               double enough) noexcept;
   // Is one of the points that deep below both facets, and so below all between them?

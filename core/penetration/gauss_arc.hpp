@@ -1,9 +1,9 @@
 // Bounds from below along the arc between the normals l and r of two facets that share an edge.
 //
-// On the arc n = ((1 - s) l + s r) / N with 0 <= s <= 1 and N <= 1. Of a point c of the difference
-// body h(n) >= c.n, which is, where positive, at least (1 - s) c.l + s c.r; between two directions
-// of the arc it is at least the lesser one there. So every s, however rounded, at which one point
-// takes over from the other gives a bound that holds.
+// On the arc n = ((1 - s) l + s r) / N with 0 <= s <= 1 and N <= 1. A point c of the Minkowski
+// difference gives h(n) >= c.n. If positive, c.n is at least (1 - s) c.l + s c.r. Between two
+// directions of the arc it is at least the lesser of the two values there. So every s, however
+// rounded, at which one point takes over from the other gives a bound that holds.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-// What one point has at the two ends, m.
+// The heights of one point at the two ends, m.
 struct OnArc {
   double l, r;
   [[nodiscard]] double at(double s) const noexcept { return l + s * (r - l); }
@@ -28,18 +28,19 @@ struct OnArc {
   return std::max(alone, std::min({first.l, first.at(s), last.at(s), last.r}));
 }
 
-// One point up to where it has no more than `enough`, the other from where it has as much, and a
-// sphere between: what its middle has, and its radius. apart: |l - r|^2, with which the middle's
-// share grows between the ends (1 / N >= 1 + s (1 - s) |l - r|^2 / 2).
+// One point covers the arc up to the place at which its height falls to `enough`. The other covers
+// it from the place at which its height has risen to that. A sphere covers what lies between:
+// `middle` is the height of its centre. chord2: |l - r|^2. Between the ends the height of the
+// centre grows, as 1 / N >= 1 + s (1 - s) |l - r|^2 / 2.
 [[nodiscard]] inline double least_with_sphere(const OnArc& first, const OnArc& middle,
-                                              double radius, const OnArc& last, double apart,
+                                              double radius, const OnArc& last, double chord2,
                                               double enough) noexcept {
   if (!(middle.least() >= 0.0)) return -kInfinity;
   const double from = first.l > enough ? (first.l - enough) / (first.l - first.r) : 0.0;
   const double to = last.r > enough ? (last.r - enough) / (last.r - last.l) : 0.0;
   if (!(from >= 0.0 && to >= 0.0 && from + to <= 1.0)) return -kInfinity;
   const auto sphere = [&](double s) {
-    return middle.at(s) * (1.0 + 0.5 * s * (1.0 - s) * apart) + radius;
+    return middle.at(s) * (1.0 + 0.5 * s * (1.0 - s) * chord2) + radius;
   };
   return std::min(
       {first.l, first.at(from), sphere(from), sphere(1.0 - to), last.at(1.0 - to), last.r});

@@ -1,8 +1,8 @@
 // The set of all differences x - y of two bodies' points, as the depth search sees it.
 //
-// Everything is in the frame of one of the two, X. Translating Y by v parts the bodies when v is
-// not inside this set; how far the set reaches along a unit direction n is how far Y must go along
-// n until the two only touch.
+// Everything is in the frame of one of the two, X. Translating Y by v separates the bodies when v
+// is not inside this set. The support value of the set along a unit direction n is the displacement
+// of Y along n after which the two only touch.
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -22,8 +22,8 @@ struct Placement {
 
 class MinkowskiDifference {
  public:
-  // X is the body whose edges the search follows: the unbounded one, the one without facets (a
-  // segment or a point), or else the one with fewer edges.
+  // X is the body whose edges the search follows. It is the unbounded one, the one without facets
+  // (a segment or a point), or else the one with fewer edges.
   MinkowskiDifference(const ConvexBody& a, const ConvexBody& b,
                       const RelativePose& a_from_b) noexcept
       : x_is_b_(prefers_second(a, b)),
@@ -52,14 +52,14 @@ class MinkowskiDifference {
     return {x_from_y_.transpose(), origin_of_y_, Vec3::Zero()};
   }
   // Between directions from X towards Y in X's frame and from A towards B in A's.
-  [[nodiscard]] Vec3 to_common(const Vec3& n) const noexcept {
+  [[nodiscard]] Vec3 to_a(const Vec3& n) const noexcept {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation * n)) : n;
   }
-  [[nodiscard]] Vec3 from_common(const Vec3& n) const noexcept {
+  [[nodiscard]] Vec3 from_a(const Vec3& n) const noexcept {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation.transpose() * n)) : n;
   }
 
-  // Of Y, farthest against n: an anchor, and where it is.
+  // The support point of Y against n: an anchor and its position.
   [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
     return support(y_, -direction_to_y(n)).anchor;
   }

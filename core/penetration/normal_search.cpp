@@ -6,8 +6,8 @@
 namespace clearance {
 namespace {
 
-// Parts of one arc that wait their turn. A split leaves one behind, and the other shrinks by a
-// vertex of Y's outline at least; on the hard cases of tests/ no more than 4 have ever waited.
+// Parts of one arc that wait their turn. A split leaves one part behind, and the other shrinks by
+// at least a vertex of Y's outline. On the hard cases of tests/ no more than 4 have ever waited.
 constexpr std::size_t kWaiting = 48;
 // Samples of one arc, or as many as Y has vertices: more than are on its outline.
 constexpr std::size_t kSamples = 1024;
@@ -25,7 +25,7 @@ double turn(const Eigen::Vector2d& u, const Eigen::Vector2d& v) noexcept {
   return u.x() * v.y() - u.y() * v.x();
 }
 
-// Between two directions less than half a turn apart, r to the left of l.
+// Between two directions at an angle below pi, r to the left of l.
 Eigen::Vector2d middle_of(const Eigen::Vector2d& l, const Eigen::Vector2d& r) noexcept {
   const Eigen::Vector2d sum = l + r;
   return sum.squaredNorm() > 1e-3 ? sum.normalized() : Eigen::Vector2d(-l.y(), l.x());
@@ -131,7 +131,7 @@ void NormalSearch::split(const Arc& arc, const Sample& first, const Sample& last
     const Vec2 between = r.vertex - l.vertex;
     Vec2 m = unit_along(Vec2(-between.y(), between.x()));
     if (turn(l.at, m) < 0.0) m = -m;
-    // What rounding puts beyond the arc's end shows that the bounds do not cross on it.
+    // If rounding puts the crossing past the arc's end, the bounds do not cross on the arc.
     if (!(turn(l.at, m) > 0.0 && turn(m, r.at) > 0.0)) {
       lower_to(bound);
       continue;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/numerics/error_constants.hpp"
 #include "core/penetration/facet_scan.hpp"
 #include "core/penetration/minkowski_difference.hpp"
 
@@ -20,19 +21,19 @@ class NormalSearch {
     std::int32_t facet = kNone;
   };
 
-  // gap_tolerance: m, how near to the best h a bound from below must come. direction_error: of a
-  // direction turned into the other body's frame.
+  // gap_tolerance: m, the distance from the best h within which a bound from below must come.
+  // direction_error: that of a direction rotated into the other body's frame.
   NormalSearch(const MinkowskiDifference& body, double gap_tolerance,
                double direction_error) noexcept
       : body_(body),
         gap_tolerance_(gap_tolerance),
         within_rounding_(0x1p-46 + direction_error),
-        beyond_rounding_(0x1p-50 + direction_error) {}
+        beyond_rounding_(kDerivativeError + direction_error) {}
 
-  // Any unit n. Only a target to beat: what the facets and arcs have is found again there; first of
-  // all on the arc of `edge_of_x`, unless that is kNone.
+  // Any unit n. It is only a target to beat: the values of facets and arcs are found again there.
+  // The search begins on the arc of `edge_of_x`, unless that is kNone.
   void guess(const Vec3& n, std::int32_t edge_of_x) noexcept;
-  // All of them stay the best where others are no better than to rounding.
+  // Each of these stays the best unless another is better beyond rounding.
   void guess_facet_of_x(std::int32_t facet) noexcept {
     look_at_facet_of_x(facet);
     hold(best_.n);
@@ -41,7 +42,7 @@ class NormalSearch {
     look_at_facet_of_y(facet);
     hold(best_.n);
   }
-  // Everything there is; stops early when the bodies turn out to be apart.
+  // Searches all facets and arcs; stops early if the bodies turn out to be disjoint.
   void run() noexcept;
 
   [[nodiscard]] const Best& best() const noexcept { return best_; }
@@ -59,7 +60,7 @@ class NormalSearch {
     [[nodiscard]] Vec3 direction(const Vec2& at) const noexcept { return at.x() * u + at.y() * w; }
     [[nodiscard]] Vec2 project(const Vec3& v) const noexcept { return {v.dot(u), v.dot(w)}; }
   };
-  // What is known in one direction of an arc.
+  // The bounds that are known in one direction of an arc.
   struct Sample {
     Vec2 at;      // the direction
     Vec2 vertex;  // the support point along it, projected
@@ -76,7 +77,7 @@ class NormalSearch {
   }
   static constexpr double kSame = 0x1p-26;
 
-  // m: of how far a point of one body is inside a facet of the other, in roundings of both bodies'
+  // m: the error of a point's depth below a facet of the other body. In roundings of both bodies'
   // size: 6 for its place, 2 for the normal, 4 for the product and the difference. gap_tolerance_
   // is 8.
   [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * gap_tolerance_; }
@@ -107,7 +108,7 @@ class NormalSearch {
     [[nodiscard]] Vec3 against(const Facet& facet) const noexcept {
       return -(body_from_other.turn.transpose() * facet.normal);
     }
-    // How deep one of the other's vertices lies below a facet, m.
+    // The depth of one of the other body's vertices below a facet, m.
     [[nodiscard]] double below(const Facet& facet, std::int32_t vertex) const noexcept {
       return facet.offset - facet.normal.dot(body_from_other(other.anchors[vertex]));
     }
@@ -150,16 +151,16 @@ class NormalSearch {
   const MinkowskiDifference& body_;
   double gap_tolerance_;
   // Rays whose directional derivative is smaller, per unit length, may be orthogonal to the
-  // direction; of a facet of Y, smaller than the lesser one: the facet's normal is off by 5 ulps
-  // when turned, the ray by 1, their product by 3.
+  // direction. The smaller limit is for the normals of Y's facets. A rotated normal is off by 5
+  // ulps, the ray by 1, their product by 3.
   double within_rounding_, beyond_rounding_;
   Vec3 held_ = Vec3::Zero();  // the direction guessed
   double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
 
-  // Vertices found on the way, by where the directions point that they were found for: six axes by
-  // the signs of the other two components.
+  // Vertices found so far, by the directions for which they were found: six axes by the signs of
+  // the other two components.
   static std::size_t cell(const Vec3& n) noexcept;
   [[nodiscard]] const Vec3* cached(const Vec3& n) const noexcept {
     return is_cached_[cell(n)] ? &cached_[cell(n)] : nullptr;

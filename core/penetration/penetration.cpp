@@ -24,7 +24,7 @@ bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const Tracking
   }
   if (has(state.b, FeatureKind::kFacet, b.body().facets.size())) {
     const Vec3& normal = b.body().facets[state.b.feature].normal;
-    out = {-b.direction_to_common(normal).normalized(), kNone, state.b.feature};
+    out = {-b.direction_to_a(normal).normalized(), kNone, state.b.feature};
     return true;
   }
   if (!has(state.a, FeatureKind::kEdge, a.body().edges.size()) ||
@@ -32,8 +32,7 @@ bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const Tracking
     return false;
   }
   const Edge& e = a.body().edges[state.a.feature];
-  const Vec3 n =
-      e.direction.cross(b.direction_to_common(b.body().edges[state.b.feature].direction));
+  const Vec3 n = e.direction.cross(b.direction_to_a(b.body().edges[state.b.feature].direction));
   const double sine2 = n.squaredNorm();
   if (!(sine2 > kCrossingSine2)) return false;
   // The sign that leads out of A: the facets beside the edge lie on the inner side.
@@ -42,9 +41,9 @@ bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const Tracking
   return true;
 }
 
-// Where nothing is remembered: the direction from one interior point to the other.
+// The direction of a pair without a state: from one interior point to the other.
 Separator between_interiors(const ActiveFeature& a, const ActiveFeature& b) noexcept {
-  const Vec3 between = b.point_to_common(b.body().interior) - a.body().interior;
+  const Vec3 between = b.point_to_a(b.body().interior) - a.body().interior;
   return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
 }
 
@@ -86,8 +85,8 @@ void measure_penetration(const ConvexBody& a, const ConvexBody& b, const Relativ
     conclude_penetrating(a, b, a_from_b, found, state, result);
     return;
   }
-  // Neither apart nor certainly overlapping: both the distance's bounds and the depth's hold, and
-  // so do the better ones of them.
+  // Neither certainly disjoint nor certainly overlapping: both the distance's bounds and the
+  // depth's hold, and so do the better ones of them.
   if (-found.upper > result.lower) {
     result.lower = -found.upper;
     result.normal = found.normal;

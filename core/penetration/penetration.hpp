@@ -1,4 +1,4 @@
-// From the penetration depth of two bodies to a DistanceResult, tracked.
+// The penetration depth of two bodies as a DistanceResult, tracked.
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -14,9 +14,9 @@ namespace clearance {
                                      const RelativePose& a_from_b, TrackingState& state,
                                      DistanceResult& result) noexcept;
 
-// For a result (of the polyhedra, without radii) whose lower bound is not positive: bounds it from
-// below, and where the polyhedra penetrate, finds the depth. `state` holds the last features, and
-// is moved on.
+// For a result of the polyhedra, without radii, whose lower bound is not positive. Bounds it from
+// below, and finds the depth if the polyhedra penetrate. `state` holds the last features and gets
+// the new ones.
 void measure_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                          TrackingState& state, DistanceResult& result) noexcept;
 

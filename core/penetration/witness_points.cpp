@@ -5,35 +5,36 @@
 #include <cstdint>
 
 #include "core/active_set/dqp3.hpp"
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "core/model/support_function.hpp"
 
 namespace clearance {
 namespace {
 
-// To find the points that meet when B has been moved by its depth, B is moved a little farther: by
-// the depth again, at least by this part of the bodies' size, so that the direction between the
-// closest points is not lost in rounding.
+// The points that meet when B has been moved by its depth are found with B moved a little farther.
+// It moves by the depth again, and at least by this part of the bodies' size. Otherwise the
+// direction between the closest points would be lost in rounding.
 constexpr double kFarther = 0x1p-20;
 
-// At a distance f a point that lies beside the closest one by sqrt(2 f) roundings is as close as
-// doubles can tell. Where edges are nearly parallel that is more than this part of the size, and B
-// is moved out by no more than the other one: there it is sqrt(2^-43 2^-53) = 2^-48.
+// At a distance f doubles cannot tell the closest point from one that is sqrt(2 f) roundings beside
+// it. For nearly parallel edges that is more than kBeside of the size. Then B is moved out by no
+// more than kNearer, where it is sqrt(2^-43 2^-53) = 2^-48.
 constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 
 // The closest points of A and of B as `moved`, from the features of the state on.
 std::uint16_t closest_when_moved(const ConvexBody& a, const ConvexBody& b,
                                  const RelativePose& moved, TrackingState& state) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &moved);
-  const double apart = moved.translation.norm();
-  side_a.place_near(state.a, side_b, apart);
-  side_b.place_near(state.b, side_a, apart);
+  const double between_origins = moved.translation.norm();
+  side_a.place_near(state.a, side_b, between_origins);
+  side_b.place_near(state.b, side_a, between_origins);
   const std::uint16_t iterations = dqp3(side_a, side_b, 0.0).iterations;
   state = {side_a.tracked(), side_b.tracked()};
   return iterations;
 }
 
-// Takes the state's points for the witness points; how far from the normal their difference ends.
+// Takes the state's points for the witness points. Returns the part of their difference across the
+// normal, m.
 double take_points(const RelativePose& a_from_b, const TrackingState& state,
                    DistanceResult& r) noexcept {
   r.point_on_a = state.a.point;
@@ -45,8 +46,8 @@ double take_points(const RelativePose& a_from_b, const TrackingState& state,
 // rounding does as much.
 constexpr double kPointTolerance = 0x1p-47;
 
-// From the features of the state, unless that brings the points farther beside each other than
-// `beside`; how far they are then.
+// Starts from the features of the state. Returns by how much the points lie beside each other
+// across the normal, and leaves the result alone if that is more than `beside`.
 double bring_together(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                       const RelativePose& moved, double beside, TrackingState& state,
                       DistanceResult& r) noexcept {
@@ -75,9 +76,9 @@ void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePos
   const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
   RelativePose moved = a_from_b;
   moved.translation += (found.value + farther) * found.normal;
-  DistanceResult apart;
-  if (walk_features(a, b, moved, state, apart) != WalkEnd::kUndecided) {
-    r.iterations = apart.iterations;
+  DistanceResult separated;
+  if (track_features(a, b, moved, state, separated) != TrackingEnd::kUndecided) {
+    r.iterations = separated.iterations;
   } else {
     r.iterations = closest_when_moved(a, b, moved, state);
   }
@@ -85,8 +86,8 @@ void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePos
   if (!(beside > kBeside * size)) return;
   moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
   const double nearer = bring_together(a, b, a_from_b, moved, beside, state, r);
-  // The features may be tilted by more than rounding, and yet not be told from the right ones at
-  // so small a distance, nor left by steps.
+  // The features may be tilted by more than rounding. At so small a distance they cannot be told
+  // from the right ones, and no transition leaves them.
   const double along = (r.point_on_b - r.point_on_a).dot(r.normal) - r.distance;
   if (std::abs(along) <= kPointTolerance * size || a.vertices.empty() || b.vertices.empty()) return;
   TrackingState support = at_support_vertices(a, b, a_from_b, found.normal);

@@ -8,8 +8,9 @@
 
 namespace clearance {
 
-// The points that meet when B has been moved clear of A by the depth `found`: to `result`, whose
-// distance and normal are known, in A's frame; and to `state`, which begins at the last features.
+// Finds the points that meet when B has been moved clear of A by the depth `found`. Writes them to
+// `result`, in frame A, whose distance and normal are known, and to `state`, which holds the last
+// features.
 void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                      const Depth& found, TrackingState& state, DistanceResult& result) noexcept;
 

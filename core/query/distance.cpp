@@ -13,16 +13,19 @@
 #define HWY_TARGET_INCLUDE "core/query/distance.cpp"
 #include "core/numerics/simd_targets.hpp"
 // The line above must come first.
+#include <cassert>
+
 #include "core/distance.hpp"
-#include "core/feature_walk/penetrating_steps-inl.hpp"
+#include "core/feature_tracking/penetrating_transitions-inl.hpp"
 #include "core/model/radii.hpp"
+#include "core/model/result_invariants.hpp"
 #include "core/query/search.hpp"
 #include "core/query/tracked_query.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The two ways in by poses: is_straight(state) says which. Either accepts any state.
+// The two ways in by poses: has_straight_features(state) says which. Either accepts any state.
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state);
@@ -30,7 +33,8 @@ DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Po
                               const Pose& world_from_b, TrackingState& state);
 // For a batch, which has made transitions already.
 DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                                 const Pose& world_from_b, TrackingState& state, WalkStart start);
+                                 const Pose& world_from_b, TrackingState& state,
+                                 TransitionsMade start);
 
 }  // namespace clearance::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -38,7 +42,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <atomic>
 
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 
 namespace clearance {
 
@@ -50,7 +54,7 @@ HWY_EXPORT(after_transitions);
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                         const Pose& world_from_b, TrackingState& state) noexcept {
-  return is_straight(state)
+  return has_straight_features(state)
              ? HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state)
              : HWY_STATIC_DISPATCH(from_any_state)(a, b, world_from_a, world_from_b, state);
 }
@@ -58,8 +62,8 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 #else
 namespace {
 
-// Where Highway keeps the vector width that it has chosen. To ask is a call of another library,
-// around which all arguments have to be saved, so it is asked once.
+// The place in which Highway keeps the vector width that it has chosen. Asking for it calls another
+// library, around which all arguments have to be saved, so this asks once.
 std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
 
 HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
@@ -77,8 +81,8 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
-  const auto& of_widths = is_straight(state) ? HWY_DISPATCH_TABLE(from_straight_features)
-                                             : HWY_DISPATCH_TABLE(from_any_state);
+  const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
+                                                       : HWY_DISPATCH_TABLE(from_any_state);
   return of_widths[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
 
@@ -89,14 +93,17 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
-  if (a.is_curved() || b.is_curved()) return by_direction(a, b, a_from_b, state, options.depth);
+  if (a.is_curved() || b.is_curved())
+    return curved_pair_distance(a, b, a_from_b, state, options.depth);
   DistanceResult result;
   if (state.a.penetrating && options.depth) {
-    if (!walk_penetration(a, b, a_from_b, state, result)) return by_depth(a, b, a_from_b, state);
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
-    return by_search(a, b, a_from_b, state, options.depth);
+    if (!track_penetrating_features(a, b, a_from_b, state, result))
+      return penetrating_distance(a, b, a_from_b, state);
+  } else if (track_features(a, b, a_from_b, state, result) != TrackingEnd::kCertified) {
+    return search_distance(a, b, a_from_b, state, options.depth);
   }
   add_radii(result, a, b);
+  assert(keeps_promises(result));
   return result;
 }
 
@@ -128,13 +135,14 @@ namespace clearance::HWY_NAMESPACE {
 
 DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose4& a_from_b, TrackingState& state,
-                                      WalkStart start, Transition first);
+                                      TransitionsMade start, Transition first);
 DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                                 const Pose& world_from_b, TrackingState& state);
 
 HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   DistanceResult result = result_of(pair);
   add_radii(result, pair.a, pair.b);
+  assert(keeps_promises(result));
   return result;
 }
 
@@ -142,14 +150,14 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) {
-  if (HWY_UNLIKELY(!can_be_walked(a, b, state))) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
   const Transition first = transition<Tracking::kFirst>(pair);
-  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == WalkEnd::kCertified)) {
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
   return after_first_transition(a, b, a_from_b, state,
@@ -159,31 +167,38 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
 // The pair is a new one, so that the pair of from_straight_features() can stay in registers.
 HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                                    const RelativePose4& a_from_b,
-                                                   TrackingState& state, WalkStart start,
+                                                   TrackingState& state, TransitionsMade start,
                                                    Transition first) {
   if (first == Transition::kDeferred) --start.transitions;
   TrackedPair pair(a, b, a_from_b, state, start);
   const bool moved = first == Transition::kMoved || first == Transition::kDeferred;
-  if (moved && walk_on(pair) == WalkEnd::kCertified) return rounded_result_of(pair);
-  return by_search(a, b, pose_of(a_from_b), state, true);
+  if (moved && continue_tracking(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
+  return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
 // No features, parallel ones, penetrating bodies, or a curved body.
-DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                              const Pose& world_from_b, TrackingState& state) {
-  return after_transitions(a, b, world_from_a, world_from_b, state, {});
-}
-
-DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                                 const Pose& world_from_b, TrackingState& state, WalkStart start) {
+HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
+                                        const Pose& world_from_a, const Pose& world_from_b,
+                                        TrackingState& state, TransitionsMade start) {
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return by_direction(a, b, world_from_a, world_from_b, state);
+    return curved_pair_distance(a, b, world_from_a, world_from_b, state);
   }
   if (state.a.penetrating) return from_penetration(a, b, world_from_a, world_from_b, state);
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state, start);
-  if (walk(pair) == WalkEnd::kCertified) return rounded_result_of(pair);
-  return by_search(a, b, pose_of(a_from_b), state, true);
+  if (track(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
+  return search_distance(a, b, pose_of(a_from_b), state, true);
+}
+
+// One argument more than fits into registers costs a cold query 3 %: so there are two of these.
+DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                              const Pose& world_from_b, TrackingState& state) {
+  return distance_from(a, b, world_from_a, world_from_b, state, {});
+}
+DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                                 const Pose& world_from_b, TrackingState& state,
+                                 TransitionsMade start) {
+  return distance_from(a, b, world_from_a, world_from_b, state, start);
 }
 
 // The bodies penetrated each other in the last query.
@@ -192,9 +207,11 @@ HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBo
                                              TrackingState& state) {
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
   TrackedPair pair(a, b, a_from_b, state);
-  if (!walk_penetration(pair)) return by_depth(a, b, pose_of(a_from_b), state);
+  if (!track_penetrating_features(pair))
+    return penetrating_distance(a, b, pose_of(a_from_b), state);
   DistanceResult result = penetration_result_of(pair);
   add_radii(result, a, b);
+  assert(keeps_promises(result));
   return result;
 }
 

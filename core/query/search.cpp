@@ -1,29 +1,32 @@
 #include "core/query/search.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
 #include "core/active_set/dqp3.hpp"
 #include "core/curved/curved_distance.hpp"
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "core/gjk/gjk.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/radii.hpp"
+#include "core/model/result_invariants.hpp"
 #include "core/penetration/penetration.hpp"
 
 namespace clearance {
 namespace {
 
-// What is known so far of the distance between the polyhedra, the error bound not yet taken off.
+// The bounds of the polyhedra's distance that are known so far; the error bound is not yet taken
+// off.
 struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
-  double beyond = 0.0;  // what the points' places may cost beyond the error bound
+  double points_error = 0.0;  // m: the error of the points' places above the error bound
   Vec3 normal = Vec3::Zero();
 
-  [[nodiscard]] double certified_upper() const noexcept { return upper + beyond; }
+  [[nodiscard]] double certified_upper() const noexcept { return upper + points_error; }
   void raise(double value, const Vec3& n) noexcept {
     if (value > lower) {
       lower = value;
@@ -32,7 +35,8 @@ struct Bounds {
   }
 };
 
-// Tries the separating directions in their order, until the bounds are as near as they can be.
+// Tries the separating directions in their order, until the bounds are as near to each other as
+// rounding allows.
 void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
                    const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
@@ -55,52 +59,52 @@ DistanceResult conclude(const ActiveFeature& a, const ActiveFeature& b, const Bo
   r.upper = bounds.certified_upper() + p.error_bound;
   r.distance = bounds.upper;
   r.normal = unit_along(bounds.normal);
-  r.point_on_a = a.common();
-  r.point_on_b = b.common();
+  r.point_on_a = a.point_in_a();
+  r.point_on_b = b.point_in_a();
   r.status = judge(bounds, p, r);
   return r;
 }
 
 // The distance that the optimal active set certifies by itself: both bodies lie behind their
-// features along n. Along an active edge the body may reach its whole length farther, as far as
-// rounding tilts n.
-double certified_distance(const Vec3& n, double apart, const ActiveFeature& a,
+// features along n. Rounding tilts n against an active edge, which may change the body's support
+// value over its whole size.
+double certified_distance(const Vec3& n, double distance, const ActiveFeature& a,
                           const ActiveFeature& b, const Precision& p) noexcept {
   const auto along_edge = [&](const ActiveFeature& s) {
     return s.feature() == FeatureKind::kEdge
-               ? std::abs(s.direction_to_own(n).dot(s.edge().direction))
+               ? std::abs(s.direction_to_local(n).dot(s.edge().direction))
                : 0.0;
   };
-  return apart - 2.0 * (p.reach_a * along_edge(a) + p.reach_b * along_edge(b));
+  return distance - 2.0 * (p.extent_a * along_edge(a) + p.extent_b * along_edge(b));
 }
 
-// m: what rounding costs points that lie far beyond where Precision looks for the closest points of
-// unbounded bodies, as those of lines that are nearly parallel.
-double beyond_reach(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
-                    const Precision& p) noexcept {
+// m: the rounding error of points of unbounded bodies that lie farther out than Precision assumes,
+// as those of lines that are nearly parallel.
+double error_far_out(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
+                     const Precision& p) noexcept {
   if (a.body().bounded() || b.body().bounded()) return 0.0;
-  const double out_a = std::max(0.0, a.own().norm() - p.reach_a);
-  const double out_b = std::max(0.0, b.own().norm() - p.reach_b);
+  const double out_a = std::max(0.0, a.local_point().norm() - p.extent_a);
+  const double out_b = std::max(0.0, b.local_point().norm() - p.extent_b);
   return kUlp * (kUlpsOnA * out_a + kUlpsOnB * out_b) + a_from_b.rotation_error * out_b;
 }
 
-// Of the polyhedra, without radii: DQP3, its certificate, and GJK where that is too wide.
+// The distance of the polyhedra, without radii: DQP3, its certificate, and GJK if that is too wide.
 DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
                              const RelativePose& a_from_b) noexcept {
-  // Any two points bound the distance from above, and with it where on an unbounded body the
-  // closest points can lie.
-  const double first = (b.common() - a.common()).norm();
+  // Any two points bound the distance from above. That limits the part of an unbounded body in
+  // which the closest points can lie.
+  const double first = (b.point_in_a() - a.point_in_a()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.gap_tolerance);
 
   Bounds bounds;
-  bounds.upper = (b.common() - a.common()).norm();
+  bounds.upper = (b.point_in_a() - a.point_in_a()).norm();
   const Precision p = precision(a.body(), b.body(), a_from_b, std::min(first, bounds.upper));
-  bounds.beyond = beyond_reach(a, b, a_from_b, p);
+  bounds.points_error = error_far_out(a, b, a_from_b, p);
   if (outcome.end == Dqp3End::kCertified && (a.body().bounded() || b.body().bounded())) {
-    const double apart = outcome.separating_direction.norm();
-    const Vec3 n = outcome.separating_direction / apart;
-    bounds.raise(certified_distance(n, apart, a, b, p), n);
+    const double distance = outcome.separating_direction.norm();
+    const Vec3 n = outcome.separating_direction / distance;
+    bounds.raise(certified_distance(n, distance, a, b, p), n);
   }
   const bool met = outcome.end == Dqp3End::kContact;
   if (!met && !(bounds.certified_upper() - bounds.lower <= p.gap_tolerance)) {
@@ -108,26 +112,26 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
   }
   DistanceResult result = conclude(a, b, bounds, p);
   result.path = DistancePath::kActiveSet;
-  const double above = met ? 0.0 : bounds.lower;  // where they met, the depth bounds it from below
+  const double above = met ? 0.0 : bounds.lower;  // if they meet, the depth bounds it from below
   if (bounds.certified_upper() - above > p.gap_tolerance) {
     refine(a, b, a_from_b, p, result);
     result.path = DistancePath::kGjk;
   }
-  // Points far away, whose places cost much, may be nearer than is certified.
+  // Points far away, with large rounding errors, may come out nearer than the certified bound.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
   return result;
 }
 
-// From the features of the state on, which it moves on; of the polyhedra, without radii.
+// Starts from the features of the state, which gets the new ones. For the polyhedra, without radii.
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, bool depth) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
-  const double apart = a_from_b.translation.norm();
-  side_a.place_near(state.a, side_b, apart);
-  side_b.place_near(state.b, side_a, apart);
+  const double between_origins = a_from_b.translation.norm();
+  side_a.place_near(state.a, side_b, between_origins);
+  side_b.place_near(state.b, side_a, between_origins);
   DistanceResult result = core_distance(side_a, side_b, a_from_b);
-  // Whatever came of it: the next query starts here.
+  // The next query starts here, whatever the result.
   state = {side_a.tracked(), side_b.tracked()};
   if (result.lower > 0.0) return result;
   if (depth) {
@@ -140,34 +144,39 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
 
 }  // namespace
 
-DistanceResult by_search(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                         TrackingState& state, bool depth) noexcept {
+DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
+                               const RelativePose& a_from_b, TrackingState& state,
+                               bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result = searched(a, b, a_from_b, state, depth);
   add_radii(result, a, b);
+  assert(keeps_promises(result));
   return result;
 }
 
-DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                            TrackingState& state, bool depth) noexcept {
+DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state,
+                                    bool depth) noexcept {
   return curved_distance(a, b, a_from_b, state, depth);
 }
 
-DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                            const Pose& world_from_b, TrackingState& state) noexcept {
+DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
+                                    const Pose& world_from_a, const Pose& world_from_b,
+                                    TrackingState& state) noexcept {
   return curved_distance(a, b, world_from_a, world_from_b, state);
 }
 
-DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                        TrackingState& state) noexcept {
+DistanceResult penetrating_distance(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
   if (track_penetration(a, b, a_from_b, state, result)) {
     result.path = DistancePath::kPenetration;
-  } else if (walk_features(a, b, a_from_b, state, result) != WalkEnd::kCertified) {
-    return by_search(a, b, a_from_b, state, true);
+  } else if (track_features(a, b, a_from_b, state, result) != TrackingEnd::kCertified) {
+    return search_distance(a, b, a_from_b, state, true);
   }
   add_radii(result, a, b);
+  assert(keeps_promises(result));
   return result;
 }
 

@@ -1,5 +1,5 @@
-// What the walk leaves open: the active-set iteration, GJK in double-double arithmetic, the
-// penetration depth (core/README.md).
+// Queries that feature tracking leaves open: the active-set iteration, GJK in double-double
+// arithmetic, and the penetration depth (core/README.md).
 #pragma once
 
 #include "core/distance_result.hpp"
@@ -8,24 +8,26 @@
 
 namespace clearance {
 
-// distance() by the active-set iteration from the features of the state on, and where that
-// certifies too little by GJK; if `depth`, of bodies that penetrate each other by the penetration
-// depth as well.
-[[nodiscard]] DistanceResult by_search(const ConvexBody& a, const ConvexBody& b,
-                                       const RelativePose& a_from_b, TrackingState& state,
-                                       bool depth) noexcept;
+// distance() by the active-set iteration from the features of the state on, and by GJK if that
+// certifies too little. If `depth`, bodies that penetrate each other get their penetration depth as
+// well.
+[[nodiscard]] DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
+                                             const RelativePose& a_from_b, TrackingState& state,
+                                             bool depth) noexcept;
 
 // distance() of a pair with a curved body.
-[[nodiscard]] DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b,
-                                          const RelativePose& a_from_b, TrackingState& state,
-                                          bool depth) noexcept;
+[[nodiscard]] DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
+                                                  const RelativePose& a_from_b,
+                                                  TrackingState& state, bool depth) noexcept;
 // The same by poses.
-[[nodiscard]] DistanceResult by_direction(const ConvexBody& a, const ConvexBody& b,
-                                          const Pose& world_from_a, const Pose& world_from_b,
-                                          TrackingState& state) noexcept;
+[[nodiscard]] DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
+                                                  const Pose& world_from_a,
+                                                  const Pose& world_from_b,
+                                                  TrackingState& state) noexcept;
 
 // distance() of bodies that penetrated each other in the last query.
-[[nodiscard]] DistanceResult by_depth(const ConvexBody& a, const ConvexBody& b,
-                                      const RelativePose& a_from_b, TrackingState& state) noexcept;
+[[nodiscard]] DistanceResult penetrating_distance(const ConvexBody& a, const ConvexBody& b,
+                                                  const RelativePose& a_from_b,
+                                                  TrackingState& state) noexcept;
 
 }  // namespace clearance

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/distance_result.hpp"
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -11,7 +11,7 @@ namespace clearance {
 // A query of a pair that has made the transitions of `start`.
 using TrackedQuery = DistanceResult (*)(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
-                                        TrackingState& state, WalkStart start);
+                                        TrackingState& state, TransitionsMade start);
 [[nodiscard]] TrackedQuery tracked_query() noexcept;
 
 }  // namespace clearance

@@ -20,12 +20,12 @@ OrderedJson entry(const Vec3& v) { return OrderedJson::array({v.x(), v.y(), v.z(
 // A point of two penetrating bodies, in frame A, where a search for the closest points ends.
 Vec3 shared_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b) {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
-  side_a.place_cold(side_b.point_to_common(b.interior));
+  side_a.place_cold(side_b.point_to_a(b.interior));
   side_b.place_cold(a.interior);
   (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).gap_tolerance);
   const double radii = a.radius + b.radius;
   const double part_of_a = radii > 0.0 ? a.radius / radii : 0.5;
-  return side_a.common() + part_of_a * (side_b.common() - side_a.common());
+  return side_a.point_in_a() + part_of_a * (side_b.point_in_a() - side_a.point_in_a());
 }
 
 OrderedJson figures(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
@@ -100,8 +100,8 @@ void Answerer::print_paths() const {
         "clearance-distance: by feature tracking {}, by the active set {} ({} touch or overlap, {} "
         "by "
         "GJK), by the last penetration {}\n",
-        paths_[DistancePath::kWalk], paths_[DistancePath::kActiveSet] + robust, paths_.met, robust,
-        paths_[DistancePath::kPenetration]);
+        paths_[DistancePath::kFeatureTracking], paths_[DistancePath::kActiveSet] + robust,
+        paths_.met, robust, paths_[DistancePath::kPenetration]);
 }
 
 void PathCount::add(const DistanceResult& result) {

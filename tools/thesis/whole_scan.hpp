@@ -16,12 +16,12 @@ namespace clearance::bench {
 }
 
 // The same result as alpha(), found by scanning all facets.
-[[nodiscard]] inline Alpha alpha_over_all(const ActiveFeature& side, const Vec3& move_in_common) {
+[[nodiscard]] inline Alpha alpha_over_all(const ActiveFeature& side, const Vec3& move_in_a) {
   if (side.feature() == FeatureKind::kVertex || side.feature() == FeatureKind::kInside) {
-    return alpha(side, move_in_common);
+    return alpha(side, move_in_a);
   }
   const ConvexBody& body = side.body();
-  const Vec3 move = side.direction_to_own(move_in_common);
+  const Vec3 move = side.direction_to_local(move_in_a);
   const bool on_edge = side.feature() == FeatureKind::kEdge;
   const std::int32_t active[2] = {on_edge ? side.edge().facet[0] : side.index(),
                                   on_edge ? side.edge().facet[1] : kNone};
@@ -34,7 +34,7 @@ namespace clearance::bench {
     const Facet& facet = body.facets[i];
     const double speed = facet.normal.dot(move);
     if (!(speed > least)) continue;
-    const double gap = facet.offset - facet.normal.dot(side.own());
+    const double gap = facet.offset - facet.normal.dot(side.local_point());
     if (gap < best.fraction * speed) best = {alpha_case::fraction(gap, speed), i};
   }
   if (best.blocking == kNone) return best;
@@ -45,7 +45,7 @@ namespace clearance::bench {
   // More than three facets may meet. Then the facet that was hit first may touch this one in a
   // vertex only, and the facet's own boundary decides.
   best.blocking = edge_between(body, side.facet(), best.blocking);
-  return best.blocking == kNone ? alpha(side, move_in_common) : best;
+  return best.blocking == kNone ? alpha(side, move_in_a) : best;
 }
 
 }  // namespace clearance::bench

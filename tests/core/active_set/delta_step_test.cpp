@@ -178,10 +178,10 @@ std::vector<Vec3> directions_within(const ActiveFeature& s) {
     case FeatureKind::kVertex:
       return {};
     case FeatureKind::kEdge:
-      return {s.direction_to_common(s.edge().direction)};
+      return {s.direction_to_a(s.edge().direction)};
     case FeatureKind::kFacet: {
       const Vec3 n = s.facet().normal, e = n.unitOrthogonal();
-      return {s.direction_to_common(e), s.direction_to_common(n.cross(e))};
+      return {s.direction_to_a(e), s.direction_to_a(n.cross(e))};
     }
     default:
       return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
@@ -208,8 +208,8 @@ TEST_F(DeltaStep, EndsOnBothHullsAtRightAnglesToThem) {
         const ActiveFeature q = active(b, &pose, of_b, random.integer(0, 99));
         const Delta d = delta(p, q);
         const double size = 1.0 + d.a.norm() + d.b.norm();
-        EXPECT_LE(off_the_hull(p, d.a - p.common()), 1e-11 * size) << k;
-        EXPECT_LE(off_the_hull(q, d.b - q.common()), 1e-11 * size) << k;
+        EXPECT_LE(off_the_hull(p, d.a - p.point_in_a()), 1e-11 * size) << k;
+        EXPECT_LE(off_the_hull(q, d.b - q.point_in_a()), 1e-11 * size) << k;
         for (const ActiveFeature* s : {&p, &q}) {
           for (const Vec3& direction : directions_within(*s)) {
             EXPECT_LE(std::abs((d.b - d.a).dot(direction)), 1e-11 * size) << k;

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/shapes.hpp"
 #include "tests/core/model/counted.hpp"
@@ -38,7 +38,7 @@ Counted3 cross(const Counted3& a, const Counted3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 Counted norm(const Counted3& a) { return sqrt(dot(a, a)); }
-Counted over_norm(const Counted3& a) { return 1.5 - 0.5 * dot(a, a); }
+Counted inverse_norm_near_1(const Counted3& a) { return 1.5 - 0.5 * dot(a, a); }
 
 struct CountedQuaternion {
   Counted3 v;
@@ -181,7 +181,7 @@ constexpr Kind kKinds[] = {
      },
      [](const Pair& p, const CountedPlace& at) {
        const Counted3 e = at.direction(along(p.b)), start = at.point(start_of(p.b));
-       return over_norm(e) * norm(cross(corner(p.a) - start, e));
+       return inverse_norm_near_1(e) * norm(cross(corner(p.a) - start, e));
      }},
     {"facet, vertex", FeatureKind::kFacet, FeatureKind::kVertex,
      [](const Made& m) {
@@ -199,7 +199,7 @@ constexpr Kind kKinds[] = {
      [](const Pair& p, const CountedPlace& at) {
        const Facet& facet = p.b.facets[0];
        const Counted3 n = at.direction(counted(facet.normal));
-       return over_norm(n) * dot(n, corner(p.a) - at.translation) - facet.offset;
+       return inverse_norm_near_1(n) * dot(n, corner(p.a) - at.translation) - facet.offset;
      }},
     {"edge, edge", FeatureKind::kEdge, FeatureKind::kEdge,
      [](const Made& m) {
@@ -285,8 +285,8 @@ TEST_P(RoundingCounts, AreOfTheOperationsOfTheWalk) {
     TrackingState state{{GetParam().kind_a, false, 0}, {GetParam().kind_b, false, 0}};
     DistanceResult r;
     const RelativePose at_pose = relative_pose(pair.pose_a, pair.pose_b);
-    const WalkEnd end = walk_features(pair.a, pair.b, at_pose, state, r);
-    if (end != WalkEnd::kCertified || r.iterations != 1) continue;
+    const TrackingEnd end = track_features(pair.a, pair.b, at_pose, state, r);
+    if (end != TrackingEnd::kCertified || r.iterations != 1) continue;
     ++proved;
     Counted::forget_all();
     const CountedPlace at(pair.pose_a, pair.pose_b);

@@ -17,7 +17,7 @@ TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) 
   for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {
     const ConvexBody body = test::made(of);
     const auto expect_farthest = [&](const Vec3& m) {
-      EXPECT_EQ(support(body, m).reach, support_by_scan(body, m).reach);
+      EXPECT_EQ(support(body, m).value, support_by_scan(body, m).value);
     };
     for (const Facet& facet : body.facets) {
       expect_farthest(facet.normal);

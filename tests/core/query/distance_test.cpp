@@ -252,7 +252,7 @@ TEST(Distance, SaysWhichMethodHasAnswered) {
   const auto path = [&](const ConvexBody& body, const Pose& pose) {
     return distance(body, body, relative_pose(Pose{}, pose), state).path;
   };
-  EXPECT_EQ(path(cube(), at(1.5, 0.3, 0.2)), DistancePath::kWalk);
+  EXPECT_EQ(path(cube(), at(1.5, 0.3, 0.2)), DistancePath::kFeatureTracking);
   EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kActiveSet);
   EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kPenetration);
   const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};

@@ -1,7 +1,7 @@
-// transition() of core/feature_walk/steps-inl.hpp for as many pairs as a vector has lanes: are
-// these features the closest ones still, and where do they put the witness points? The geometry is
-// the same code; what it comes to is decided by masks, all tests in every lane, in place of
-// branches. Compiled once an instruction set.
+// transition() of core/feature_tracking/transitions-inl.hpp for as many pairs as a vector has
+// lanes. Are the features still the closest ones, and where are the witness points? The geometry is
+// the same code. The decisions are masks instead of branches: every lane makes all tests. Compiled
+// once an instruction set.
 #if defined(CLEARANCE_BATCH_FEATURES_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_FEATURES_INL_HPP_
 #undef CLEARANCE_BATCH_FEATURES_INL_HPP_
@@ -11,33 +11,34 @@
 
 #include "core/batch/neighbours-inl.hpp"
 #include "core/batch/pose-inl.hpp"
-#include "core/feature_walk/pair-inl.hpp"
+#include "core/feature_tracking/pair-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance {
 namespace HWY_NAMESPACE {
 
-// What a transition that ends at kClosest finds, as in TrackedPair: where `closest`; elsewhere
-// anything.
+// The findings of a transition that ends at kClosest, as in TrackedPair. They mean something only
+// in lanes where `closest` is set.
 struct Closest {
   HWY_INLINE Closest() {}  // as of Points
 
   LaneMask closest;  // the KKT conditions are satisfied beyond rounding
-  Points point_a, point_b, own_b, normal;
-  Lanes apart, certified;
+  Points point_a, point_b, local_b, normal;
+  Lanes distance, certified;
   Lanes next, derivative;  // as of FailedLanes
 };
 
 HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
   c.point_a = at.points(0);
-  c.own_b = at.points(kVertexRows);
-  c.point_b = point_to_a(pose, c.own_b);
+  c.local_b = at.points(kVertexRows);
+  c.point_b = point_to_a(pose, c.local_b);
   const Points g = c.point_b - c.point_a;
-  c.apart = c.certified = norm(g);
-  // g is as long as the vertices are apart, and so are the errors of its products with unit edges.
-  const Lanes error = all(kDerivativeError) * c.apart;
-  c.normal = over(g, c.apart);
+  c.distance = c.certified = norm(g);
+  // g is as long as the distance of the vertices, and so are the errors of its products with unit
+  // edges.
+  const Lanes error = all(kDerivativeError) * c.distance;
+  c.normal = over(g, c.distance);
   const Extreme on_a = Beside<false>{at, kDirectionsOfA}.greatest(g);
   const Extreme on_b = Beside<true>{at, kDirectionsOfB}.least(direction_to_b(pose, g));
   c.closest = hn::And(hn::Lt(on_a.derivative, hn::Neg(error)), hn::Gt(on_b.derivative, error));
@@ -67,19 +68,19 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   const Lanes error = all(kDerivativeError) * line.length;
   const auto& owner = line.frame;
   const Extreme side =
-      Beside<kIsB>{at, kInwardRow}.greatest_of_two(owner.direction_to_own(line.separation));
+      Beside<kIsB>{at, kInwardRow}.greatest_of_two(owner.direction_in_local(line.separation));
   const Extreme away = Beside<!kIsB>{at, kDirectionsAtEdge}.least(
-      owner.opposite().direction_to_own(line.separation));
+      owner.opposite().direction_in_local(line.separation));
   const LaneMask recede = hn::Lt(side.derivative, hn::Neg(error));
   c.closest = hn::And(within, hn::And(recede, hn::Gt(away.derivative, error)));
   c.next = hn::IfThenElse(recede, next_if(hn::Gt(hn::Neg(away.derivative), error), away.which),
                           next_if(hn::Gt(side.derivative, error), named(side.which, kNextBeside)));
-  c.next = unless_beyond(begin, end, line.s, kNextEnd, c.next);
+  c.next = unless_past_end(begin, end, line.s, kNextEnd, c.next);
   line.place_witnesses(c, of_separation);
   return c;
 }
 
-// How far within the sides of a facet, A's or B's, a point lies at least; zero: at most on one.
+// The least distance of a point from the sides of a facet, A's or B's, inward positive.
 template <bool kOfB>
 HWY_INLINE Extreme least_within(const FeatureRows& at, std::size_t row, const Points& p) {
   const std::size_t sides = kOfB ? at.block.most_b : at.block.most_a;
@@ -99,20 +100,20 @@ template <bool kIsB>
 HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
   const FacetPlanes<kIsB> plane(pose, at.points(0), at.lanes(3));
-  const Points tip = at.points(kFacetRows), own_tip = plane.frame.point_in(tip);
-  c.apart = c.certified = plane.height(tip, own_tip);
-  const Extreme within = least_within<kIsB>(at, kSides, own_tip);
-  const Extreme away =
-      Beside<!kIsB>{at, kDirectionsAtFacet}.least(plane.frame.opposite().direction_to_own(plane.n));
+  const Points tip = at.points(kFacetRows), local_tip = plane.frame.point_from_other(tip);
+  c.distance = c.certified = plane.height(tip, local_tip);
+  const Extreme within = least_within<kIsB>(at, kSides, local_tip);
+  const Extreme away = Beside<!kIsB>{at, kDirectionsAtFacet}.least(
+      plane.frame.opposite().direction_in_local(plane.n));
   const Lanes error = all(kDerivativeError);
-  // In the order of the scalar step: below the plane nothing is decided, beyond a side that side
-  // takes over, and only above the facet an edge that descends does.
-  const LaneMask above = hn::Gt(c.apart, all(0.0)), inside = hn::Ge(within.derivative, all(0.0));
+  // The order of the scalar transition: below the plane nothing is decided. Beyond a side of the
+  // facet that side takes over. Only above the facet a descending edge does.
+  const LaneMask above = hn::Gt(c.distance, all(0.0)), inside = hn::Ge(within.derivative, all(0.0));
   c.closest = hn::And(hn::And(above, inside), hn::Gt(away.derivative, error));
   const Lanes down =
       next_if(hn::Gt(hn::Neg(away.derivative), error), named(away.which, kNextOfOther));
   c.next = next_if(above, hn::IfThenElse(inside, down, within.which));
-  plane.place_witnesses(c, tip, own_tip);
+  plane.place_witnesses(c, tip, local_tip);
   return c;
 }
 
@@ -127,8 +128,8 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const LaneMask on_first = hn::And(hn::Gt(lines.s, begin_a), hn::Lt(lines.s, end_a));
   const LaneMask on_second = hn::And(hn::Gt(lines.t, begin_b), hn::Lt(lines.t, end_b));
   const Lanes sine = hn::Sqrt(lines.sine2), error = all(kDerivativeError) * sine;
-  const Lanes apart = dot(lines.between, lines.n);
-  const Points g = hn::CopySign(all(1.0), apart) * lines.n;
+  const Lanes along_n = dot(lines.between, lines.n);
+  const Points g = hn::CopySign(all(1.0), along_n) * lines.n;
   const Extreme on_a = Beside<false>{at, kInwardRow}.greatest_of_two(g);
   const Extreme on_b = Beside<true>{at, kSecond + kInwardRow}.least_of_two(direction_to_b(pose, g));
   const LaneMask leave_a = hn::Ge(on_a.derivative, hn::Neg(error));
@@ -142,15 +143,16 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const LaneMask crossing = hn::Gt(lines.sine2, all(kCrossingSine2));
   c.next = next_if(hn::Or(leave_a, leave_b),
                    hn::Add(beside(leave_a, on_a, 1.0), beside(leave_b, on_b, kNextBesideB)));
-  c.next = unless_beyond(begin_b, end_b, lines.t, kNextEndB, c.next);
-  c.next = unless_beyond(begin_a, end_a, lines.s, kNextEnd, c.next);
+  c.next = unless_past_end(begin_b, end_b, lines.t, kNextEndB, c.next);
+  c.next = unless_past_end(begin_a, end_a, lines.s, kNextEnd, c.next);
   c.next = next_if(crossing, c.next);
   c.closest = hn::And(hn::And(crossing, recede), hn::And(on_first, on_second));
   c.normal = over(g, sine);
   lines.place_witnesses(c);
-  c.apart = norm(c.point_b - c.point_a);
+  c.distance = norm(c.point_b - c.point_a);
   c.certified =
-      hn::Abs(apart) / sine - lines.reach_of_tilt(c.normal, at.common(kReachA), at.common(kReachB));
+      hn::Abs(along_n) / sine -
+      lines.tilt_error_of_edges(c.normal, at.shared(kBoundingRadiusA), at.shared(kBoundingRadiusB));
   return c;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
@@ -83,8 +83,8 @@ TEST(ParallelTransitions, SettlesWhatItWasLastTimeInOneStep) {
       EXPECT_EQ(state.a.kind, pair.kind_a) << pair.name << " seed " << seed;
       EXPECT_EQ(state.b.kind, pair.kind_b) << pair.name << " seed " << seed;
       DistanceResult result;
-      EXPECT_EQ(walk_features(judge.a(), judge.b(), relative_pose(a, b), state, result),
-                WalkEnd::kCertified)
+      EXPECT_EQ(track_features(judge.a(), judge.b(), relative_pose(a, b), state, result),
+                TrackingEnd::kCertified)
           << pair.name << " seed " << seed;
       EXPECT_EQ(result.iterations, 1) << pair.name << " seed " << seed;
     }

@@ -1,16 +1,17 @@
-// One transition of a pair of features, and the walk that repeats it until the pair is closest.
-// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
-#if defined(CLEARANCE_CORE_STEPS) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_STEPS
-#undef CLEARANCE_CORE_STEPS
+// One transition of a pair of features, and its repetition until the pair is closest. Compiled once
+// a vector width: see core/numerics/vec4-inl.hpp.
+#if defined(CLEARANCE_CORE_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_TRANSITIONS
+#undef CLEARANCE_CORE_TRANSITIONS
 #else
-#define CLEARANCE_CORE_STEPS
+#define CLEARANCE_CORE_TRANSITIONS
 #endif
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
-#include "core/feature_walk/parallel_steps-inl.hpp"
+#include "core/feature_tracking/parallel_transitions-inl.hpp"
 #include "core/model/edge_scan-inl.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/result_numbers.hpp"
@@ -19,16 +20,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// A walk's first transition is a function of its own where it is straight-line code: nothing there
-// needs the pair in memory, so that what it finds stays in registers. As one of the others it costs
-// boxes 3 % more.
+// The first transition of a query is compiled by itself. Nothing there needs the pair in memory, so
+// its findings stay in registers: boxes would cost 3 % more without.
 enum class Tracking { kFirst, kFurther };
 
 // Enough for 99.9 % of the tracked queries of the facet-ball workload; more is left to the
 // active-set iteration.
 inline constexpr int kMostTransitions = 24;
 
-// From a vertex along its steepest edge: onto the edge, or past it to its far end.
+// Leaves a vertex along its steepest edge: onto the edge, or past it to its far end.
 inline Transition leave_vertex(const ConvexBody& body, Side& side, const SteepestEdge& steepest) {
   const EdgeUse& use = body.vertex_edges[steepest.at];
   const Edge& edge = body.edges[use.edge];
@@ -38,8 +38,8 @@ inline Transition leave_vertex(const ConvexBody& body, Side& side, const Steepes
   return to_edge(side, use.edge);
 }
 
-// From the vertex whose edge approaches faster. False: none approaches beyond rounding, and both
-// sides come to what is parallel.
+// Leaves the vertex whose edge approaches faster. False: none approaches beyond rounding, and both
+// sides move to parallel features.
 inline HWY_NOINLINE bool leave_either(const ConvexBody& a, const ConvexBody& b, const Vertex& of_a,
                                       const Vertex& of_b, Side& on_a, Side& on_b, Vec4 g, Vec4 back,
                                       double limit) {
@@ -53,24 +53,28 @@ inline HWY_NOINLINE bool leave_either(const ConvexBody& a, const ConvexBody& b, 
   return false;
 }
 
+// Two vertices are closest if each lies in the Voronoi region of the other: no edge that leaves
+// either of them approaches the other.
 HWY_INLINE Transition vertex_vertex(TrackedPair& pair) {
   const Vertex& of_a = pair.a.vertices[pair.on_a.feature];
   const Vertex& of_b = pair.b.vertices[pair.on_b.feature];
   pair.point_a = load3_alone(of_a.position);
-  pair.own_b = load3_alone(of_b.position);
-  pair.point_b = point_to_a(pair.a_from_b, pair.own_b);
+  pair.local_b = load3_alone(of_b.position);
+  pair.point_b = point_to_a(pair.a_from_b, pair.local_b);
   const Vec4 g = pair.point_b - pair.point_a, back = -direction_to_b(pair.a_from_b, g);
-  const double apart = norm(g), limit = -kDerivativeError * apart;
+  const double distance = norm(g), limit = -kDerivativeError * distance;
   if (!all_edges_recede(pair.a, of_a, g, limit) || !all_edges_recede(pair.b, of_b, back, limit)) {
     return leave_either(pair.a, pair.b, of_a, of_b, pair.on_a, pair.on_b, g, back, limit)
                ? Transition::kMoved
                : pair.parallel();
   }
-  pair.apart = pair.certified = apart;
-  pair.normal = over(g, apart);
+  pair.distance = pair.certified = distance;
+  pair.normal = over(g, distance);
   return Transition::kClosest;
 }
 
+// The Voronoi region of an edge lies between the planes through its ends, across it, and on the
+// outer side of its two facets. The vertex lies in it, and no edge of the vertex approaches.
 template <bool kIsB>
 HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
   const Edge& edge = owner.body().edges[owner.side().feature];
@@ -82,8 +86,8 @@ HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
   if (!(line.s < edge.end)) return to_vertex(owner.side(), edge.vertex[1]);
   line.find_separation();
   const double limit = -kDerivativeError * line.length;
-  const Vec4 g = owner.direction_to_own(line.separation);
-  const Vec4 back = -owner.opposite().direction_to_own(line.separation);
+  const Vec4 g = owner.direction_in_local(line.separation);
+  const Vec4 back = -owner.opposite().direction_in_local(line.separation);
   if (!both_facets_recede(edge, g, limit)) {
     to_approaching_facet(edge, g, limit, owner.side());
     const Vec2 derivatives = facet_derivatives(edge, g);
@@ -104,17 +108,19 @@ HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
   return Transition::kClosest;
 }
 
+// The Voronoi region of a facet is the prism over its polygon. The vertex lies in it, and no edge
+// of the vertex descends towards the facet. A vertex below the plane is left to the search.
 template <bool kIsB>
 HWY_INLINE Transition facet_vertex(const Owner<kIsB>& owner) {
   const Facet& facet = owner.body().facets[owner.side().feature];
   const Vertex& vertex = owner.other_body().vertices[owner.other_side().feature];
-  const Vec4 tip = load3_alone(vertex.position), own_tip = owner.point_in(tip);
+  const Vec4 tip = load3_alone(vertex.position), local_tip = owner.point_from_other(tip);
   const auto plane = plane_of(owner, facet);
-  const double apart = plane.height(tip, own_tip);
-  if (HWY_UNLIKELY(!(apart > 0.0)) && !owner.pair.penetrating) return Transition::kUndecided;
-  const std::int32_t beyond = side_beyond(owner.body(), facet, own_tip);
-  if (beyond != kNone) return to_edge(owner.side(), beyond);
-  const Vec4 back = -owner.opposite().direction_to_own(plane.n);
+  const double distance = plane.height(tip, local_tip);
+  if (HWY_UNLIKELY(!(distance > 0.0)) && !owner.pair.penetrating) return Transition::kUndecided;
+  const std::int32_t crossed = crossed_side(owner.body(), facet, local_tip);
+  if (crossed != kNone) return to_edge(owner.side(), crossed);
+  const Vec4 back = -owner.opposite().direction_in_local(plane.n);
   if (!all_edges_recede(owner.other_body(), vertex, back, -kDerivativeError)) {
     const SteepestEdge away = steepest(owner.other_body(), vertex, back);
     if (!(away.derivative > kDerivativeError)) {
@@ -126,13 +132,14 @@ HWY_INLINE Transition facet_vertex(const Owner<kIsB>& owner) {
     if (next == kNone) return Transition::kUndecided;
     return to_vertex(owner.other_side(), next);
   }
-  owner.pair.apart = owner.pair.certified = apart;
-  plane.place_witnesses(owner.pair, tip, own_tip);
+  owner.pair.distance = owner.pair.certified = distance;
+  plane.place_witnesses(owner.pair, tip, local_tip);
   return Transition::kClosest;
 }
 
-// Where the line's closest point lies beyond an end of the edge, that end takes over.
-HWY_INLINE bool beyond_end(const Edge& edge, double at, Side& side) {
+// If the closest point of the line lies past an end of the edge, that end takes over. `at`: m along
+// the edge.
+HWY_INLINE bool leave_past_end(const Edge& edge, double at, Side& side) {
   if (at > edge.begin && at < edge.end) return false;
   to_vertex(side, edge.vertex[at > edge.begin ? 1 : 0]);
   return true;
@@ -144,7 +151,8 @@ HWY_INLINE EdgeLines<RelativePose4, Vec4, double> lines_of(const TrackedPair& pa
           load3_of_4(second.point), load3_of_4(second.direction)};
 }
 
-// `kMode` as of transition().
+// Crossing edges are closest if the feet of their common perpendicular lie within both, and all
+// four facets beside them recede along it. `kMode`: see transition().
 template <Tracking kMode>
 HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   if (!pair.a.bounded() || !pair.b.bounded()) return Transition::kUndecided;
@@ -158,12 +166,13 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
                : Transition::kUndecided;
   }
   lines.find_nearest();
-  if (beyond_end(first, lines.s, pair.on_a) || beyond_end(second, lines.t, pair.on_b)) {
+  if (leave_past_end(first, lines.s, pair.on_a) || leave_past_end(second, lines.t, pair.on_b)) {
     return Transition::kMoved;
   }
   const double sine = std::sqrt(lines.sine2), limit = -kDerivativeError * sine,
-               apart = dot(lines.between, lines.n);
-  const Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, apart)));
+               along_n = dot(lines.between, lines.n);  // the distance times the sine
+  // The normal across both lines, from A to B.
+  const Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, along_n)));
   const Vec4 back = -direction_to_b(pair.a_from_b, g);
   if (HWY_UNLIKELY(!both_facets_recede(first, g, limit) ||
                    !both_facets_recede(second, back, limit))) {
@@ -173,15 +182,18 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   }
   pair.normal = over(g, sine);
   lines.place_witnesses(pair);
-  pair.apart = norm(pair.point_b - pair.point_a);
-  pair.certified = std::abs(apart) / sine -
-                   lines.reach_of_tilt(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
+  pair.distance = norm(pair.point_b - pair.point_a);
+  pair.certified =
+      std::abs(along_n) / sine -
+      lines.tilt_error_of_edges(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
   return Transition::kClosest;
 }
 
-// The one place that branches on the pair of features, for bodies that were apart.
+// The one place that branches on the pair of features of disjoint bodies.
 template <Tracking kMode>
 HWY_INLINE Transition transition(TrackedPair& pair) {
+  assert(exists(pair.a, pair.on_a) || pair.on_a.kind == FeatureKind::kUnknown);
+  assert(exists(pair.b, pair.on_b) || pair.on_b.kind == FeatureKind::kUnknown);
   switch (pair.features()) {
     case FeaturePair::kVertexVertex:
       return vertex_vertex(pair);
@@ -196,7 +208,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
     default:
       break;
   }
-  // is_straight() lets one pair more come to a first transition.
+  // has_straight_features() lets one pair more come to a first transition.
   if constexpr (kMode == Tracking::kFirst) return facet_vertex(Owner<false>(pair));
   switch (pair.features()) {
     case FeaturePair::kEdgeFacet:
@@ -212,8 +224,8 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
   }
 }
 
-// A vertex that is far out along `direction`; a body without vertices is one facet, or none for a
-// walk.
+// The vertex that the start table names for `direction`. A body without vertices is one facet: a
+// half-space.
 HWY_INLINE void start(const ConvexBody& body, Vec4 direction, Side& side) {
   if (body.vertices.empty()) {
     to_facet(side, 0);
@@ -222,7 +234,7 @@ HWY_INLINE void start(const ConvexBody& body, Vec4 direction, Side& side) {
   }
 }
 
-// Where there are no features from the last query.
+// Chooses features if the state has none.
 HWY_INLINE void begin(TrackedPair& pair) {
   if (exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b)) return;
   const Vec4 a_to_b = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
@@ -230,49 +242,51 @@ HWY_INLINE void begin(TrackedPair& pair) {
   start(pair.b, -direction_to_b(pair.a_from_b, a_to_b), pair.on_b);
 }
 
-// The certificate of features that are closest: their distance bounds that of the bodies from
-// above, and from below as far as the normal certifies it, both but for the error bound of
-// Precision.
-HWY_INLINE WalkEnd certify(TrackedPair& pair) {
+// The certificate of the closest features. Their distance bounds that of the bodies from above, and
+// `certified` bounds it from below, both up to the error bound of Precision.
+HWY_INLINE TrackingEnd certify(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const Precision p = precision(
-      pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.apart}, pair.apart);
+      pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.translation_length},
+      pair.distance);
+  assert(is_unit_or_unknown(vec3(pair.normal)) && !(pair.certified > pair.distance + p.size));
   pair.error_bound = p.error_bound;
   pair.on_a.point = vec3(pair.point_a);
-  pair.on_b.point = vec3(pair.own_b);
+  pair.on_b.point = vec3(pair.local_b);
   const bool certified =
-      pair.certified > p.error_bound && pair.apart - pair.certified <= p.gap_tolerance;
-  return certified ? WalkEnd::kCertified : WalkEnd::kUncertified;
+      pair.certified > p.error_bound && pair.distance - pair.certified <= p.gap_tolerance;
+  return certified ? TrackingEnd::kCertified : TrackingEnd::kUncertified;
 }
 
-// Transitions from features that there are, until they are closest.
-HWY_INLINE WalkEnd walk_on(TrackedPair& pair) {
+// Makes transitions from existing features until they are closest.
+HWY_INLINE TrackingEnd continue_tracking(TrackedPair& pair) {
   while (pair.transitions < kMostTransitions) {
     ++pair.transitions;
     const Transition result = transition<Tracking::kFurther>(pair);
     if (result == Transition::kClosest) return certify(pair);
-    if (result == Transition::kUndecided) return WalkEnd::kUndecided;
+    if (result == Transition::kUndecided) return TrackingEnd::kUndecided;
   }
-  return WalkEnd::kUndecided;
+  return TrackingEnd::kUndecided;
 }
 
-HWY_INLINE WalkEnd walk(TrackedPair& pair) {
-  if (!pair.a.bounded() && !pair.b.bounded()) return WalkEnd::kUndecided;
+HWY_INLINE TrackingEnd track(TrackedPair& pair) {
+  if (!pair.a.bounded() && !pair.b.bounded()) return TrackingEnd::kUndecided;
   begin(pair);
-  return walk_on(pair);
+  return continue_tracking(pair);
 }
 
-// The result of a walk that is not undecided. Each store of four numbers leaves one too many behind
-// it, which the next store overwrites; the last one is overwritten by the status.
+// The result of a tracking that is not undecided. Each store of four numbers leaves one too many
+// behind it, which the next store overwrites; the last one is overwritten by the status.
 HWY_INLINE DistanceResult result_of(const TrackedPair& pair) {
   DistanceResult r;
-  store4(vec4(pair.apart, pair.certified - pair.error_bound, pair.apart + pair.error_bound, 0.0),
-         number_at(r, 0));
+  store4(
+      vec4(pair.distance, pair.certified - pair.error_bound, pair.distance + pair.error_bound, 0.0),
+      number_at(r, 0));
   store4(pair.normal, number_at(r, 3));
   store4(pair.point_a, number_at(r, 6));
   store4(pair.point_b, number_at(r, 9));
   r.status = DistanceStatus::kConverged;
-  r.path = DistancePath::kWalk;
+  r.path = DistancePath::kFeatureTracking;
   r.iterations = static_cast<std::uint16_t>(pair.transitions);
   return r;
 }

@@ -1,36 +1,41 @@
-// Penetrating bodies that part soonest between the same features as in the last query. Compiled
-// once a vector width: see core/numerics/vec4-inl.hpp.
+// Penetrating bodies whose depth is found between the same features as in the last query, or their
+// neighbours. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// Features that touch when B has been displaced along n bound the penetration depth from above, as
-// separating ones bound the distance from below: with the sign turned, the transitions of
-// core/feature_walk/steps-inl.hpp say how far that is. No other direction is shorter: that is
-// certified by what the Minkowski difference (core/penetration/depth.hpp) contains beyond rounding.
-// That is a disc across n, of radius w about the foot h n of the origin: the room that the touching
-// point has on its facet; and the difference of the bodies' middles, which lies d beyond the origin
-// and l beside it. Along a direction at an angle f to n the disc reaches h cos f + w sin f, at
-// least h up to tan(f/2) = w/h; the middles -d cos f - l sin f at least, a sinusoid that is lowest
-// at an end of what is left. It is enough that it reaches h where the disc ends.
-#if defined(CLEARANCE_CORE_PENETRATING_STEPS) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_PENETRATING_STEPS
-#undef CLEARANCE_CORE_PENETRATING_STEPS
+// Let h be the displacement of B along n after which the features touch. It bounds the penetration
+// depth from above, as separating features bound the distance from below. The transitions of
+// transitions-inl.hpp, with the sign reversed, find h.
+//
+// That no other direction is shorter follows from two sets that the Minkowski difference
+// (core/penetration/depth.hpp) contains beyond rounding:
+// - A disc across n, of radius w around the point h n. w is the inradius of the contact: the
+// distance of the touching point from the sides of its facet.
+// - The difference of the two interior points, at -d along n and l across it.
+//
+// Along a direction at an angle f to n the support value of the disc is h cos f + w sin f, which is
+// at least h up to tan(f/2) = w/h. That of the interior points is at least -d cos f - l sin f: a
+// sinusoid, lowest at one end of the angles that are left. So it is enough that this is at least h
+// where the disc ends.
+#if defined(CLEARANCE_CORE_PENETRATING_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_PENETRATING_TRANSITIONS
+#undef CLEARANCE_CORE_PENETRATING_TRANSITIONS
 #else
-#define CLEARANCE_CORE_PENETRATING_STEPS
+#define CLEARANCE_CORE_PENETRATING_TRANSITIONS
 #endif
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/feature_walk/steps-inl.hpp"
+#include "core/feature_tracking/transitions-inl.hpp"
 #include "core/model/radii.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
-// Far more than rounding does to lengths, as a part of the pair's size: by how much other
-// directions are deeper need not be known any better.
+// A margin far above rounding, as a part of the pair's size. It is enough to know that other
+// directions are longer by it or not.
 inline constexpr double kAmple = 1e-9;
 
-// How far within its facet a point of its plane lies; negative: outside.
-HWY_INLINE double room_on_facet(const ConvexBody& body, const Facet& facet, Vec4 point) {
+// The distance of a point of a facet's plane from the sides of the facet; negative: outside.
+HWY_INLINE double inradius_on_facet(const ConvexBody& body, const Facet& facet, Vec4 point) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;
   const Vec4 at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};
@@ -42,16 +47,18 @@ HWY_INLINE double room_on_facet(const ConvexBody& body, const Facet& facet, Vec4
   return least;
 }
 
-// Of the features that touch: the disc's radius.
-HWY_INLINE double room_of(const TrackedPair& pair) {
-  double room = pair.room;
+// The radius of the disc, from the features that touch.
+HWY_INLINE double contact_inradius(const TrackedPair& pair) {
+  double inradius = pair.inradius;
   if (pair.on_a.kind == FeatureKind::kFacet) {
-    room = std::max(room, room_on_facet(pair.a, pair.a.facets[pair.on_a.feature], pair.point_a));
+    inradius = std::max(inradius,
+                        inradius_on_facet(pair.a, pair.a.facets[pair.on_a.feature], pair.point_a));
   }
   if (pair.on_b.kind == FeatureKind::kFacet) {
-    room = std::max(room, room_on_facet(pair.b, pair.b.facets[pair.on_b.feature], pair.own_b));
+    inradius = std::max(inradius,
+                        inradius_on_facet(pair.b, pair.b.facets[pair.on_b.feature], pair.local_b));
   }
-  return room;
+  return inradius;
 }
 
 // Edges that cross, each within the other body.
@@ -74,18 +81,18 @@ HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
   }
   pair.normal = over(g, sine);
   lines.place_witnesses(pair);
-  pair.apart = -std::abs(across) / sine;
-  pair.room = to_end * sine;
-  // As far as the normal may be tilted, the edges' own plane is nearer, too.
+  pair.distance = -std::abs(across) / sine;
+  pair.inradius = to_end * sine;
+  // The exact plane of the edges may be nearer by the tilt of the normal as well.
   const double tilt =
-      lines.reach_of_tilt(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
-  pair.certified = pair.apart - tilt;
-  pair.beyond = tilt;
+      lines.tilt_error_of_edges(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
+  pair.certified = pair.distance - tilt;
+  pair.depth_error = tilt;
   return Transition::kClosest;
 }
 
 HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
-  pair.room = pair.beyond = 0.0;
+  pair.inradius = pair.depth_error = 0.0;
   switch (pair.features()) {
     case FeaturePair::kVertexVertex:
     case FeaturePair::kVertexEdge:
@@ -102,34 +109,34 @@ HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
 HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
   const Vec4 middles = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
   const double along = dot(middles, pair.normal), off = kAmple * size;
-  const double height = off - pair.apart, radius = room_of(pair) - off, d = along - off;
+  const double height = off - pair.distance, radius = contact_inradius(pair) - off, d = along - off;
   const double l = off + norm(middles - along * pair.normal), k = height / radius;
   return radius > height && d * (1.0 - k * k) - 2.0 * k * l > height * (1.0 + k * k);
 }
 
 HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
-  const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.apart};
-  const Precision p = precision(pair.a, pair.b, place, std::abs(pair.apart));
+  const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.translation_length};
+  const Precision p = precision(pair.a, pair.b, place, std::abs(pair.distance));
   pair.error_bound = p.error_bound;
-  const bool certified =
-      pair.apart > 0.0 ? pair.certified > p.error_bound
-                       : pair.apart + pair.beyond < -p.error_bound && is_shortest(pair, p.size);
-  const double noise = pair.apart - pair.certified;
-  const double gap = noise + pair.beyond + 2.0 * p.error_bound;
+  const bool certified = pair.distance > 0.0 ? pair.certified > p.error_bound
+                                             : pair.distance + pair.depth_error < -p.error_bound &&
+                                                   is_shortest(pair, p.size);
+  const double noise = pair.distance - pair.certified;
+  const double gap = noise + pair.depth_error + 2.0 * p.error_bound;
   if (!certified || !(noise <= p.gap_tolerance) ||
-      !is_as_promised(pair.a, pair.b, p.size, pair.apart, gap)) {
+      !converges_with_radii(pair.a, pair.b, p.size, pair.distance, gap)) {
     return false;
   }
-  pair.on_a.penetrating = !(pair.apart > 0.0);
+  pair.on_a.penetrating = !(pair.distance > 0.0);
   pair.on_a.point = vec3(pair.point_a);
-  pair.on_b.point = vec3(pair.own_b);
+  pair.on_b.point = vec3(pair.local_b);
   return true;
 }
 
-// Of bodies that penetrated each other: is their depth certified, or that they do not any more? If
-// not, the features are those that it began with.
-HWY_INLINE bool walk_penetration(TrackedPair& pair) {
+// Tracks the features of bodies that penetrated each other. True: the depth is certified, or that
+// the bodies are disjoint now. False: the features are those that it began with.
+HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   if (!pair.a.bounded() && !pair.b.bounded()) return false;
   if (!exists(pair.a, pair.on_a) || !exists(pair.b, pair.on_b)) return false;
   const Side before_a = pair.on_a, before_b = pair.on_b;
@@ -145,12 +152,12 @@ HWY_INLINE bool walk_penetration(TrackedPair& pair) {
   return false;
 }
 
-// Of a walk that has certified something.
+// The result of a tracking that has certified something.
 HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
   DistanceResult r = result_of(pair);
   r.path = DistancePath::kPenetration;
-  if (pair.apart > 0.0) return r;
-  r.upper = (pair.apart + pair.beyond) + pair.error_bound;
+  if (pair.distance > 0.0) return r;
+  r.upper = (pair.distance + pair.depth_error) + pair.error_bound;
   r.status = DistanceStatus::kOverlapping;
   return r;
 }

@@ -2,35 +2,37 @@
 // Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
 // Any pair of points that face each other would do. The point halfway between the last witness
-// points of both bodies is as steady as the bodies' motion, and mostly within both features; where
-// it is not, the nearest point along the side that it has passed takes its place. The normal
-// certifies less by what it is tilted against the features.
-#if defined(CLEARANCE_CORE_PARALLEL_STEPS) == defined(HWY_TARGET_TOGGLE)
-#ifdef CLEARANCE_CORE_PARALLEL_STEPS
-#undef CLEARANCE_CORE_PARALLEL_STEPS
+// points of both bodies moves no faster than the bodies, and mostly lies within both features. If
+// it does not, the nearest point on the side that it has passed takes its place. The tilt of the
+// normal against the features is taken off the certified distance.
+#if defined(CLEARANCE_CORE_PARALLEL_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_PARALLEL_TRANSITIONS
+#undef CLEARANCE_CORE_PARALLEL_TRANSITIONS
 #else
-#define CLEARANCE_CORE_PARALLEL_STEPS
+#define CLEARANCE_CORE_PARALLEL_TRANSITIONS
 #endif
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/feature_walk/pair-inl.hpp"
+#include "core/feature_tracking/pair-inl.hpp"
 #include "core/model/edge_scan-inl.hpp"
 #include "core/numerics/error_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// m: how much less the normal certifies, if by `tilt` it is not at right angles to a feature:
-// either body's extent along it may be another over its whole size, and it is enough that one's is.
+// m: taken off the certified distance of a normal that is off a right angle to a feature by `tilt`.
+// The tilt may change a support value over the whole size of a body, and it is enough to count the
+// smaller body.
 HWY_INLINE double tilt_error(const TrackedPair& pair, double tilt) {
   const double a = pair.a.bounded() ? pair.a.bounding_radius : kInfinity;
   const double b = pair.b.bounded() ? pair.b.bounding_radius : kInfinity;
   return 2.0 * std::min(a, b) * (tilt + kTiltError);
 }
 
-// From an edge to the facet beside it that does not recede along g beyond rounding; false: both do.
+// Moves from an edge to that facet beside it which does not recede along g beyond rounding. False:
+// both recede.
 HWY_INLINE bool to_approaching_facet(const Edge& edge, Vec4 g, double limit, Side& side) {
   if (edge.facet[0] == kNone) return false;
   const Vec2 along = facet_derivatives(edge, g);
@@ -39,15 +41,15 @@ HWY_INLINE bool to_approaching_facet(const Edge& edge, Vec4 g, double limit, Sid
   return true;
 }
 
-inline std::int32_t common_facet(const Edge& first, const Edge& second) {
+inline std::int32_t shared_facet(const Edge& first, const Edge& second) {
   for (const std::int32_t facet : first.facet) {
     if (facet != kNone && (facet == second.facet[0] || facet == second.facet[1])) return facet;
   }
   return kNone;
 }
 
-// From a vertex no edge of which approaches beyond rounding to what is orthogonal to g there: an
-// edge, the facet of two such edges, or the vertex itself.
+// No edge of this vertex approaches beyond rounding. Moves to the feature that is orthogonal to g
+// there: an edge, the facet of two such edges, or the vertex itself.
 inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const Vec3& g,
                                      double limit) {
   const Vertex& vertex = body.vertices[side.feature];
@@ -60,7 +62,7 @@ inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const V
       to_edge(side, edge);
       continue;
     }
-    const std::int32_t facet = common_facet(body.edges[orthogonal], body.edges[edge]);
+    const std::int32_t facet = shared_facet(body.edges[orthogonal], body.edges[edge]);
     if (facet == kNone) continue;
     to_facet(side, facet);
     return;
@@ -69,11 +71,12 @@ inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const V
 
 // The part of a line that lies within a facet's sides.
 struct Span {
-  double from, to;                     // along the line
-  std::int32_t side[2]{kNone, kNone};  // the edges that end it; kNone: it ended there anyhow
+  double from, to;  // along the line
+  // the edges that end it; kNone: it began or ended there already
+  std::int32_t side[2]{kNone, kNone};
   [[nodiscard]] bool empty() const { return !(from < to); }
-  // Where it is empty: the line passes beyond this.
-  std::int32_t beyond = kNone;
+  // If the span is empty: the edge that the line passes by.
+  std::int32_t next_edge = kNone;
 };
 
 inline HWY_NOINLINE Span within(const ConvexBody& body, std::int32_t index, const Vec3& start,
@@ -94,28 +97,29 @@ inline HWY_NOINLINE Span within(const ConvexBody& body, std::int32_t index, cons
     } else if (speed == 0.0 && gap < 0.0) {
       span.to = span.from;
     }
-    if (span.empty()) span.beyond = edge;
+    if (span.empty()) span.next_edge = edge;
   }
   return span;
 }
 
-// As std::clamp, but what is no number becomes `from`.
+// The same as std::clamp, but NaN becomes `from`.
 HWY_INLINE double clamped(double s, double from, double to) {
   return s >= from ? (to < s ? to : s) : from;
 }
 
-// Of the owner's edge, the part that faces the other's facet (or the other way round).
+// The part of the owner's edge that faces the facet of the other body.
 template <bool kIsB>
 HWY_INLINE Span facing(const Owner<kIsB>& edge_of, const Edge& edge, std::int32_t facet) {
-  return within(edge_of.other_body(), facet, vec3(edge_of.point_out(load3_of_4(edge.point))),
-                vec3(edge_of.direction_out(load3_of_4(edge.direction))), {edge.begin, edge.end});
+  return within(edge_of.other_body(), facet, vec3(edge_of.point_to_other(load3_of_4(edge.point))),
+                vec3(edge_of.direction_to_other(load3_of_4(edge.direction))),
+                {edge.begin, edge.end});
 }
 
-// Halfway between the last witness points, along an edge of the owner.
+// The place along an edge of the owner that is halfway between the last witness points.
 template <bool kIsB>
 HWY_INLINE double halfway(const Owner<kIsB>& edge_of, Vec4 start, Vec4 direction) {
   const Vec4 mine = load3(edge_of.side().point);
-  const Vec4 theirs = edge_of.point_in(load3(edge_of.other_side().point));
+  const Vec4 theirs = edge_of.point_from_other(load3(edge_of.other_side().point));
   return dot(mine + 0.5 * (theirs - mine) - start, direction);
 }
 
@@ -126,10 +130,10 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   const Facet& facet = owner.other_body().facets[owner.other_side().feature];
   if (!owner.body().bounded()) return Transition::kUndecided;
   const Span span = facing(owner, edge, owner.other_side().feature);
-  if (span.empty()) return to_edge(owner.other_side(), span.beyond);
+  if (span.empty()) return to_edge(owner.other_side(), span.next_edge);
   const auto plane = plane_of(owner.opposite(), facet);
   const Vec4 start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
-  const Vec4 down = -owner.direction_to_own(plane.n);
+  const Vec4 down = -owner.direction_in_local(plane.n);
   const double along = dot(e, down);
   if (!(std::abs(along) <= kDerivativeError)) {
     const int end = along > 0.0 ? 1 : 0;
@@ -139,12 +143,12 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   if (to_approaching_facet(edge, down, -kDerivativeError, owner.side()))
     return owner.pair.parallel();
   const double s = clamped(halfway(owner, start, e), span.from, span.to);
-  const Vec4 own = start + s * e, above = owner.point_out(own);
-  const double apart = plane.height(own, above);
-  if (!(apart > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
-  owner.pair.apart = apart;
-  owner.pair.certified = apart - tilt_error(owner.pair, std::abs(along));
-  plane.place_witnesses(owner.pair, own, above);
+  const Vec4 local = start + s * e, above = owner.point_to_other(local);
+  const double distance = plane.height(local, above);
+  if (!(distance > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
+  owner.pair.distance = distance;
+  owner.pair.certified = distance - tilt_error(owner.pair, std::abs(along));
+  plane.place_witnesses(owner.pair, local, above);
   return Transition::kClosest;
 }
 
@@ -153,21 +157,22 @@ HWY_INLINE Vec4 onto(const Facet& facet, Vec4 p) {
   return p - (dot(n, p) - facet.offset) * n;
 }
 
-// Halfway between the last witness points, on B's facet, in frame B. False: these were another
-// pair's, far out on a half-space, or of bodies far apart, and so far off the facet's plane that
-// rounding leaves `own` beside it.
-HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& of_b, Vec4& own) {
+// The point of B's facet halfway between the last witness points, in frame B. False: these points
+// are so far off the plane of the facet that rounding leaves `local` beside it. They may be another
+// pair's, or far out on a half-space.
+HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& of_b, Vec4& local) {
   const Vec4 mine = load3(pair.on_b.point), n = load3_of_4(of_b.normal);
   const Vec4 theirs = point_to_b(pair.a_from_b, load3(pair.on_a.point));
   const Vec4 middle = mine + 0.5 * (theirs - mine);
   const double height = dot(n, middle) - of_b.offset;
-  own = middle - height * n;
-  const double size = (pair.a.bounding_radius + pair.b.bounding_radius) + pair.a_from_b.apart;
-  return std::abs(height) <= 2.0 * size && dot(own, own) < kInfinity;
+  local = middle - height * n;
+  const double size =
+      (pair.a.bounding_radius + pair.b.bounding_radius) + pair.a_from_b.translation_length;
+  return std::abs(height) <= 2.0 * size && dot(local, local) < kInfinity;
 }
 
-// From a point that has passed the edge of the owner's facet back to it, in the owner's frame.
-// False: no part of the edge faces the other's facet.
+// Moves a point that has passed an edge of the owner's facet back to that edge, in the owner's
+// frame. False: no part of the edge faces the facet of the other body.
 template <bool kIsB>
 inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
   const Edge& edge = owner.body().edges[index];
@@ -182,12 +187,12 @@ inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point
 }
 
 // The same for a point on B's facet that has passed an edge of A's, or else of B's.
-inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t beyond_a, std::int32_t beyond_b,
-                                    Vec4& own) {
-  if (beyond_a == kNone) return slide_back(Owner<true>(pair), beyond_b, own);
-  Vec4 tip = point_to_a(pair.a_from_b, own);
-  if (!slide_back(Owner<false>(pair), beyond_a, tip)) return false;
-  own = onto(pair.b.facets[pair.on_b.feature], point_to_b(pair.a_from_b, tip));
+inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a,
+                                    std::int32_t crossed_b, Vec4& local) {
+  if (crossed_a == kNone) return slide_back(Owner<true>(pair), crossed_b, local);
+  Vec4 tip = point_to_a(pair.a_from_b, local);
+  if (!slide_back(Owner<false>(pair), crossed_a, tip)) return false;
+  local = onto(pair.b.facets[pair.on_b.feature], point_to_b(pair.a_from_b, tip));
   return true;
 }
 
@@ -228,26 +233,26 @@ inline HWY_NOINLINE Transition facet_facet(TrackedPair& pair) {
   const Vec4 tilt = direction_to_b(pair.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
   if (HWY_UNLIKELY(!(tilt2 <= kParallelTilt * kParallelTilt))) return leave_facets(pair, n, m);
-  Vec4 own;
-  if (HWY_UNLIKELY(!halfway_on_facet(pair, of_b, own))) return Transition::kUndecided;
-  Vec4 tip = point_to_a(pair.a_from_b, own);
-  const std::int32_t beyond_a = side_beyond(pair.a, of_a, tip);
-  const std::int32_t beyond_b = beyond_a == kNone ? side_beyond(pair.b, of_b, own) : kNone;
-  if (HWY_UNLIKELY(beyond_a != kNone || beyond_b != kNone)) {
-    if (!slide_back(pair, beyond_a, beyond_b, own)) return Transition::kMoved;
-    tip = point_to_a(pair.a_from_b, own);
+  Vec4 local;
+  if (HWY_UNLIKELY(!halfway_on_facet(pair, of_b, local))) return Transition::kUndecided;
+  Vec4 tip = point_to_a(pair.a_from_b, local);
+  const std::int32_t crossed_a = crossed_side(pair.a, of_a, tip);
+  const std::int32_t crossed_b = crossed_a == kNone ? crossed_side(pair.b, of_b, local) : kNone;
+  if (HWY_UNLIKELY(crossed_a != kNone || crossed_b != kNone)) {
+    if (!slide_back(pair, crossed_a, crossed_b, local)) return Transition::kMoved;
+    tip = point_to_a(pair.a_from_b, local);
   }
-  pair.apart = dot(n, tip) - of_a.offset;
-  if (!(pair.apart > 0.0) && !pair.penetrating) return Transition::kUndecided;
-  pair.own_b = own;
+  pair.distance = dot(n, tip) - of_a.offset;
+  if (!(pair.distance > 0.0) && !pair.penetrating) return Transition::kUndecided;
+  pair.local_b = local;
   pair.point_b = tip;
-  pair.point_a = tip - pair.apart * n;
+  pair.point_a = tip - pair.distance * n;
   pair.normal = n;
-  pair.certified = pair.apart - tilt_error(pair, std::sqrt(tilt2));
+  pair.certified = pair.distance - tilt_error(pair, std::sqrt(tilt2));
   return Transition::kClosest;
 }
 
-// Where parallel edges pass each other by, their facing ends are next.
+// Parallel edges that face each other nowhere: their facing ends are next.
 inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edge& second,
                                  bool after, bool same_way) {
   to_vertex(pair.on_a, first.vertex[after ? 1 : 0]);
@@ -255,7 +260,7 @@ inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edg
   return Transition::kMoved;
 }
 
-// Of bounded bodies; `start_b` and f are B's edge in frame A.
+// The bodies are bounded; `start_b` and f are B's edge in frame A.
 inline HWY_NOINLINE Transition parallel_edges(TrackedPair& pair, const Vec4& start_b,
                                               const Vec4& f) {
   const Edge& first = pair.a.edges[pair.on_a.feature];
@@ -268,19 +273,19 @@ inline HWY_NOINLINE Transition parallel_edges(TrackedPair& pair, const Vec4& sta
   if (!(from < to)) return to_facing_ends(pair, first, second, !(from < first.end), cosine > 0.0);
   const double s = clamped(halfway(Owner<false>(pair), start_a, e), from, to);
   pair.point_a = start_a + s * e;
-  pair.own_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
-  pair.point_b = point_to_a(pair.a_from_b, pair.own_b);
+  pair.local_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
+  pair.point_b = point_to_a(pair.a_from_b, pair.local_b);
   const Vec4 rough = pair.point_b - pair.point_a;
-  const Vec4 g = rough - dot(rough, e) * e;  // what cancellation has left
-  const double apart = norm(g), limit = -kDerivativeError * apart;
+  const Vec4 g = rough - dot(rough, e) * e;  // without the part of e that cancellation has left
+  const double distance = norm(g), limit = -kDerivativeError * distance;
   const bool on_a = to_approaching_facet(first, g, limit, pair.on_a);
   const bool on_b =
       to_approaching_facet(second, -direction_to_b(pair.a_from_b, g), limit, pair.on_b);
   if (on_a || on_b) return pair.parallel();
-  pair.normal = g / spread(apart);
-  pair.apart = apart;
+  pair.normal = g / spread(distance);
+  pair.distance = distance;
   pair.certified =
-      apart - tilt_error(pair, std::abs(dot(pair.normal, e)) + std::abs(dot(pair.normal, f)));
+      distance - tilt_error(pair, std::abs(dot(pair.normal, e)) + std::abs(dot(pair.normal, f)));
   return Transition::kClosest;
 }
 

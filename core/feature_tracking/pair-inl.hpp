@@ -1,10 +1,11 @@
 // A pair of bodies and the features that may be closest: their geometry in straight-line
-// arithmetic, and what a walk keeps of them. What a transition decides from it is in
-// core/feature_walk/steps-inl.hpp. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// arithmetic, and TrackedPair, which keeps the results. The decisions of a transition are in
+// core/feature_tracking/transitions-inl.hpp. Compiled once a vector width: see
+// core/numerics/vec4-inl.hpp.
 //
-// The geometry is written once over the type of vectors: for one pair (Vec4, RelativePose4; a
-// Number is a double) and for as many pairs as a batch's vectors have lanes (Points, RelativePoses;
-// Lanes). Both round in the same order, so that a batch gives the bits of single queries.
+// The geometry is written once over the type of vectors. A single query uses Vec4, RelativePose4
+// and double for Vector, Relative and Number; a batch uses Points, RelativePoses and Lanes, with a
+// pair a lane. Both round in the same order, so that a batch gives the bits of single queries.
 #if defined(CLEARANCE_CORE_TRACKED_PAIR) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_TRACKED_PAIR
 #undef CLEARANCE_CORE_TRACKED_PAIR
@@ -15,8 +16,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "core/feature_walk/feature_pair.hpp"
-#include "core/feature_walk/feature_walk.hpp"
+#include "core/feature_tracking/feature_pair.hpp"
+#include "core/feature_tracking/feature_tracking.hpp"
 #include "core/model/relative_pose-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,130 +40,132 @@ HWY_INLINE Number magnitude(Number value) {
   }
 }
 
-// 1/|v| and 1/|v|^2 of what is a unit vector up to some roundings.
+// 1/|v| and 1/|v|^2 of a vector whose length is 1 up to some roundings: one Newton step for
+// x^(-1/2), and for 1/x, from 1. The error is of second order.
 template <class Vector>
-HWY_INLINE auto over_norm(const Vector& v) {
+HWY_INLINE auto inverse_norm_near_1(const Vector& v) {
   const auto square = dot(v, v);
   using Number = std::remove_cv_t<decltype(square)>;
   return number<Number>(1.5) - number<Number>(0.5) * square;
 }
 template <class Vector>
-HWY_INLINE auto over_square(const Vector& v) {
+HWY_INLINE auto inverse_square_near_1(const Vector& v) {
   const auto square = dot(v, v);
   return number<std::remove_cv_t<decltype(square)>>(2.0) - square;
 }
 
-// One of the bodies, A or B, with the other. The common frame is A's.
+// One of the bodies, A or B, as seen from the other.
 template <bool kIsB, class Relative>
 struct BodyFrame {
   const Relative& a_from_b;
 
   [[nodiscard]] HWY_INLINE BodyFrame<!kIsB, Relative> opposite() const { return {a_from_b}; }
-  // From the other body's frame to this one's, and back.
+  // These lead from the other body's frame to this body's, and back.
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector point_in(const Vector& p) const {
+  [[nodiscard]] HWY_INLINE Vector point_from_other(const Vector& p) const {
     if constexpr (kIsB) return point_to_b(a_from_b, p);
     return point_to_a(a_from_b, p);
   }
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector direction_in(const Vector& v) const {
+  [[nodiscard]] HWY_INLINE Vector direction_from_other(const Vector& v) const {
     if constexpr (kIsB) return direction_to_b(a_from_b, v);
     return direction_to_a(a_from_b, v);
   }
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector point_out(const Vector& p) const {
-    return opposite().point_in(p);
+  [[nodiscard]] HWY_INLINE Vector point_to_other(const Vector& p) const {
+    return opposite().point_from_other(p);
   }
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector direction_out(const Vector& v) const {
-    return opposite().direction_in(v);
+  [[nodiscard]] HWY_INLINE Vector direction_to_other(const Vector& v) const {
+    return opposite().direction_from_other(v);
   }
-  // From this body's frame to the common one, and back.
+  // These lead from this body's frame to frame A, and back.
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector point_to_common(const Vector& p) const {
+  [[nodiscard]] HWY_INLINE Vector point_in_a(const Vector& p) const {
     if constexpr (kIsB) return point_to_a(a_from_b, p);
     return p;
   }
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector direction_to_common(const Vector& v) const {
+  [[nodiscard]] HWY_INLINE Vector direction_in_a(const Vector& v) const {
     if constexpr (kIsB) return direction_to_a(a_from_b, v);
     return v;
   }
   template <class Vector>
-  [[nodiscard]] HWY_INLINE Vector direction_to_own(const Vector& v) const {
+  [[nodiscard]] HWY_INLINE Vector direction_in_local(const Vector& v) const {
     if constexpr (kIsB) return direction_to_b(a_from_b, v);
     return v;
   }
 
-  // Witness points: on this body in its own frame and in the common one, and so of the other.
+  // Sets the witness points: on this body in its own frame and in frame A, and the same for the
+  // other body.
   template <class Found, class Vector>
-  HWY_INLINE void place(Found& found, const Vector& own, const Vector& common,
-                        const Vector& others_own, const Vector& others_common) const {
+  HWY_INLINE void place(Found& found, const Vector& local, const Vector& in_a,
+                        const Vector& others_local, const Vector& others_in_a) const {
     if constexpr (kIsB) {
-      found.point_a = others_common;
-      found.own_b = own;
-      found.point_b = common;
+      found.point_a = others_in_a;
+      found.local_b = local;
+      found.point_b = in_a;
     } else {
-      found.point_a = common;
-      found.own_b = others_own;
-      found.point_b = others_common;
+      found.point_a = in_a;
+      found.local_b = others_local;
+      found.point_b = others_in_a;
     }
   }
 };
 
-// The plane of a facet of this body, and what is above it. `others` is a point of the other body by
-// itself, `own` the same in this body's frame.
+// The plane of a facet of this body, and a point of the other body above it. `others` is the point
+// in the other body's frame, `local` in this body's.
 template <bool kIsB, class Relative, class Vector, class Number>
 struct FacetPlane {
   HWY_INLINE FacetPlane(const Relative& pose, const Vector& normal, Number plane_offset)
-      : frame{pose}, own_n(normal), n(frame.direction_to_common(normal)), offset(plane_offset) {}
+      : frame{pose}, local_n(normal), n(frame.direction_in_a(normal)), offset(plane_offset) {}
 
-  // m: how far outside.
-  [[nodiscard]] HWY_INLINE Number height(const Vector& others, const Vector& own) const {
+  // m: the height of the point above the plane.
+  [[nodiscard]] HWY_INLINE Number height(const Vector& others, const Vector& local) const {
     if constexpr (kIsB) {
-      return over_norm(n) * dot(n, others - frame.a_from_b.translation) - offset;
+      return inverse_norm_near_1(n) * dot(n, others - frame.a_from_b.translation) - offset;
     } else {
-      return dot(n, own) - offset;
+      return dot(n, local) - offset;
     }
   }
-  // The witness points, found.apart from each other, and the normal.
+  // Sets the witness points, found.distance from each other, and the normal.
   template <class Found>
-  HWY_INLINE void place_witnesses(Found& found, const Vector& others, const Vector& own) const {
+  HWY_INLINE void place_witnesses(Found& found, const Vector& others, const Vector& local) const {
     if constexpr (kIsB) {
-      const Vector below = own - (dot(own_n, own) - offset) * own_n;
+      const Vector below = local - (dot(local_n, local) - offset) * local_n;
       frame.place(found, below, point_to_a(frame.a_from_b, below), others, others);
-      found.normal = -(over_norm(n) * n);
+      found.normal = -(inverse_norm_near_1(n) * n);
     } else {
-      const Vector below = own - found.apart * n;
-      frame.place(found, below, below, others, own);
+      const Vector below = local - found.distance * n;
+      frame.place(found, below, below, others, local);
       found.normal = n;
     }
   }
 
   BodyFrame<kIsB, Relative> frame;
-  Vector own_n, n;  // outward, in this body's frame and in the common one
-  Number offset;    // m
+  Vector local_n, n;  // outward, in this body's frame and in frame A
+  Number offset;      // m
 };
 
-// An edge of this body and a vertex of the other, in frame A, where B is what the rotation's
-// doubles make of it: not quite rigid, and so neither are its unit vectors of unit length. Seen
-// from B it would be A that is stretched, however far away.
+// An edge of this body and a vertex of the other, in frame A. The rotation in doubles is not quite
+// rigid, so B's unit vectors are not quite of unit length there. In frame B it would be A that is
+// stretched, however far away it is.
 template <bool kIsB, class Relative, class Vector, class Number>
 struct EdgeAndVertex {
   HWY_INLINE EdgeAndVertex(const Relative& pose, const Vector& edge_start, const Vector& direction,
                            const Vector& vertex)
       : frame{pose},
-        own_start(edge_start),
-        own_e(direction),
-        own_tip(vertex),
-        tip(frame.opposite().point_to_common(vertex)),
-        start(frame.point_to_common(edge_start)),
-        e(frame.direction_to_common(direction)),
+        local_start(edge_start),
+        local_e(direction),
+        local_tip(vertex),
+        tip(frame.opposite().point_in_a(vertex)),
+        start(frame.point_in_a(edge_start)),
+        e(frame.direction_in_a(direction)),
         from_start(tip - start),
         s(along_edge()) {}
 
-  // From the edge to the vertex: `separation`, as long as `across` and at right angles to it. No
-  // difference of long vectors, whose cancellation would leave something along the edge.
+  // Finds `separation`, from the edge to the vertex, by two cross products; it is as long as
+  // `across`. A difference of long vectors would leave something along the edge by cancellation.
   HWY_INLINE void find_separation() {
     across = cross(from_start, e);
     separation = cross(e, across);
@@ -170,32 +173,32 @@ struct EdgeAndVertex {
   }
   // |separation|, computed anew where cross products are too coarse: kSlender.
   [[nodiscard]] HWY_INLINE Number slender_length() const {
-    if constexpr (kIsB) return norm(separation) / over_norm(e);
+    if constexpr (kIsB) return norm(separation) / inverse_norm_near_1(e);
     return norm(separation);
   }
-  // `of_separation`: what `separation` is divided by.
+  // `of_separation`: the length by which `separation` is divided.
   template <class Found>
   HWY_INLINE void place_witnesses(Found& found, Number of_separation) const {
     if constexpr (kIsB) {
-      const Number unit = over_norm(e);
-      found.apart = found.certified = unit * length;
+      const Number unit = inverse_norm_near_1(e);
+      found.distance = found.certified = unit * length;
       found.normal = over(-(unit * separation), of_separation);
     } else {
-      found.apart = found.certified = length;
+      found.distance = found.certified = length;
       found.normal = over(separation, of_separation);
     }
-    frame.place(found, own_start + s * own_e, start + s * e, own_tip, tip);
+    frame.place(found, local_start + s * local_e, start + s * e, local_tip, tip);
   }
 
   BodyFrame<kIsB, Relative> frame;
-  Vector own_start, own_e, own_tip, tip, start, e, from_start;
-  Number s;  // m: where along the edge the vertex is
+  Vector local_start, local_e, local_tip, tip, start, e, from_start;
+  Number s;  // m: the vertex's place along the edge
   Vector across, separation;
   Number length;  // m
 
  private:
   [[nodiscard]] HWY_INLINE Number along_edge() const {
-    if constexpr (kIsB) return dot(from_start, e) * over_square(e);
+    if constexpr (kIsB) return dot(from_start, e) * inverse_square_near_1(e);
     return dot(from_start, e);
   }
 };
@@ -206,17 +209,17 @@ struct EdgeLines {
   HWY_INLINE EdgeLines(const Relative& pose, const Vector& start_of_a, const Vector& direction_of_a,
                        const Vector& start_of_b, const Vector& direction_of_b)
       : e(direction_of_a),
-        own_f(direction_of_b),
+        local_f(direction_of_b),
         start_a(start_of_a),
-        own_start_b(start_of_b),
+        local_start_b(start_of_b),
         f(direction_to_a(pose, direction_of_b)),
         start_b(point_to_a(pose, start_of_b)),
         between(start_b - start_a),
         n(cross(e, f)),
         sine2(dot(n, n)) {}
 
-  // s along the first and t along the second: of lines that cross. What lies between them along e
-  // is taken off first, so that its rounding is over the sine, and not over the sine's square.
+  // Finds s along the first and t along the second line, which cross. The part of `between` along e
+  // is taken off first, so that its rounding is divided by the sine and not by its square.
   HWY_INLINE void find_nearest() {
     const Number cosine = dot(e, f), along_e = dot(between, e);
     t = dot(cross(between, e), n) / sine2;
@@ -225,40 +228,41 @@ struct EdgeLines {
   template <class Found>
   HWY_INLINE void place_witnesses(Found& found) const {
     found.point_a = start_a + s * e;
-    found.own_b = own_start_b + t * own_f;
+    found.local_b = local_start_b + t * local_f;
     found.point_b = start_b + t * f;
   }
 
-  // m: how much farther along an edge a body may reach, by what rounding tilts the normal. The
-  // radii are those of spheres around the frames' origins.
-  [[nodiscard]] HWY_INLINE Number reach_of_tilt(const Vector& normal, Number radius_a,
-                                                Number radius_b) const {
+  // m: rounding tilts the normal, and along an edge the bodies' support values may exceed the
+  // computed ones by this. The radii are those of spheres around the frames' origins.
+  [[nodiscard]] HWY_INLINE Number tilt_error_of_edges(const Vector& normal, Number radius_a,
+                                                      Number radius_b) const {
     return number<Number>(2.0) *
            (radius_a * magnitude(dot(normal, e)) + radius_b * magnitude(dot(normal, f)));
   }
 
-  Vector e, own_f, start_a, own_start_b, f, start_b, between, n;
+  Vector e, local_f, start_a, local_start_b, f, start_b, between, n;
   Number sine2;
   Number s, t;  // m
 };
 
-// Transitions from two vertices to two facets are four at most; more of them go round in circles.
+// It takes four transitions at most from two vertices to two parallel facets; more of them go round
+// in circles.
 inline constexpr int kMostParallel = 6;
 
-// What a pair of features comes to.
+// The end of one transition.
 enum class Transition {
   kClosest,    // the KKT conditions are satisfied beyond rounding: these are the closest features
   kMoved,      // a neighbouring feature takes over
   kDeferred,   // of a first transition: the features are parallel, which is not decided there
-  kUndecided,  // rounding cannot tell, or this pair is none for straight-line code
+  kUndecided,  // rounding cannot tell, or straight-line code has no case for this pair
 };
 
 using Side = TrackingState::Side;
 
-// The pair, and what the transition that ends at kClosest finds.
+// The pair, and the findings of the transition that ends at kClosest.
 struct TrackedPair {
   HWY_INLINE TrackedPair(const ConvexBody& body_a, const ConvexBody& body_b,
-                         const RelativePose4& pose, TrackingState& state, WalkStart at = {})
+                         const RelativePose4& pose, TrackingState& state, TransitionsMade at = {})
       : a(body_a),
         b(body_b),
         a_from_b(pose),
@@ -273,31 +277,31 @@ struct TrackedPair {
   Side& on_a;
   Side& on_b;
   Vec4 point_a, point_b;  // witness points, frame A
-  Vec4 own_b;             // point_b in frame B
+  Vec4 local_b;           // point_b in frame B
   Vec4 normal;            // unit, from A to B, frame A
-  double apart;           // m: |point_b - point_a|; of penetrating bodies minus the depth
-  double certified;    // m: how far apart the normal certifies the polyhedra, but for error_bound
+  double distance;        // m: |point_b - point_a|; for penetrating bodies minus the depth
+  // m: the distance of the polyhedra that the normal certifies, less error_bound
+  double certified;
   double error_bound;  // m: Precision::error_bound
   int transitions;
   int parallel_transitions;  // of these, to features that are parallel within tolerance
 
-  // Of penetrating bodies (core/feature_walk/penetrating_steps-inl.hpp).
+  // For penetrating bodies (core/feature_tracking/penetrating_transitions-inl.hpp):
   bool penetrating = false;
-  double room;    // m: of the edges' crossing, to their ends
-  double beyond;  // m: the bodies may penetrate by this less
+  double inradius;     // m: from the crossing of the edges to their nearest end
+  double depth_error;  // m: the depth may be smaller by this
 
   [[nodiscard]] HWY_INLINE FeaturePair features() const {
     return feature_pair(on_a.kind, on_b.kind);
   }
 
-  // After a transition to features that are parallel. Rounding may have them go round in circles.
+  // Counts a transition to parallel features: rounding may make them go round in circles.
   [[nodiscard]] HWY_INLINE Transition parallel() {
     return ++parallel_transitions > kMostParallel ? Transition::kUndecided : Transition::kMoved;
   }
 };
 
-// The features that take over. Poses that are no poses lead beyond the ends of edges that have
-// none: to no feature.
+// The feature that takes over. A bad pose may lead to the open end of an edge, where there is none.
 HWY_INLINE Transition to_vertex(Side& side, std::int32_t vertex) {
   side.kind = vertex == kNone ? FeatureKind::kUnknown : FeatureKind::kVertex;
   side.feature = vertex;
@@ -314,7 +318,7 @@ HWY_INLINE Transition to_facet(Side& side, std::int32_t facet) {
   return Transition::kMoved;
 }
 
-// One of the bodies, the owner of an edge or facet, with its frame, and the other with its vertex.
+// One of the bodies, the owner of an edge or facet, with its frame; the other body has a vertex.
 template <bool kIsB>
 struct Owner : BodyFrame<kIsB, RelativePose4> {
   HWY_INLINE explicit Owner(TrackedPair& of)

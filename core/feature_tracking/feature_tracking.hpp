@@ -1,0 +1,64 @@
+// Feature tracking goes from the features that were closest last time to those that are closest
+// now, by their boundaries alone. This is the method of Lin and Canny (1991) and of V-Clip (Mirtich
+// 1998). The closest points lie within each other's Voronoi regions, and a violated region names
+// the next feature.
+//
+// A transition is an iteration of the active set (delta, alpha, lambda) without its points. For
+// every pair of features, straight-line code decides whether they satisfy the KKT conditions, and
+// if not, which neighbour takes over. Nothing guarantees progress here, so transitions are counted,
+// and what they leave open goes to the active-set iteration. The last transition yields the
+// certificate. A vertex is its body's support if the directional derivatives of all its edges along
+// the separating direction are negative; an edge, if those of its two facets are. Where features
+// are parallel within tolerance, the points of the last query choose among all closest ones
+// (core/feature_tracking/parallel_transitions-inl.hpp).
+#pragma once
+
+#include "core/convex_body.hpp"
+#include "core/distance_result.hpp"
+#include "core/pose.hpp"
+
+namespace clearance {
+
+enum class TrackingEnd : std::uint8_t {
+  kUndecided,    // rounding cannot tell, both bodies are unbounded, or too many transitions
+  kUncertified,  // these are the closest points; the direction between them bounds the distance
+                 // worse than the bodies' precision allows
+  kCertified,    // the bodies are distance, and the bounds as close as rounding lets them be
+};
+
+// The transitions that a query has made so far.
+struct TransitionsMade {
+  int transitions = 0, parallel_transitions = 0;
+};
+
+[[nodiscard]] inline bool exists(const ConvexBody& body, const TrackingState::Side& side) noexcept {
+  return side.kind <= FeatureKind::kFacet && static_cast<std::uint32_t>(side.feature) <
+                                                 body.features[static_cast<std::size_t>(side.kind)];
+}
+
+// Is the first transition straight-line code? It is for two vertices, for two edges, and for a
+// vertex with an edge or facet, of bodies that were disjoint. The sum of the two kinds tells: 0 +
+// 0, 0 + 1, 1 + 1 and 0 + 2. The bodies are not asked.
+[[nodiscard]] inline bool has_straight_features(const TrackingState& state) noexcept {
+  return !state.a.penetrating && static_cast<int>(state.a.kind) + static_cast<int>(state.b.kind) <=
+                                     static_cast<int>(FeatureKind::kFacet);
+}
+// Do the bodies have these features, and is one of them bounded?
+[[nodiscard]] inline bool can_be_tracked(const ConvexBody& a, const ConvexBody& b,
+                                         const TrackingState& state) noexcept {
+  return (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
+}
+
+// Moves the features of `state` by transitions until they are closest. Unless this ends undecided,
+// `result` (of the polyhedra, without radii) and the points of `state` belong to the last features.
+[[nodiscard]] TrackingEnd track_features(const ConvexBody& a, const ConvexBody& b,
+                                         const RelativePose& a_from_b, TrackingState& state,
+                                         DistanceResult& result) noexcept;
+
+// The same for bodies that penetrated each other in the last query. True: `result` is certified,
+// the depth or the distance. False: nothing is, and `state` and `result` are as they were.
+[[nodiscard]] bool track_penetrating_features(const ConvexBody& a, const ConvexBody& b,
+                                              const RelativePose& a_from_b, TrackingState& state,
+                                              DistanceResult& result) noexcept;
+
+}  // namespace clearance
