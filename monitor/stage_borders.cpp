@@ -35,6 +35,8 @@ void check_separations(std::span<const PairSeparation> pairs) noexcept {
 
 }  // namespace
 
+bool stage_borders_are_checked() noexcept { return kInvariantsChecked; }
+
 void check_displaced(std::span<const std::uint32_t> changed,
                      std::span<const std::uint32_t> first_part, const TickView& view) noexcept {
   if constexpr (!kInvariantsChecked) return;

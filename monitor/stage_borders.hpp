@@ -10,6 +10,9 @@
 
 namespace clearance {
 
+// Whether this build checks them (CLEARANCE_INVARIANTS).
+[[nodiscard]] bool stage_borders_are_checked() noexcept;
+
 // After 'displace' and 'pose': objects that changed have usable poses, sums that never decrease,
 // and placed parts. `first_part`: by object, index into the parts.
 void check_displaced(std::span<const std::uint32_t> changed,
