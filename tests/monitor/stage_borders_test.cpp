@@ -8,9 +8,13 @@
 namespace clearance {
 namespace {
 
+// For all tests of this program.
+const bool kCostlyOnesToo = (check_costly_borders(), true);
+
 class StageBordersDeathTest : public testing::Test {
  protected:
   void SetUp() override {
+    ASSERT_TRUE(kCostlyOnesToo);
     if (!stage_borders_are_checked()) GTEST_SKIP() << "built without CLEARANCE_INVARIANTS";
   }
 };
