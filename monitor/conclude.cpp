@@ -14,8 +14,7 @@ PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
     bounds.swept_lower = std::min(bounds.lower, std::max(bounds.swept_lower, swept.lower));
     bounds.swept_upper = std::min(bounds.swept_upper, swept.upper);
   }
-  CLEARANCE_INVARIANT(bounds.lower <= bounds.upper);
-  CLEARANCE_INVARIANT(bounds.swept_lower <= bounds.lower);
+  CLEARANCE_INVARIANT(bounds.swept_lower <= bounds.lower && bounds.lower <= bounds.upper);
   return bounds;
 }
 

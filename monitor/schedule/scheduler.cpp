@@ -77,7 +77,7 @@ void Scheduler::update_published(const Schedule& schedule, const Evaluator& eval
     for (const std::uint32_t pair : published_.pairs()) {
       if (!is_evaluated(pair, tick)) continue;
       evaluator.culling.mark_updated(pair);
-      evaluator.note_refreshed(pair);
+      tick.table.refreshed_cycle[pair] = tick.cycle;  // the queue does not have these pairs
     }
     return;
   }
