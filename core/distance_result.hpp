@@ -76,7 +76,7 @@ enum class FeatureKind : std::uint8_t {
 // a fact: an empty, stale or wrong state costs iterations and leaves the bounds true.
 //
 // Of a pair with a curved body `kind` is kDirection, a.point the last separating direction (frame
-// A), and `feature` names pieces (core/curved/tracking.hpp).
+// A), and `feature` names smooth parts (core/curved/tracking.hpp).
 //
 // After a query the two points, or b.point alone, are the witness points,
 // before radii, each in its own body's frame: transform(world_from_b, state.b.point) lies on B to
